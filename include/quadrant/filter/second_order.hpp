@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <array>
+#include <complex>
+#include <numbers>
+
+/// The arithmetic that notch and Butterworth low-pass share: one second-order section in transposed direct form II,
+/// chosen because its states are in the unit of the output and small next to it.
+namespace quadrant {
+
+inline constexpr double pi = std::numbers::pi;
+
+template <class Real> struct second_order_coefficients {
+    Real b0{1}, b1{0}, b2{0}, a1{0}, a2{0}; ///< (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)
+};
+
+template <signal_tag Signal, class Real> struct second_order_state {
+    std::array<quantity_of<Signal, Real>, 2> s{};
+};
+
+template <signal_tag Signal, class Real>
+quantity_of<Signal, Real>
+step(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
+     held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> x) noexcept {
+    const quantity_of<Signal, Real> y = c.b0 * x + state.s[0];
+    const quantity_of<Signal, Real> s0 = c.b1 * x - c.a1 * y + state.s[1];
+    const quantity_of<Signal, Real> s1 = c.b2 * x - c.a2 * y;
+    if (!finite(y, s0, s1)) return out.hold();
+    state.s = {s0, s1};
+    return out.keep(y);
+}
+
+/// As if x had been applied for ever; an x that is not finite only raises the fault flag.
+template <signal_tag Signal, class Real>
+void settle(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
+            held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> x) noexcept {
+    const Real gain = (c.b0 + c.b1 + c.b2) / (1 + c.a1 + c.a2);
+    const quantity_of<Signal, Real> y = gain * x;
+    const quantity_of<Signal, Real> s0 = y - c.b0 * x, s1 = c.b2 * x - c.a2 * y;
+    if (!finite(y, s0, s1)) return out.raise();
+    state.s = {s0, s1};
+    out.reset(y);
+}
+
+template <class Real>
+std::complex<double> response(const second_order_coefficients<Real>& c, frequency f, duration period) {
+    const auto number = [](const Real& x) { return detail::plain(x); };
+    const std::complex<double> back = std::polar(1.0, -2 * pi * f.value() * period.value()); // z^-1
+    return (number(c.b0) + back * (number(c.b1) + back * number(c.b2))) /
+           (1.0 + back * (number(c.a1) + back * number(c.a2)));
+}
+
+} // namespace quadrant

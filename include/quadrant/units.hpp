@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <boost/units/quantity.hpp>
+#include <boost/units/systems/si/acceleration.hpp>
+#include <boost/units/systems/si/current.hpp>
+#include <boost/units/systems/si/dimensionless.hpp>
+#include <boost/units/systems/si/electric_potential.hpp>
+#include <boost/units/systems/si/force.hpp>
+#include <boost/units/systems/si/frequency.hpp>
+#include <boost/units/systems/si/length.hpp>
+#include <boost/units/systems/si/mass.hpp>
+#include <boost/units/systems/si/time.hpp>
+#include <boost/units/systems/si/velocity.hpp>
+
+/// Physical quantities, SI throughout. `frequency` is in hertz everywhere, never in rad/s.
+namespace quadrant {
+
+namespace si = boost::units::si;
+template <class Unit, class Real = double> using quantity = boost::units::quantity<Unit, Real>;
+
+using duration = quantity<si::time>;
+using frequency = quantity<si::frequency>;
+
+template <class A, class B> using unit_quotient = typename boost::units::divide_typeof_helper<A, B>::type;
+template <class A, class B> using unit_product = typename boost::units::multiply_typeof_helper<A, B>::type;
+
+} // namespace quadrant
