@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <cmath>
+
+namespace quadrant {
+
+/// Friction that falls from a breakaway level to the Coulomb level as the axis gets faster, plus a viscous part.
+///   F = {Fc + (Fs - Fc) exp(-|v / vs|^delta)} sign(v) + viscous v, sign(0) = 0
+/// Source: [Jamaludin2008] eq. (3.5), delta = 1 there; [Armstrong1994] section 2.
+/// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward adds it).
+/// State: none but the last good output; `reset` and `settle` clear the fault flag.
+/// At rest a plant needs more than F(v): it asks breakaway() and slip(v), see stick_slip.hpp.
+/// Range: 0 <= coulomb <= static_level, stribeck_velocity > 0, 0.25 <= shape <= 4, viscous >= 0.
+/// NaN and infinities: holds the last output, raises faulted().
+/// Throws "stribeck.<field> = ...: must ..." for coulomb, static_level, stribeck_velocity, viscous, shape.
+/// Cost: 1 exponential (2 more functions when shape is not 1). Without the fall: `coulomb_viscous`.
+template <signal_tag In = signal::velocity, signal_tag Out = signal::force, class Real = double>
+class stribeck {
+public:
+    using input = In;
+    using output = Out;
+    using argument = quantity_of<In, Real>;
+    using value = quantity_of<Out, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity_of<Out, number> coulomb{};          ///< Fc, level at speed; >= 0
+        quantity_of<Out, number> static_level{};     ///< Fs, level at breakaway; >= coulomb
+        quantity_of<In, number> stribeck_velocity{}; ///< vs, where the excess has fallen to 1/e; > 0
+        gain_of<Out, In, number> viscous{};          ///< >= 0
+        double shape = 1;                            ///< delta; 0.25 ... 4
+    };
+    struct state {};
+
+    stribeck(const parameters& p, duration period)
+        : given_(p), coulomb_(in_real<Real>(p.coulomb)),
+          excess_(in_real<Real>(quantity_of<Out, number>(p.static_level - p.coulomb))),
+          velocity_(in_real<Real>(p.stribeck_velocity)), viscous_(in_real<Real>(p.viscous)) {
+        require_positive("stribeck.period", period);
+        require_not_negative("stribeck.coulomb", p.coulomb);
+        require_finite("stribeck.static_level", p.static_level);
+        require(p.static_level >= p.coulomb, "stribeck.static_level", p.static_level,
+                "must not be below coulomb (" + detail::shortest(detail::plain(p.coulomb)) + ")");
+        require_positive("stribeck.stribeck_velocity", p.stribeck_velocity);
+        require_not_negative("stribeck.viscous", p.viscous);
+        require(p.shape >= 0.25 && p.shape <= 4, "stribeck.shape", p.shape, "must lie between 0.25 and 4");
+    }
+
+    value operator()(argument v) noexcept {
+        const value y = at(v);
+        return finite(y) ? out_.keep(y) : out_.hold();
+    }
+    void reset() noexcept { out_.reset(); }
+    void settle(argument v) noexcept {
+        const value y = at(v);
+        finite(y) ? out_.reset(y) : out_.raise();
+    }
+
+    /// Magnitude of the dry part: what holds a resting axis, and what brakes a moving one.
+    value breakaway() const noexcept { return coulomb_ + excess_; }
+    value slip(argument v) const noexcept {
+        using std::abs, std::exp, std::log;
+        const Real ratio = abs((v / velocity_).value());
+        if (given_.shape == 1) return coulomb_ + excess_ * exp(-ratio);
+        if (ratio == Real(0)) return breakaway();
+        return coulomb_ + excess_ * exp(-exp(Real(given_.shape) * log(ratio)));
+    }
+    gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
+
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    state now() const noexcept { return {}; }
+
+private:
+    value at(argument v) const noexcept {
+        return (v > argument() ? slip(v) : v < argument() ? -slip(v) : value()) + viscous_ * v;
+    }
+
+    parameters given_;
+    value coulomb_, excess_;
+    argument velocity_;
+    gain_of<Out, In, Real> viscous_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

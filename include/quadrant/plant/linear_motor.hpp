@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+#include "../friction/coulomb_viscous.hpp"
+#include "../friction/stick_slip.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace quadrant {
+
+/// A linear-motor axis: amplifier limit and DAC, input delay, motor, moving mass on a friction box, encoder.
+///   M dv/dt = kf u(t - delay) + external - friction(v), dx/dt = v; reading = encoder rounding of x
+/// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
+/// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp.
+/// Ports: command u[k] [V] in, encoder reading [m] at sample k+1 out; positive command, force and motion agree.
+///   A second argument [N] is an external force held over the period.
+/// State: position, velocity, past commands. `reset`: at rest at zero; `settle(x)`: at rest at x, no command pending.
+/// Range: delay up to Capacity - 1 periods; substeps 1 ... 1000 (each advances the mass by one implicit step; the
+///   held command is averaged inside the sub-step where it changes).
+/// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the state,
+/// raises faulted(). Commands beyond the limit are clipped, limited() tells.
+/// Throws "linear_motor.<field> = ...: must ..." for period, mass, force_constant, delay, limit, dac_step, encoder_step,
+/// substeps; the friction box throws in its own name.
+/// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. No other plant yet.
+template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double>
+requires friction_law<Friction, Real> && (Capacity > 0)
+class linear_motor {
+public:
+    using input = signal::voltage;
+    using output = signal::position;
+    using number = parameter_real<Real>; ///< of parameters
+    using voltage = quantity_of<signal::voltage, Real>;
+    using position = quantity_of<signal::position, Real>;
+    using velocity = quantity_of<signal::velocity, Real>;
+    using force = quantity_of<signal::force, Real>;
+    using argument = voltage;
+    using value = position;
+
+    struct parameters {
+        quantity<si::mass, number> mass;                                ///< moving mass; > 0
+        gain_of<signal::force, signal::voltage, number> force_constant; ///< motor and amplifier; > 0
+        typename Friction::parameters friction{};             ///< of the friction box, viscous part included
+        quantity<si::time, number> delay{};                   ///< before a command acts; >= 0
+        quantity_of<signal::voltage, number> limit{};         ///< of the amplifier, both ways; 0: none
+        quantity_of<signal::voltage, number> dac_step{};      ///< 0: none
+        quantity_of<signal::position, number> encoder_step{}; ///< 0: none
+        std::size_t substeps = 10;                            ///< per servo period; 1 ... 1000
+    };
+    struct state {
+        position x{};
+        velocity v{};
+        std::array<voltage, Capacity + 1> past{}; ///< commands, the newest first
+    };
+
+    linear_motor(const parameters& p, duration period)
+        : given_(checked(p, period)), friction_(p.friction, period), mass_(in_real<Real>(p.mass)),
+          force_constant_(in_real<Real>(p.force_constant)), limit_(in_real<Real>(p.limit)),
+          dac_step_(in_real<Real>(p.dac_step)), encoder_step_(in_real<Real>(p.encoder_step)),
+          h_(quantity<si::time, Real>::from_value(Real(period.value() / static_cast<double>(p.substeps)))) {
+        const number periods = p.delay.value() / number(period.value());
+        whole_ = static_cast<std::size_t>(detail::plain(periods));
+        fraction_ = Real(periods - number(static_cast<double>(whole_)));
+    }
+
+    /// Applies u from sample k on; returns the encoder reading of sample k+1.
+    position operator()(voltage u, force external = force()) noexcept {
+        if (!finite(u, external)) return out_.hold();
+        const voltage applied = clipped(u), oldest = state_.past[Capacity];
+        for (std::size_t i = Capacity; i > 0; --i) state_.past[i] = state_.past[i - 1];
+        state_.past[0] = rounded(applied, dac_step_);
+
+        position x = state_.x;
+        velocity v = state_.v;
+        const auto n = given_.substeps;
+        for (std::size_t i = 0; i < n; ++i) {
+            // Share of the sub-step in which the newer command already acts.
+            const Real late = fraction_ * Real(static_cast<double>(n)) - Real(static_cast<double>(i));
+            const Real share = late < Real(0) ? Real(1) : late >= Real(1) ? Real(0) : Real(1) - late;
+            const voltage acting = state_.past[whole_] * share + state_.past[whole_ + 1] * (Real(1) - share);
+            const velocity next =
+                stick_slip<Real>(friction_, mass_, v, force_constant_ * acting + external, h_);
+            x += (v + next) * (h_ * Real(0.5));
+            v = next;
+        }
+        const position reading = rounded(x, encoder_step_);
+        if (!finite(x, v, reading)) {
+            for (std::size_t i = 0; i < Capacity; ++i) state_.past[i] = state_.past[i + 1];
+            state_.past[Capacity] = oldest;
+            return out_.hold();
+        }
+        state_.x = x;
+        state_.v = v;
+        limited_ = applied != u;
+        return out_.keep(reading);
+    }
+    void reset() noexcept { settle(position()); }
+    void settle(position x) noexcept {
+        const position reading = rounded(x, encoder_step_);
+        if (!finite(x, reading)) return out_.raise();
+        state_ = state{.x = x};
+        limited_ = false;
+        out_.reset(reading);
+    }
+
+    bool limited() const noexcept { return limited_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static const parameters& checked(const parameters& p, duration period) {
+        require_positive("linear_motor.period", period);
+        require_positive("linear_motor.mass", p.mass);
+        require_positive("linear_motor.force_constant", p.force_constant);
+        require_not_negative("linear_motor.delay", p.delay);
+        require(detail::plain(p.delay) / period.value() <= static_cast<double>(Capacity - 1),
+                "linear_motor.delay", p.delay,
+                "must not be beyond the capacity (" + std::to_string(Capacity - 1) + " periods)");
+        require_not_negative("linear_motor.limit", p.limit);
+        require_not_negative("linear_motor.dac_step", p.dac_step);
+        require_not_negative("linear_motor.encoder_step", p.encoder_step);
+        require(p.substeps >= 1 && p.substeps <= 1000, "linear_motor.substeps", static_cast<double>(p.substeps),
+                "must lie between 1 and 1000");
+        return p;
+    }
+    template <class Quantity> static Quantity rounded(Quantity x, Quantity step) noexcept {
+        using std::round;
+        if (!(step > Quantity())) return x;
+        return step * Real(round(Real(x / step)));
+    }
+    voltage clipped(voltage u) const noexcept {
+        if (!(limit_ > voltage())) return u;
+        return u > limit_ ? limit_ : u < -limit_ ? -limit_ : u;
+    }
+
+    parameters given_;
+    Friction friction_;
+    quantity<si::mass, Real> mass_;
+    gain_of<signal::force, signal::voltage, Real> force_constant_;
+    voltage limit_, dac_step_;
+    position encoder_step_;
+    quantity<si::time, Real> h_;
+    std::size_t whole_ = 0;
+    Real fraction_{};
+    state state_;
+    bool limited_ = false;
+    held_output<position> out_;
+};
+
+} // namespace quadrant
