@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect/effect.hpp"
+
+namespace quadrant::diagnosis {
+
+/// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
+/// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which also
+/// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis alike.
+inline std::vector<parameter> calibration(const plant_description& d, const tolerance_description& tolerance) {
+    std::vector<parameter> out;
+    const auto within = [&](const char* key, double& (*of)(plant_model&), double value, double relative) {
+        if (!(value > 0) || !(relative > 0)) return;
+        const double ratio = std::min(relative, 0.9);
+        out.push_back(
+            {.key = key,
+             .of = of,
+             .start = value,
+             .low = value * (1 - ratio),
+             .high = value * (1 + ratio),
+             .logarithmic = true,
+             .step = 1e-3,
+             .expected = std::log(value),
+             .spread = ratio / std::numbers::sqrt3}); // the standard deviation of a uniform inside the bounds
+    };
+    within(
+        "mass_kg", [](plant_model& p) -> double& { return p.mass; }, d.mass_kg, tolerance.of("mass"));
+    within(
+        "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },
+        d.force_constant_N_per_V, tolerance.of("force_constant"));
+    within(
+        "viscous_N_s_per_m", [](plant_model& p) -> double& { return p.friction.viscous_slope; },
+        d.viscous_N_s_per_m, tolerance.of("viscous"));
+    within(
+        "delay_s", [](plant_model& p) -> double& { return p.delay; }, d.delay_s, tolerance.of("delay"));
+    const double coulomb = d.coulomb_N.value_or(0), excess = d.static_N ? *d.static_N - coulomb : 0;
+    within(
+        "coulomb_N", [](plant_model& p) -> double& { return p.friction.coulomb; }, coulomb,
+        tolerance.of("coulomb"));
+    if (excess > 0) // the level Fs is known to a tolerance; the excess over Fc, being smaller, less well
+        within(
+            "static_N", [](plant_model& p) -> double& { return p.friction.excess; }, excess,
+            tolerance.of("static") * *d.static_N / excess);
+    within(
+        "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
+        d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
+    // Every contact gives way by some tenths of a micrometre before it slips; up to 2 um it is no cause.
+    out.push_back({.key = "presliding_length_m",
+                   .of = [](plant_model& p) -> double& { return p.friction.presliding_length; },
+                   .start = 2e-7,
+                   .low = 1e-8,
+                   .high = 2e-6,
+                   .logarithmic = true,
+                   .step = 1e-2,
+                   .expected = std::log(2e-7),
+                   .spread = 1.5});
+    return out;
+}
+
+} // namespace quadrant::diagnosis

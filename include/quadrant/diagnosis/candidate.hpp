@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "calibration.hpp"
+#include "effects.hpp"
+
+namespace quadrant::diagnosis {
+
+/// A model under trial: the described machine, calibrated, with some effects joined; and how well it predicts
+/// motion that it was not fitted to.
+struct candidate {
+    std::vector<const effect*> effects;
+    fit_result fit{};
+    std::vector<double> held_out{};       ///< predictive score by motion segment; larger is better
+    double total = 0;                     ///< their sum
+    std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
+};
+
+inline constexpr std::size_t folds = 5;
+inline std::size_t fold_of(std::size_t segment) { return segment % folds; }
+
+namespace detail {
+
+/// Score, gradient and curvature of one fold's blocks.
+struct fold_sum {
+    Eigen::MatrixXd a;
+    Eigen::VectorXd g;
+};
+
+template <class Each> void each_channel(const fit_result& f, const scoring& s, Each each) {
+    each(f.quadratic, s.nu, s.floor);
+    each(f.quadratic_mean, s.nu_mean, s.floor_mean);
+}
+
+} // namespace detail
+
+/// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by one
+/// Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each segment
+/// is scored once.
+inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd& prior_curvature) {
+    const auto n = c.fit.x.size();
+    std::array<detail::fold_sum, folds> sums;
+    detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+    for (auto& f : sums) f = all;
+    detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const double w = nu / (blocks[b].ms + floor * floor);
+            auto& f = sums[fold_of(s.segment_of_block[b])];
+            f.a += w * blocks[b].a;
+            f.g += w * blocks[b].g;
+        }
+    });
+    for (const auto& f : sums) all.a += f.a;
+    all.a.diagonal() += prior_curvature;
+    c.held_out.assign(s.segments, 0.0);
+    c.leave.clear();
+    std::array<Eigen::VectorXd, folds> step;
+    for (std::size_t f = 0; f < folds; ++f) {
+        Eigen::MatrixXd a = all.a - sums[f].a;
+        a.diagonal() *= 1 + 1e-9;
+        step[f] = n > 0 ? Eigen::VectorXd(a.ldlt().solve(sums[f].g)) : Eigen::VectorXd(0);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
+            const double x = c.fit.x[i], low = p.to_fit(p.low) - x, high = p.to_fit(p.high) - x;
+            step[f][i] =
+                std::isfinite(step[f][i]) ? std::clamp(step[f][i], std::min(low, 0.0), std::max(high, 0.0)) : 0;
+        }
+        c.leave.push_back(c.fit.x + step[f]);
+    }
+    detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const auto segment = s.segment_of_block[b];
+            c.held_out[segment] -= 0.5 * nu * std::log(blocks[b].at(step[fold_of(segment)]) + floor * floor);
+        }
+    });
+    c.total = 0;
+    for (double v : c.held_out) c.total += v;
+}
+
+/// The parameters of a fitted model, ready to be fitted again from where they are.
+inline std::vector<parameter> resumed(const fit_result& f) {
+    std::vector<parameter> ps = f.parameters;
+    for (std::size_t i = 0; i < ps.size(); ++i) ps[i].start = ps[i].from_fit(f.x[static_cast<Eigen::Index>(i)]);
+    return ps;
+}
+
+/// A first look at `from` with one more effect: a few iterations from every start that the effect offers, the best
+/// kept. No score yet. An effect that offers no start leaves an infinite objective.
+inline candidate sketch(const axis_record& record, const candidate& from, const effect& added,
+                        const screening& look) {
+    const fitter fit(record.observer, record.score);
+    candidate best{.effects = from.effects};
+    best.effects.push_back(&added);
+    best.total = -std::numeric_limits<double>::infinity();
+    for (const auto& start : added.starts(look)) {
+        plant_model plant = from.fit.plant;
+        added.join(plant);
+        std::vector<parameter> ps = resumed(from.fit);
+        std::erase_if(ps, [&](const parameter& p) { // the effect's own parameters replace the described ones
+            return std::any_of(start.begin(), start.end(),
+                               [&](const parameter& q) { return &q.of(plant) == &p.of(plant); });
+        });
+        ps.insert(ps.end(), start.begin(), start.end());
+        if (auto trial = fit.fit(plant, ps, 3); trial.objective < best.fit.objective)
+            best.fit = std::move(trial);
+    }
+    return best;
+}
+
+/// Fits a sketch to the end and scores it on motion that was not fitted.
+inline void finish(const axis_record& record, candidate& c, int iterations = 12) {
+    if (!std::isfinite(c.fit.objective)) return;
+    c.fit = fitter(record.observer, record.score).fit(c.fit.plant, resumed(c.fit), iterations);
+    Eigen::VectorXd curvature = Eigen::VectorXd::Zero(c.fit.x.size());
+    for (Eigen::Index i = 0; i < curvature.size(); ++i)
+        if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0)
+            curvature[i] = 1 / (p.spread * p.spread);
+    cross_validate(c, record.score, curvature);
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect.hpp"
+
+namespace quadrant::diagnosis {
+
+/// A force that never changes: gravity on a tilted axis, an amplifier's offset. Joins the force, with the motor's
+/// sign. Shows as a residual with a mean.
+inline constexpr effect constant_force{
+    .name = "constant_force",
+    .box = "mechanics",
+    .exciting_motion = "the same stroke in both directions, and rest after each",
+    .untried_relatives = "position_spring",
+    .equivalent = "asymmetric_friction",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        const double most = 10 * s.leader.force_constant; // a full-scale command of any amplifier
+        const double mean = detail::mean_residual(s, [](std::size_t) { return true; });
+        return {{{.key = "constant_force_N",
+                  .of = [](plant_model& p) -> double& { return p.constant_force; },
+                  .start = std::clamp(s.leader.constant_force - mean, -most, most),
+                  .low = -most,
+                  .high = most,
+                  .step = 1e-5 * s.leader.force_constant}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"constant_force_N", {p.constant_force}}};
+    }};
+
+} // namespace quadrant::diagnosis

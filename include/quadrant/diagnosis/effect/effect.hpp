@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../record.hpp"
+
+#include <string_view>
+
+namespace quadrant::diagnosis {
+
+/// What an effect may look at to choose its start values: the machine file, the best model so far and the force
+/// that this model leaves.
+struct screening {
+    const plant_description& described;
+    const tolerance_description& tolerance;
+    const axis_record& record;
+    const plant_model& leader;
+    const std::vector<double>& residual; ///< [N], sign of residual_force()
+};
+
+struct key_value {
+    std::string key;            ///< the machine file's
+    std::vector<double> values; ///< one, or one a harmonic
+};
+
+/// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp.
+struct effect {
+    std::string_view name, box;
+    std::string_view exciting_motion; ///< what motion shows it
+    /// Effects that look much like this one and are not among the suspects yet: while structure is left over, one of
+    /// them may be the cause, and this name is no more than a suspicion. Empty: those that look like it contain it.
+    std::string_view untried_relatives = "";
+    /// A name that is the same model on any motion as far as its other terms agree (gap/FORMAT.md, known equivalences).
+    std::string_view equivalent = "";
+    /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the same
+    /// key). None: it cannot be told from this record.
+    std::vector<std::vector<parameter>> (*starts)(const screening&);
+    /// The machine file's keys with the values of a fitted model.
+    std::vector<key_value> (*read)(const plant_model&);
+    /// What the plant model needs before the parameters mean anything; most effects need nothing.
+    void (*join)(plant_model&) = [](plant_model&) {};
+};
+
+namespace detail {
+
+/// Mean residual over the rows that `chosen` picks; 0 when there are none.
+template <class Chosen> double mean_residual(const screening& s, Chosen chosen) {
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < s.residual.size(); ++k)
+        if (chosen(k)) {
+            sum += s.residual[k];
+            ++count;
+        }
+    return count > 0 ? sum / count : 0;
+}
+
+/// A machine value that is known to a tolerance may move freely: between a quarter and four times.
+inline parameter freed(const char* key, double& (*of)(plant_model&), double value) {
+    return {.key = key,
+            .of = of,
+            .start = value,
+            .low = value / 4,
+            .high = value * 4,
+            .logarithmic = true,
+            .step = 1e-3};
+}
+
+} // namespace detail
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect.hpp"
+
+namespace quadrant::diagnosis {
+
+/// F = B v with another B than described. Joins the force, in the friction box. Shows as a residual proportional to
+/// the velocity.
+inline constexpr effect viscous_friction{
+    .name = "viscous_friction",
+    .box = "mechanics",
+    .exciting_motion = "constant speeds, slow and fast, in both directions",
+    .untried_relatives = "actuator_lag",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        double vv = 0, vf = 0;
+        for (std::size_t k = 0; k < s.residual.size(); ++k) {
+            vv += s.record.velocity[k] * s.record.velocity[k];
+            vf += s.record.velocity[k] * s.residual[k];
+        }
+        const double b = s.leader.friction.viscous_slope, slope = vv > 0 ? vf / vv : 0;
+        const double start = std::max({b + slope, 0.25 * b, 1e-3 * s.leader.mass});
+        return {{{.key = "viscous_N_s_per_m",
+                  .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
+                  .start = start,
+                  .low = 0.01 * start,
+                  .high = 20 * start,
+                  .logarithmic = true,
+                  .step = 1e-3}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"viscous_N_s_per_m", {p.friction.viscous_slope}}};
+    }};
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the simulation believes of a machine: the contents of a machine file (schema quadrant.machine/1).
+/// Field names are the file's keys, so that a message, the file and the code say the same word; all values SI.
+/// An absent optional is an effect that the simulation does not have.
+namespace quadrant::diagnosis {
+
+struct plant_description {
+    double mass_kg = 0;
+    double force_constant_N_per_V = 0; ///< newtons per unit of the command column (V, A, or 1 for N)
+    double viscous_N_s_per_m = 0;
+    double delay_s = 0; ///< from the sample instant to the command's first action; the hold is not part of it
+    std::optional<double> coulomb_N;
+    std::optional<double> static_N, stribeck_velocity_m_per_s;
+    std::optional<double> viscous_asymmetry, coulomb_asymmetry; ///< relative: level times (1 + a sign v)
+    std::optional<double> constant_force_N;                     ///< added to the motor's force
+    std::optional<double> cogging_period_m;
+    std::vector<double> cogging_N, cogging_phase_rad; ///< one entry a harmonic
+};
+
+/// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb", "static", ...).
+struct tolerance_description {
+    std::map<std::string, double> given;
+    static constexpr double unstated = 0.05; ///< FORMAT.md: absent means 0.05 and a note
+    double of(const std::string& key) const {
+        const auto found = given.find(key);
+        return found == given.end() ? unstated : found->second;
+    }
+};
+
+struct notch_description {
+    double frequency_Hz = 0, damping = 0;
+};
+
+/// The controller kind `cascade_p_pi` of FORMAT.md.
+struct controller_description {
+    enum class estimator { filtered_derivative, two_sample_mean };
+    double position_gain_per_s = 0;
+    double velocity_gain_V_s_per_m = 0;
+    double velocity_integral_V_per_m = 0;
+    estimator velocity_estimator = estimator::filtered_derivative;
+    double velocity_filter_Hz = 0; ///< of the filtered derivative
+    double velocity_feedforward = 0;
+    double acceleration_feedforward_V_s2_per_m = 0;
+    double viscous_feedforward_V_s_per_m = 0;
+    double coulomb_feedforward_V = 0;
+    std::optional<notch_description> notch;
+};
+
+struct actuator_description {
+    std::optional<double> limit_V;
+    std::optional<int> dac_bits;
+    std::optional<double> dac_range_V; ///< whole range: 20 for +-10 V
+};
+
+struct axis_description {
+    std::string name;
+    plant_description plant;
+    std::string command_unit =
+        "V"; ///< "V" or "A", from the force constant's key; "N": none given, and 1 is meant
+    tolerance_description tolerance;
+    double encoder_resolution_m = 0; ///< 0: not described
+    actuator_description actuator;
+    std::optional<controller_description>
+        controller; ///< absent or of an unknown kind: diagnosed from the command onwards
+};
+
+struct machine_description {
+    std::string file; ///< where it was read from, for messages
+    double sample_period_s = 0;
+    std::vector<std::string> excluded_effects;
+    std::vector<axis_description> axes; ///< in the order of their names
+    std::vector<std::string> notes;     ///< what was assumed while reading
+};
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws.
+namespace quadrant::diagnosis {
+
+/// Ordered from the best to the worst: the verdict of several axes is the largest.
+enum class verdict { no_gap, within_tolerance, explained, partly_explained, unexplained };
+
+constexpr const char* name_of(verdict v) {
+    switch (v) {
+    case verdict::no_gap:
+        return "no_gap";
+    case verdict::within_tolerance:
+        return "within_tolerance";
+    case verdict::explained:
+        return "explained";
+    case verdict::partly_explained:
+        return "partly_explained";
+    default:
+        return "unexplained";
+    }
+}
+
+struct estimate {
+    double value = 0, low = 0, high = 0; ///< 95 % interval
+};
+
+struct gap_numbers {
+    double position_rms_m = 0, position_peak_m = 0; ///< closed-loop simulation against the log
+    double command_rms_V = 0;                       ///< the same
+    double force_rms_N = 0;             ///< residual force, zero-phase filtered to bandwidth_Hz on both sides
+    double noise_floor_force_rms_N = 0; ///< what sensor and rounding alone leave in the residual force
+    double bandwidth_Hz = 0;
+};
+
+/// One place of the gap. Shares of one view sum to one with its remainder, never across views.
+struct place {
+    std::string view;  ///< block, velocity, reversal, position, time, frequency, acceleration
+    std::string block; ///< of the block view: controller, actuator, mechanics, sensor, process
+    std::string finding;
+    estimate share;
+    std::string basis; ///< of the block view: replay or causes
+};
+
+struct parameter_estimate {
+    std::string key;              ///< the machine file's key
+    std::vector<estimate> values; ///< one, or one a harmonic
+};
+
+/// Another name for the same signal on this record, with the parameters it would have.
+struct reading {
+    std::string effect;
+    std::vector<parameter_estimate> parameters;
+};
+
+struct cause {
+    std::string axis, effect;
+    double probability = 0;       ///< of this name
+    double group_probability = 0; ///< of this name or one it is confusable with
+    std::vector<std::string> confusable_with;
+    std::vector<parameter_estimate> parameters;
+    std::vector<reading> readings; ///< of the names it is confusable with
+    estimate gap_before_force_rms_N, gap_after_force_rms_N;
+    estimate gap_before_position_rms_m, gap_after_position_rms_m;
+    estimate gap_before_command_rms_V, gap_after_command_rms_V;
+    estimate shrink; ///< 1 - after/before in force, on samples not used for the fit
+    std::string exciting_motion;
+};
+
+/// Signals for the pictures, one entry a sample (t, ...), or a bin (frequency, ...).
+struct axis_signals {
+    std::vector<double> t, reference, position, velocity, command;
+    std::vector<double> simulated_position_before,
+        simulated_position_after;                        ///< closed loop; empty without a controller
+    std::vector<double> residual_before, residual_after; ///< force [N]
+    std::vector<double> command_replayed;                ///< the described controller on the logged r and y
+    std::vector<double> frequency_Hz, spectrum_before, spectrum_after; ///< residual force [N/sqrt(Hz)]
+};
+
+struct axis_result {
+    std::string name;
+    quadrant::diagnosis::verdict verdict = verdict::no_gap;
+    gap_numbers gap, gap_after; ///< as described; with every named cause and calibration added
+    std::vector<place> where;
+    std::string evaluated_on; ///< "held-out segments of LOG" or the hold-out file
+    axis_signals signals;
+};
+
+struct experiment {
+    std::string motion;
+    std::vector<std::string> separates;
+    double expected_gain = 0; ///< log-score by which the motion would separate them; 0: not simulated
+};
+
+struct diagnosis_result {
+    quadrant::diagnosis::verdict verdict = verdict::no_gap;
+    std::vector<axis_result> axes;
+    std::vector<cause> causes; ///< the first explains most
+    double share_unexplained = 0;
+    std::string remaining_structure;
+    experiment next;
+    std::vector<std::string> notes;
+    std::string machine_file, log_file, holdout_file;
+};
+
+} // namespace quadrant::diagnosis

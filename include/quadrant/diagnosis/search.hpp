@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "candidate.hpp"
+
+#include <deque>
+#include <functional>
+
+namespace quadrant::diagnosis {
+
+/// What the selection asks of a cause, in one place. Scores are log-scores of held-out motion.
+struct rules {
+    double margin = 15;            ///< least held-out gain of one more effect; less is undecided
+    double relative_margin = 0.01; ///< least share of everything gained so far
+    double least_shrink = 0.05;    ///< least relative fall of the residual force on held-out motion
+    double temperature =
+        5; ///< scores are divided by it before they become probabilities: blocks are not independent
+    double structure = 5; ///< log-score of blocks above their limit that still counts as the floor
+    std::size_t most_causes = 4, beam = 2;
+    std::size_t finalists =
+        4; ///< of each round are fitted to the end; the others showed little at a first look
+};
+
+using progress = std::function<void(const std::string&)>; ///< one short line of what is going on
+
+/// One axis under diagnosis: the record, the described machine and the models tried so far.
+class search {
+public:
+    search(const axis_record& record, const axis_description& axis, std::vector<std::string> excluded, rules r,
+           progress tell)
+        : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
+        given_.fit.plant = plant_model(axis.plant);
+        given_.fit.parameters = {};
+        given_.fit.x = Eigen::VectorXd(0);
+        const fitter fit(record.observer, record.score);
+        fit.evaluate(given_.fit);
+        given_.total = -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
+        candidate start;
+        start.fit.plant = given_.fit.plant;
+        start.fit.parameters = calibration(axis.plant, axis.tolerance);
+        start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
+        for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
+            start.fit.x[static_cast<Eigen::Index>(i)] =
+                start.fit.parameters[i].to_fit(start.fit.parameters[i].start);
+        calibrated_ = std::move(start);
+        calibrated_.fit.objective = given_.fit.objective;
+        finish(record_, calibrated_);
+    }
+
+    const candidate& given() const { return given_; } ///< the machine file as it stands
+    const candidate& calibrated() const {
+        return calibrated_;
+    } ///< its values moved inside the owner's tolerance
+
+    /// Residual force of a model on the record it was fitted to [N].
+    std::vector<double> residual(const candidate& c) const {
+        std::vector<double> e, a;
+        record_.observer.run(c.fit.plant, e, &a);
+        return residual_force(c.fit.plant, record_.position, a, record_.period, record_.bandwidth_Hz);
+    }
+    /// The same with every segment predicted by parameters that were fitted without it.
+    std::vector<double> held_out_residual(const candidate& c) const {
+        if (c.leave.empty()) return residual(c);
+        std::vector<double> out(record_.position.size()), e, a;
+        for (std::size_t f = 0; f < folds; ++f) {
+            plant_model plant = c.fit.plant;
+            fitter::put(plant, c.fit.parameters, c.leave[f]);
+            record_.observer.run(plant, e, &a);
+            const auto r = residual_force(plant, record_.position, a, record_.period, record_.bandwidth_Hz);
+            for (std::size_t k = 0; k < r.size(); ++k)
+                if (fold_of(record_.segment[k]) == f) out[k] = r[k];
+        }
+        return out;
+    }
+
+    /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end, the
+    /// others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
+    std::vector<candidate> with_each(const candidate& from) const {
+        std::vector<candidate> out;
+        std::vector<std::size_t> fresh;
+        const auto left = residual(from);
+        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
+        for (const effect* e : suspects()) {
+            if (has(from, e)) continue;
+            if (const candidate* known = tried(from, e)) {
+                out.push_back(*known);
+            } else {
+                fresh.push_back(out.size());
+                out.push_back(sketch(record_, from, *e, look));
+            }
+        }
+        auto rank = fresh;
+        std::stable_sort(rank.begin(), rank.end(),
+                         [&](auto a, auto b) { return out[a].fit.objective < out[b].fit.objective; });
+        for (std::size_t i = 0; i < rank.size(); ++i) {
+            candidate& c = out[rank[i]];
+            finish(record_, c, i < rules_.finalists ? 12 : 0);
+            tell_(describe(c));
+            tried_.push_back(c);
+        }
+        std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
+        return out;
+    }
+    candidate with(const candidate& from, const effect* added) const {
+        if (const candidate* known = tried(from, added)) return *known;
+        const auto left = residual(from);
+        auto c = sketch(record_, from, *added, {axis_.plant, axis_.tolerance, record_, from.fit.plant, left});
+        finish(record_, c);
+        tell_(describe(c));
+        tried_.push_back(c);
+        return c;
+    }
+    /// The described machine with these effects, fitted one after the other.
+    candidate with(const std::vector<const effect*>& effects) const {
+        candidate c = calibrated_;
+        for (const effect* e : effects) c = with(c, e);
+        return c;
+    }
+
+    std::vector<const effect*> suspects() const {
+        std::vector<const effect*> out;
+        for (const effect* e : plant_effects)
+            if (std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end()) out.push_back(e);
+        return out;
+    }
+
+    /// White noise of the position as the best model sees it, robust against what it does not explain [m].
+    double noise(const candidate& best) const {
+        std::vector<double> half_difference(best.fit.innovation.size());
+        for (std::size_t k = 1; k < half_difference.size(); ++k)
+            half_difference[k] =
+                (best.fit.innovation[k] - best.fit.innovation[k - 1]) * std::numbers::sqrt2 / 2;
+        const auto ms = detail::block_ms(half_difference, record_.score.skip, record_.score.block);
+        return std::sqrt(std::max(quantile(ms, 0.3), square(resolution_()) / 12));
+    }
+
+    /// Structure that a model leaves: log-score of the blocks above twice the rms of noise and half a count. Below
+    /// rules.structure the model is at the floor.
+    double structure(const candidate& c, double sigma) const {
+        const auto over = [&](const std::vector<double>& blocks, double noise2, double nu) {
+            double sum = 0;
+            for (double ms : blocks)
+                sum += 0.5 * nu * std::max(0.0, std::log(ms / (4 * (noise2 + square(resolution_()) / 4))));
+            return sum;
+        };
+        return over(c.fit.ms, sigma * sigma, record_.score.nu) +
+               over(c.fit.ms_mean, sigma * sigma / static_cast<double>(record_.score.mean),
+                    record_.score.nu_mean);
+    }
+
+    /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; then takes out what
+    /// is no longer needed. Returns the calibrated machine and the models with one cause more each, the cause that
+    /// matters most first.
+    std::vector<candidate> run() const {
+        candidate best = calibrated_;
+        std::vector<candidate> beam{calibrated_};
+        while (best.effects.size() < rules_.most_causes) {
+            std::vector<candidate> next;
+            for (const candidate& from : beam)
+                for (auto& c : with_each(from))
+                    if (std::none_of(next.begin(), next.end(), [&](const auto& n) { return same(n, c); }))
+                        next.push_back(std::move(c));
+            std::stable_sort(next.begin(), next.end(),
+                             [](const auto& a, const auto& b) { return a.total > b.total; });
+            const auto paying =
+                std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
+            if (paying == next.end()) break;
+            beam.assign(1, *paying);
+            for (const auto& c : next)
+                if (beam.size() < rules_.beam && !same(c, *paying) && c.total > best.total + rules_.margin)
+                    beam.push_back(c);
+            best = *paying;
+        }
+        std::vector<candidate> path{best};
+        while (!path.back().effects.empty()) {
+            const candidate& whole = path.back();
+            candidate kept;
+            kept.total = -std::numeric_limits<double>::infinity();
+            for (const effect* out : whole.effects) {
+                std::vector<const effect*> rest = whole.effects;
+                std::erase(rest, out);
+                if (auto c = with(rest); c.total > kept.total) kept = std::move(c);
+            }
+            if (path.size() == 1 && !pays(whole, kept)) path.pop_back(); // no longer needed beside the others
+            path.push_back(std::move(kept));
+        }
+        std::reverse(path.begin(), path.end());
+        for (std::size_t i = 1; i < path.size(); ++i) { // the order in which the causes are told
+            auto order = path[i - 1].effects;
+            for (const effect* e : path[i].effects)
+                if (!has(path[i - 1], e)) order.push_back(e);
+            path[i].effects = order;
+        }
+        return path;
+    }
+
+    /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
+    bool pays(const candidate& more, const candidate& less) const {
+        const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
+        if (gain < std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
+        return rms(held_out_residual(more)) < (1 - rules_.least_shrink) * rms(held_out_residual(less));
+    }
+
+    static bool has(const candidate& c, const effect* e) {
+        return std::find(c.effects.begin(), c.effects.end(), e) != c.effects.end();
+    }
+    static bool same(const candidate& a, const candidate& b) {
+        return a.effects.size() == b.effects.size() &&
+               std::all_of(a.effects.begin(), a.effects.end(), [&](const effect* e) { return has(b, e); });
+    }
+
+private:
+    static double square(double x) { return x * x; }
+    double resolution_() const { return record_.score.floor / 0.4; }
+    const candidate* tried(const candidate& from, const effect* added) const {
+        for (const candidate& c : tried_)
+            if (c.effects.size() == from.effects.size() + 1 && has(c, added) &&
+                std::all_of(from.effects.begin(), from.effects.end(),
+                            [&](const effect* e) { return has(c, e); }))
+                return &c;
+        return nullptr;
+    }
+    std::string describe(const candidate& c) const {
+        std::string out = axis_.name + ":";
+        for (const effect* e : c.effects) out += " " + std::string(e->name);
+        return out + " " + std::to_string(static_cast<long>(c.total - calibrated_.total));
+    }
+
+    const axis_record& record_;
+    const axis_description& axis_;
+    std::vector<std::string> excluded_;
+    rules rules_;
+    progress tell_;
+    candidate given_, calibrated_;
+    mutable std::deque<candidate> tried_;
+};
+
+} // namespace quadrant::diagnosis
