@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "controller_mismatch.hpp"
+#include "log.hpp"
+#include "search.hpp"
+#include "sensor_box.hpp"
+
+#include <optional>
+
+namespace quadrant::diagnosis {
+
+/// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way from the
+/// machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only reads it.
+class axis_case {
+public:
+    axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
+              const std::vector<std::string>& excluded, const rules& r, const progress& tell)
+        : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
+          resolution(std::max({a.encoder_resolution_m, coarse() ? count : 0.0, l.position_step})),
+          record(prepare(l, period, resolution)), models(record, a, excluded, r, tell) {
+        if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
+        path = models.run();
+        noise = models.noise(path.back());
+        structure = models.structure(path.back(), noise);
+    }
+    axis_case(const axis_case&) = delete; // the record and the models refer to it
+    axis_case& operator=(const axis_case&) = delete;
+
+    const axis_description& axis;
+    const axis_log& log;
+    const axis_log* holdout;
+    rules limits;
+    double count;      ///< the step in which the position really moves [m]
+    double resolution; ///< the described one, or the real one where that is coarser [m]
+    axis_record record;
+    search models;
+    std::optional<controller_finding> controller;
+    std::vector<candidate> path; ///< the calibrated machine, then with one cause more each
+    double noise = 0;            ///< white noise of the position [m]
+    double structure = 0;        ///< what the last model leaves above it, in log-score
+
+    const candidate& best() const { return path.back(); }
+    bool coarse() const { return axis.encoder_resolution_m > 0 && count > 1.5 * axis.encoder_resolution_m; }
+    bool at_floor() const { return structure < limits.structure; }
+    bool controller_differs() const { return controller && controller->differs; }
+    bool controller_open() const { return controller_differs() && !controller->mended; }
+    double floor_force() const {
+        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz);
+    }
+    /// The described controller with the found key mended.
+    controller_description mended() const {
+        controller_description c = *axis.controller;
+        if (controller->mended)
+            for (const auto& key : detail::controller_keys(c))
+                if (controller->key == key.key) key.of(c) = controller->value;
+        return c;
+    }
+    /// What a controller commands otherwise than logged, as a force on the axis [N].
+    std::vector<double> command_difference(const axis_log& l, const controller_description& c) const {
+        auto d = replay_controller(c, axis.actuator, record.period, l.reference, l.position, l.command);
+        for (std::size_t k = 0; k < d.size(); ++k)
+            d[k] = (d[k] - l.command[k]) * axis.plant.force_constant_N_per_V;
+        return d;
+    }
+};
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "axis_case.hpp"
+#include "interval.hpp"
+#include "resample.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// A model in which one cause is exchanged for another name.
+struct rival {
+    candidate model;
+    const effect* name = nullptr;
+    double weight = 0;
+    bool same = false; ///< not told apart from the cause by this record
+};
+
+inline double square(double x) { return x * x; }
+
+/// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
+/// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won.
+inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
+    const auto draws = segment_draws(c.record.segments);
+    std::vector<double> score(rivals.size());
+    for (const auto& draw : draws) {
+        for (std::size_t j = 0; j < rivals.size(); ++j) {
+            score[j] = 0;
+            for (std::size_t s = 0; s < draw.size(); ++s) score[j] += draw[s] * rivals[j].model.held_out[s];
+        }
+        const double top = *std::max_element(score.begin(), score.end());
+        double sum = 0;
+        for (double& v : score) sum += v = std::exp((v - top) / c.limits.temperature);
+        for (std::size_t j = 0; j < rivals.size(); ++j)
+            rivals[j].weight += score[j] / sum / static_cast<double>(draws.size());
+    }
+}
+
+/// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each other
+/// suspect, the others kept. The first entry is the cause itself.
+inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
+    const effect* own = c.best().effects[which];
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, own);
+    const candidate without = c.models.with(others);
+    std::vector<rival> out{{.model = c.best(), .name = own}};
+    for (auto& model : c.models.with_each(without))
+        for (const effect* e : model.effects)
+            if (!search::has(without, e) && e != own) out.push_back({.model = std::move(model), .name = e});
+    weigh(out, c);
+
+    const double energy = square(rms(c.models.held_out_residual(c.best())));
+    const double unexplained = c.at_floor() ? 0 : std::max(0.0, energy - square(c.floor_force()));
+    double sum = 0;
+    for (auto& r : out) {
+        const double excess = std::max(0.0, square(rms(c.models.held_out_residual(r.model))) - energy);
+        // A name that mends nothing is no rival. Two whose difference is smaller than what both leave unexplained are
+        // not told apart by it, nor are two that are one model (gap/FORMAT.md) while their predictions agree.
+        const bool pays = r.model.total > without.total + c.limits.margin;
+        const bool within = pays && excess < unexplained;
+        const bool equivalent = r.name->name == own->equivalent && excess < 0.2 * energy;
+        if (within) r.weight = std::max(r.weight, std::exp(-excess / unexplained) * out.front().weight);
+        if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
+        r.same = within || equivalent || (pays && r.weight > 0.01);
+        sum += r.weight;
+    }
+    for (auto& r : out) r.weight /= sum;
+    return out;
+}
+
+/// The probability that the cause is none of the suspects. At the floor nothing is left that could speak for it. While
+/// structure is left, whatever leaves it may also be what the name stands in for: at least 0.6 when the name has
+/// untried relatives, else as probable as what is left is large beside what the name explained.
+inline double unknown(const axis_case& c, std::size_t which) {
+    constexpr double least = 0.03;
+    if (c.at_floor()) return least;
+    const double before = rms(c.models.held_out_residual(c.path[which]));
+    const double after = rms(c.models.held_out_residual(c.best()));
+    const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
+    const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
+    const bool relatives = !c.best().effects[which]->untried_relatives.empty();
+    return std::clamp(least + left / explained, relatives ? 0.6 : least, 0.95);
+}
+
+inline void widen(std::vector<parameter_estimate>& mine, const std::vector<parameter_estimate>& other) {
+    for (auto& p : mine)
+        for (const auto& o : other)
+            if (o.key == p.key)
+                for (std::size_t k = 0; k < std::min(p.values.size(), o.values.size()); ++k) {
+                    p.values[k].low = std::min(p.values[k].low, o.values[k].low);
+                    p.values[k].high = std::max(p.values[k].high, o.values[k].high);
+                }
+}
+
+} // namespace detail
+
+/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings.
+inline std::vector<cause> plant_causes(const axis_case& c) {
+    const auto& effects = c.best().effects;
+    std::vector<std::vector<detail::rival>> rivals;
+    for (std::size_t i = 0; i < effects.size(); ++i) rivals.push_back(detail::rivals_of(c, i));
+    std::vector<cause> out;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        const effect& e = *effects[i];
+        cause named;
+        named.axis = c.axis.name;
+        named.effect = e.name;
+        named.exciting_motion = e.exciting_motion;
+        named.parameters = estimates(c.best(), e, c.record.score);
+        for (const auto& r : rivals[i]) {
+            if (r.name == &e) {
+                named.probability = r.weight;
+                named.group_probability += r.weight;
+            } else if (r.same) {
+                named.confusable_with.emplace_back(r.name->name);
+                named.group_probability += r.weight;
+                named.readings.push_back(
+                    {std::string(r.name->name), estimates(r.model, *r.name, c.record.score)});
+            }
+        }
+        // Where another cause has a second reading, this one's values under that reading belong to its interval.
+        for (std::size_t j = 0; j < rivals.size(); ++j)
+            for (const auto& r : rivals[j])
+                if (j != i && r.same && r.name != effects[j])
+                    detail::widen(named.parameters, estimates(r.model, e, c.record.score));
+        const double known = 1 - detail::unknown(c, i);
+        named.probability *= known;
+        named.group_probability *= known;
+        out.push_back(std::move(named));
+    }
+    return out;
+}
+
+/// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to rounding is
+/// the cause; one that does not is a guess.
+inline std::optional<cause> controller_cause(const axis_case& c) {
+    if (!c.controller_differs()) return {};
+    cause out;
+    out.axis = c.axis.name;
+    out.effect = "controller_mismatch";
+    out.exciting_motion = "any: the controller is replayed from the log";
+    out.probability = out.group_probability = c.controller->mended ? 0.97 : 0.4;
+    if (!c.controller->key.empty())
+        out.parameters.push_back(
+            {c.controller->key, {{c.controller->value, c.controller->low, c.controller->high}}});
+    return out;
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "controller_box.hpp"
+#include "record.hpp"
+
+namespace quadrant::diagnosis {
+
+/// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is not the
+/// one described. Which key differs is found by fitting one at a time, on this box alone.
+struct controller_finding {
+    std::vector<double> replayed; ///< the described controller on the logged r and y
+    double difference_rms = 0;    ///< against the logged command
+    double floor_rms = 0;         ///< DAC and the rounding of the columns, carried through the differences
+    bool differs = false;
+    std::string key; ///< that mends it best; empty: none does
+    double described = 0, value = 0, low = 0, high = 0;
+    double after_rms = 0; ///< with the key mended
+    bool mended = false;  ///< the mended controller agrees to rounding
+    std::vector<double> mended_command;
+};
+
+namespace detail {
+
+struct controller_key {
+    const char* key;
+    double& (*of)(controller_description&);
+    double scale; ///< a sensible size when the described value is zero
+};
+
+inline std::vector<controller_key> controller_keys(const controller_description& c) {
+    using d = controller_description;
+    std::vector<controller_key> keys{
+        {"position_gain_per_s", [](d& x) -> double& { return x.position_gain_per_s; }, 1},
+        {"velocity_gain_V_s_per_m", [](d& x) -> double& { return x.velocity_gain_V_s_per_m; }, 1},
+        {"velocity_integral_V_per_m", [](d& x) -> double& { return x.velocity_integral_V_per_m; },
+         c.velocity_gain_V_s_per_m},
+        {"velocity_feedforward", [](d& x) -> double& { return x.velocity_feedforward; }, 0.1},
+        {"acceleration_feedforward_V_s2_per_m",
+         [](d& x) -> double& { return x.acceleration_feedforward_V_s2_per_m; }, 0.01},
+        {"viscous_feedforward_V_s_per_m", [](d& x) -> double& { return x.viscous_feedforward_V_s_per_m; }, 0.1},
+        {"coulomb_feedforward_V", [](d& x) -> double& { return x.coulomb_feedforward_V; }, 0.01}};
+    if (c.velocity_estimator == d::estimator::filtered_derivative)
+        keys.push_back({"velocity_filter_Hz", [](d& x) -> double& { return x.velocity_filter_Hz; }, 100});
+    if (c.notch) {
+        keys.push_back({"notch.frequency_Hz", [](d& x) -> double& { return x.notch->frequency_Hz; }, 100});
+        keys.push_back({"notch.damping", [](d& x) -> double& { return x.notch->damping; }, 0.1});
+    }
+    return keys;
+}
+
+/// Largest command that rounding alone explains: half a DAC step on each side, and half a digit of each column
+/// carried through the differences and gains of the cascade.
+inline double replay_rounding(const controller_description& c, const actuator_description& a,
+                              const axis_log& log, double period) {
+    const double dac = a.dac_bits && a.dac_range_V ? *a.dac_range_V / std::exp2(*a.dac_bits) : 0;
+    const double r = 0.5 * log.reference_step, y = 0.5 * log.position_step;
+    return dac + log.command_step +
+           r * (c.velocity_gain_V_s_per_m * (c.position_gain_per_s + 2 * c.velocity_feedforward / period) +
+                4 * c.acceleration_feedforward_V_s2_per_m / (period * period) +
+                2 * c.viscous_feedforward_V_s_per_m / period) +
+           y * c.velocity_gain_V_s_per_m * (c.position_gain_per_s + 2 / period);
+}
+
+} // namespace detail
+
+inline controller_finding judge_controller(const controller_description& described,
+                                           const actuator_description& actuator, const axis_log& log,
+                                           const axis_record& record) {
+    using namespace detail;
+    controller_finding out;
+    const auto from = std::min(record.score.skip, log.command.size());
+    const auto difference = [&](const std::vector<double>& replayed) {
+        std::vector<double> d(replayed.size() - from);
+        for (std::size_t k = from; k < replayed.size(); ++k) d[k - from] = replayed[k] - log.command[k];
+        return d;
+    };
+    const auto replay = [&](const controller_description& c) {
+        return replay_controller(c, actuator, record.period, log.reference, log.position, log.command);
+    };
+    const double rounding = replay_rounding(described, actuator, log, record.period);
+    const auto score = [&](const std::vector<double>& d) {
+        double sum = 0;
+        for (double ms : block_ms(d, 0, record.score.block)) sum += std::log(ms + rounding * rounding);
+        return sum;
+    };
+    out.replayed = replay(described);
+    const auto d0 = difference(out.replayed);
+    out.difference_rms = rms(d0);
+    out.floor_rms = rounding;
+    // Below half a per cent of the command a controller is the described one, to the accuracy of its recording.
+    out.differs =
+        out.difference_rms > std::max(2 * rounding, 0.005 * rms(std::span(log.command).subspan(from)));
+    out.after_rms = out.difference_rms;
+    if (!out.differs) return out;
+
+    double best = score(d0), width = 0;
+    for (const auto& key : controller_keys(described)) {
+        controller_description trial = described;
+        double& value = key.of(trial);
+        const double given = value, scale = given != 0 ? std::abs(given) : key.scale;
+        const double nyquist = 0.499 / record.period;
+        const bool is_frequency = std::string(key.key).ends_with("_Hz");
+        const auto at = [&](double x) {
+            value = is_frequency ? std::min(x, nyquist) : x;
+            return score(difference(replay(trial)));
+        };
+        // A coarse scan over ratios finds the valley, golden section its bottom.
+        std::vector<double> grid;
+        for (double x :
+             {0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.25, 1.5, 1.8, 2.3, 3.0, 4.5})
+            if (!(is_frequency || key.key == std::string("notch.damping")) || x > 0) grid.push_back(x * scale);
+        if (given == 0)
+            for (double x : {0.03, 10.0, 30.0}) grid.push_back(x * scale);
+        std::sort(grid.begin(), grid.end());
+        std::size_t low_at = 0;
+        double low_score = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < grid.size(); ++i)
+            if (const double s = at(grid[i]); s < low_score) {
+                low_score = s;
+                low_at = i;
+            }
+        double a = grid[low_at == 0 ? 0 : low_at - 1], b = grid[std::min(low_at + 1, grid.size() - 1)];
+        constexpr double golden = 0.6180339887498949;
+        double x1 = b - golden * (b - a), x2 = a + golden * (b - a), f1 = at(x1), f2 = at(x2);
+        for (int i = 0; i < 24 && b - a > 1e-7 * scale; ++i) {
+            if (f1 < f2) {
+                b = x2;
+                x2 = x1;
+                f2 = f1;
+                x1 = b - golden * (b - a);
+                f1 = at(x1);
+            } else {
+                a = x1;
+                x1 = x2;
+                f1 = f2;
+                x2 = a + golden * (b - a);
+                f2 = at(x2);
+            }
+        }
+        const double x = 0.5 * (a + b), s = at(x);
+        if (s < best) {
+            best = s;
+            out.key = key.key;
+            out.described = given;
+            out.value = value;
+            out.mended_command = replay(trial);
+            const auto d = difference(out.mended_command);
+            out.after_rms = rms(d);
+            // What rounding of the command leaves open, from the command's sensitivity to the value.
+            const double h = 1e-3 * scale;
+            value = x + h;
+            auto moved = replay(trial);
+            for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - out.mended_command[k]) / h;
+            const double slope = rms(std::span<const double>(moved).subspan(from));
+            width = slope > 0 ? 1.96 * std::max(out.after_rms, rounding) /
+                                    (slope * std::sqrt(static_cast<double>(log.command.size()) /
+                                                       static_cast<double>(record.score.block)))
+                              : 0;
+        }
+    }
+    out.low = out.value - width;
+    out.high = out.value + width;
+    out.mended = !out.key.empty() &&
+                 out.after_rms <= std::max(2 * rounding, 0.005 * rms(std::span(log.command).subspan(from))) &&
+                 out.after_rms < 0.5 * out.difference_rms;
+    return out;
+}
+
+} // namespace quadrant::diagnosis

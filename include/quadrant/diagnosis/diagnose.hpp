@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "block_places.hpp"
+#include "causes.hpp"
+#include "how_far.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
+    if (c.at_floor() && !c.coarse() && !c.controller_open()) {
+        if (!causes.empty()) return verdict::explained;
+        const auto& given = c.models.given();
+        const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
+                              c.models.structure(given, c.noise) < c.limits.structure;
+        return as_given ? verdict::no_gap : verdict::within_tolerance;
+    }
+    const bool helps =
+        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.shrink.value > 0.2; });
+    return helps ? verdict::partly_explained : verdict::unexplained;
+}
+
+/// What is left when every cause is added: how large, and in which regimes.
+inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_result& result) {
+    const double floor = square(c.floor_force());
+    double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
+    double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
+    if (c.coarse()) before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
+    std::string text = "axis " + c.axis.name + ": ";
+    if (c.controller_differs()) {
+        before += square(rms(c.command_difference(c.log, *c.axis.controller)));
+        after += square(rms(c.command_difference(c.log, c.mended())));
+        if (c.controller_open())
+            text +=
+                "the controller that ran is not the one described and no single key of it mends the replay; ";
+    }
+    if (c.coarse())
+        text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
+                       c.axis.encoder_resolution_m);
+    if (c.at_floor()) {
+        text += worded("%.3g N rms behind the command, the noise floor", result.gap_after.force_rms_N);
+    } else {
+        text += worded("%.3g N rms behind the command (floor %.3g N)", result.gap_after.force_rms_N,
+                       c.floor_force());
+        auto views = regimes(c.models.held_out_residual(c.best()), c.record);
+        std::erase_if(views, [](const place& v) { // an even spread over time says nothing
+            return v.view == "time" && v.share.value > 0.35 && v.share.value < 0.65;
+        });
+        std::stable_sort(views.begin(), views.end(),
+                         [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
+        for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
+            text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
+    }
+    out.share_unexplained =
+        std::max(out.share_unexplained, before > 0 ? std::clamp(after / before, 0.0, 1.0) : 0);
+    out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text;
+}
+
+/// The motion to record next: what separates the first group, or a suspect from its untried relatives.
+inline void propose(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes) {
+    if (!out.next.motion.empty()) return;
+    for (const cause& x : causes)
+        if (!x.confusable_with.empty()) {
+            out.next.motion = x.exciting_motion;
+            out.next.separates = {x.effect};
+            out.next.separates.insert(out.next.separates.end(), x.confusable_with.begin(),
+                                      x.confusable_with.end());
+            return;
+        }
+    if (c.at_floor()) return;
+    for (const effect* e : c.best().effects)
+        if (!e->untried_relatives.empty()) {
+            out.next.motion = e->exciting_motion;
+            out.next.separates = {std::string(e->name), std::string(e->untried_relatives)};
+            return;
+        }
+}
+
+inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
+    axis_result result;
+    result.name = c.axis.name;
+    auto causes = plant_causes(c);
+    if (auto of_controller = controller_cause(c)) { // the first explains most
+        const double command = rms(c.command_difference(c.log, *c.axis.controller));
+        const bool first = command > rms(c.models.residual(c.models.given()));
+        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
+    }
+    how_far(c).measure(result, causes);
+    result.verdict = judge(c, causes);
+    result.where = block_places(c);
+    const auto views = regimes(c.models.residual(c.models.given()), c.record);
+    result.where.insert(result.where.end(), views.begin(), views.end());
+    out.verdict = std::max(out.verdict, result.verdict);
+    if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
+        out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+        describe_rest(out, c, result);
+        propose(out, c, causes);
+    }
+    out.axes.push_back(std::move(result));
+}
+
+template <class Axes> auto named(const Axes& axes, const std::string& name) {
+    const auto found = std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.name == name; });
+    return found == axes.end() ? nullptr : &*found;
+}
+
+} // namespace detail
+
+/// From a machine file and a log to where they differ, why, how surely, and how far the gap shrinks with each cause.
+/// Deterministic. Machine and log match (match.hpp). Cost: linear in rows; each suspect costs a few dozen passes of the
+/// plant over the log.
+inline diagnosis_result diagnose(
+    const machine_description& machine, const machine_log& log, const machine_log* holdout = nullptr,
+    const progress& tell = [](const std::string&) {}, const rules& r = {}) {
+    diagnosis_result out;
+    out.machine_file = machine.file;
+    out.log_file = log.file;
+    if (holdout) out.holdout_file = holdout->file;
+    out.notes = machine.notes;
+    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+    if (holdout) out.notes.insert(out.notes.end(), holdout->notes.begin(), holdout->notes.end());
+    for (const axis_description& axis : machine.axes) {
+        const axis_log* logged = detail::named(log.axes, axis.name);
+        if (!logged) continue;
+        const axis_log* other = holdout ? detail::named(holdout->axes, axis.name) : nullptr;
+        tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+        detail::diagnose_axis(
+            out, axis_case(axis, *logged, other, machine.sample_period_s, machine.excluded_effects, r, tell));
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

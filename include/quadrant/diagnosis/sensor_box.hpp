@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// The step in which a position column really moves: the smallest difference that nearly all differences of
+/// neighbouring rows are multiples of; at least the rounding of the column. Needs no dynamics. 0: it never moves.
+inline double observed_count(std::span<const double> position, double rounding) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < position.size(); ++k)
+        if (const double d = std::abs(position[k] - position[k - 1]); d > rounding) steps.push_back(d);
+    if (steps.empty()) return 0;
+    // The smallest difference that occurs more than by accident: one in a thousand rows.
+    const auto rank = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 1000);
+    std::nth_element(steps.begin(), rank, steps.end());
+    const double count = *rank;
+    std::size_t multiples = 0;
+    for (double d : steps)
+        if (std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count) ++multiples;
+    return 10 * multiples >= 9 * steps.size() ? count : rounding;
+}
+
+} // namespace quadrant::diagnosis

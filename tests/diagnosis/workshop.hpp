@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <quadrant/diagnosis/log.hpp>
+#include <quadrant/diagnosis/machine.hpp>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+/// Machines for the tests of the diagnosis, simulated by code that shares nothing with it: bare doubles, twenty steps a
+/// period, friction by LuGre bristles (the diagnosis knows sticking contacts), its own copy of the controller.
+namespace workshop {
+
+struct controller {
+    double position_gain = 110, velocity_gain = 35, integral = 300, filter_Hz = 180;
+    double velocity_feedforward = 1, acceleration_feedforward = 0.16, viscous_feedforward = 0.22,
+           coulomb_feedforward = 0;
+};
+
+struct machine {
+    double mass = 180, force_constant = 1100, viscous = 250, delay = 0.0006;
+    double coulomb = 60, excess = 0, stribeck_velocity = 0.004;
+    double viscous_asymmetry = 0, constant_force = 0;
+    double cogging = 0, cogging_second = 0, cogging_period = 0.03;
+    double lag = 0;      ///< first-order current loop [s]
+    double spring = 0;   ///< [N/m]
+    double backlash = 0; ///< play between motor and encoder [m]
+    double bristle = 2e-7;
+    double noise = 8e-8; ///< of the encoder, white [m]
+    controller control;
+};
+
+inline constexpr double period = 0.0005, count = 2.5e-7, limit = 10, dac = 20.0 / 65536;
+
+/// Strokes in both directions at three speeds, reversals from 20 mm down to 0.3 mm, rest, and a multi-sine of 15 to 140 Hz.
+inline double motion(double t) {
+    struct piece {
+        double begin, end;
+        std::function<double(double)> at;
+    };
+    constexpr double two_pi = 2 * std::numbers::pi;
+    const auto stroke = [](double length, double time) { // constant speed between smooth ends
+        return [=](double s) {
+            const double ramp = 0.12, speed = length / (time - ramp);
+            if (s < ramp) return speed * (s / 2 - ramp / two_pi * std::sin(std::numbers::pi * s / ramp) * 0.5);
+            if (s > time - ramp) {
+                const double r = time - s;
+                return length - speed * (r / 2 - ramp / two_pi * std::sin(std::numbers::pi * r / ramp) * 0.5);
+            }
+            return speed * (s - ramp / 2);
+        };
+    };
+    const auto swing = [](double amplitude, double frequency) {
+        return [=](double s) { return amplitude * (1 - std::cos(two_pi * frequency * s)) / 2; };
+    };
+    const auto tones = [](double s) {
+        double sum = 0;
+        for (int i = 0; i < 9; ++i) {
+            const double f = 15 * std::pow(1.32, i);
+            sum += 0.02 / (f * f) * std::sin(two_pi * f * s + 1.7 * i * i);
+        }
+        return sum * std::min({1.0, s / 0.1, (0.9 - s) / 0.1});
+    };
+    static const std::vector<piece> pieces{{0.10, 0.90, stroke(0.12, 0.8)}, {1.00, 1.80, stroke(-0.12, 0.8)},
+                                           {1.90, 2.90, stroke(0.04, 1.0)}, {3.00, 4.00, stroke(-0.04, 1.0)},
+                                           {4.05, 5.05, swing(0.02, 2)},    {5.10, 6.10, swing(0.002, 2)},
+                                           {6.15, 7.15, swing(0.0003, 2)},  {7.20, 8.10, tones}};
+    double x = 0;
+    for (const auto& p : pieces)
+        if (t >= p.end)
+            x += p.at(p.end - p.begin);
+        else if (t > p.begin)
+            x += p.at(t - p.begin);
+    return x;
+}
+
+/// The log of a machine that follows motion() under its controller.
+inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15, unsigned seed = 1) {
+    quadrant::diagnosis::axis_log log;
+    log.name = "x";
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, m.noise);
+    const int fine = 20;
+    const double h = period / fine;
+    double x = 0, v = 0, z = 0, lagged = 0, load = 0;
+    double estimate = 0, y1 = 0, integral = 0, r1 = 0, v1 = 0;
+    std::vector<double> commands;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(seconds / period); ++k) {
+        const double r = std::round(motion(static_cast<double>(k) * period) * 1e12) / 1e12;
+        const double y =
+            std::round(((m.backlash > 0 ? load : x) + (k > 0 ? noise(random) : 0)) / count) * count;
+        const double w = 2 * std::numbers::pi * m.control.filter_Hz;
+        estimate = ((2 - w * period) * estimate + 2 * w * (y - y1)) / (2 + w * period);
+        y1 = y;
+        const double vr = (r - r1) / period, ar = (vr - v1) / period;
+        r1 = r;
+        v1 = vr;
+        const double e = m.control.position_gain * (r - y) + m.control.velocity_feedforward * vr - estimate;
+        integral = std::clamp(integral + m.control.integral * period * e, -limit, limit);
+        double u = m.control.velocity_gain * e + integral + m.control.acceleration_feedforward * ar +
+                   m.control.viscous_feedforward * vr +
+                   m.control.coulomb_feedforward * (vr > 0   ? 1
+                                                    : vr < 0 ? -1
+                                                             : 0);
+        u = std::round(std::clamp(u, -limit, limit) / dac) * dac;
+        commands.push_back(u);
+        log.reference.push_back(r);
+        log.position.push_back(y);
+        log.command.push_back(u);
+        for (int i = 0; i < fine; ++i) {
+            const double t = (static_cast<double>(k * fine) + i) * h - m.delay;
+            const double acting =
+                t < 0 ? 0 : commands[std::min(k, static_cast<std::size_t>(t / period + 1e-9))];
+            lagged = m.lag > 0 ? acting + (lagged - acting) * std::exp(-h / m.lag) : acting;
+            const double side = v > 0 ? 1 : v < 0 ? -1 : 0;
+            const double level = m.coulomb + m.excess * std::exp(-std::abs(v) / m.stribeck_velocity);
+            double friction = m.viscous * (1 + m.viscous_asymmetry * side) * v;
+            if (m.coulomb + m.excess > 0) { // LuGre, the bristle's exact exponential step
+                const double stiffness = level / m.bristle, before = z;
+                z = side * m.bristle + (z - side * m.bristle) * std::exp(-std::abs(v) * h / m.bristle);
+                friction += stiffness * z + 0.7 * std::sqrt(stiffness * m.mass) * (z - before) / h;
+            }
+            const double angle = 2 * std::numbers::pi * x / m.cogging_period;
+            const double force = m.force_constant * lagged - friction + m.constant_force - m.spring * x +
+                                 m.cogging * std::sin(angle + 0.7) + m.cogging_second * std::sin(2 * angle);
+            const double before_v = v;
+            v += h * force / m.mass;
+            x += h * (before_v + v) / 2; // the velocity alone would lead by half a step
+            load = std::clamp(load, x - m.backlash / 2, x + m.backlash / 2);
+        }
+    }
+    log.reference_step = 1e-12;
+    log.position_step = 1e-12;
+    return log;
+}
+
+/// The machine file of a machine: its numbers moved inside the owner's tolerance; effects are left out by the caller.
+inline quadrant::diagnosis::machine_description described(const machine& m) {
+    using namespace quadrant::diagnosis;
+    axis_description a;
+    a.name = "x";
+    a.plant.mass_kg = m.mass * 1.012;
+    a.plant.force_constant_N_per_V = m.force_constant * 0.996;
+    a.plant.viscous_N_s_per_m = m.viscous * 0.95;
+    a.plant.delay_s = m.delay;
+    if (m.coulomb > 0) a.plant.coulomb_N = m.coulomb * 1.03;
+    a.tolerance.given = {
+        {"mass", 0.02}, {"force_constant", 0.01}, {"viscous", 0.1}, {"coulomb", 0.05}, {"static", 0.05}};
+    a.encoder_resolution_m = count;
+    a.actuator = {.limit_V = limit, .dac_bits = 16, .dac_range_V = 20};
+    controller_description c;
+    c.position_gain_per_s = m.control.position_gain;
+    c.velocity_gain_V_s_per_m = m.control.velocity_gain;
+    c.velocity_integral_V_per_m = m.control.integral;
+    c.velocity_filter_Hz = m.control.filter_Hz;
+    c.velocity_feedforward = m.control.velocity_feedforward;
+    c.acceleration_feedforward_V_s2_per_m = m.control.acceleration_feedforward;
+    c.viscous_feedforward_V_s_per_m = m.control.viscous_feedforward;
+    c.coulomb_feedforward_V = m.control.coulomb_feedforward;
+    a.controller = c;
+    machine_description out;
+    out.sample_period_s = period;
+    out.axes.push_back(a);
+    return out;
+}
+
+inline quadrant::diagnosis::machine_log as_log(quadrant::diagnosis::axis_log axis) {
+    quadrant::diagnosis::machine_log out;
+    out.sample_period_s = period;
+    out.samples = axis.position.size();
+    out.axes.push_back(std::move(axis));
+    return out;
+}
+
+} // namespace workshop
