@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "words.hpp"
+
+/// A diagnosis as text for a terminal of 100 columns.
+namespace quadrant_gap {
+
+/// Columns that a UTF-8 text takes.
+inline std::size_t columns(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+inline std::string padded(std::string text, std::size_t width) {
+    const std::size_t used = columns(text);
+    return used < width ? text.append(width - used, ' ') : text;
+}
+
+/// Lines of at most 100 columns, indented; longer words are cut and control characters (of file names) shown as "?".
+inline std::string wrapped(std::string text, std::size_t indent) {
+    constexpr std::size_t width = 100;
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }, '?');
+    std::string out, line, word;
+    const auto flush = [&] {
+        if (!line.empty()) out += std::string(indent, ' ') + line + "\n";
+        line.clear();
+    };
+    const auto place = [&] {
+        if (!line.empty() && columns(line) + 1 + columns(word) > width - indent) flush();
+        line += (line.empty() || word.empty() ? "" : " ") + word;
+        word.clear();
+    };
+    for (const char c : text) {
+        const bool starts_character = (c & 0xC0) != 0x80;
+        if (c == ' ' || (starts_character && columns(word) == width - indent)) place();
+        if (c != ' ') word += c;
+    }
+    place();
+    flush();
+    return out;
+}
+
+inline std::string summary_of(const diagnosis_result& d, const axis_result& a) {
+    std::string text = wrapped(fmt::format("Axis {}: {}", a.name, spaced(name_of(a.verdict))), 0);
+    if (d.axes.size() > 1) text += wrapped(sentence(d, a), 2);
+    text += wrapped(gap_basis(a), 2);
+    const auto row = [](std::string_view name, std::string_view before, std::string_view after,
+                        std::string_view floor) {
+        std::string line = "  " + padded(std::string(name), 18) + padded(std::string(before), 12) +
+                           padded(std::string(after), 12);
+        line += floor;
+        return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    };
+    text += row("gap", "before", "after", "floor");
+    for (const gap_row& r : gap_rows(a)) text += row("  " + r.name, r.before, r.after, r.floor);
+    for (const auto& [view, title] : views) {
+        std::string places;
+        for (const place& p : a.where)
+            if (p.view == view) {
+                const std::string share = percent(p.share),
+                                  box = p.block + (p.block.empty() || p.finding.empty() ? "" : ": ");
+                places +=
+                    wrapped(box + p.finding + (p.basis.empty() ? "" : fmt::format(" (by {})", p.basis)), 20)
+                        .replace(4, share.size(), share);
+            }
+        if (!places.empty()) text += fmt::format("  where, {}\n{}", title, places);
+    }
+    return text + "\n";
+}
+
+inline std::string summary_of(const cause& c) {
+    std::string text =
+        wrapped(fmt::format("{}, axis {}: probability {}{}", capital(name_of_effect(c.effect)), c.axis,
+                            probability(c.probability), claimed(c) ? "" : ", a suspect, not a claim"),
+                2);
+    for (const std::string& line : lines_of(c.parameters)) text += wrapped(line, 4);
+    text += wrapped(fmt::format("force gap {}, shrinks by {}",
+                                change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, "N"),
+                                percent(c.shrink)),
+                    4);
+    if (!c.confusable_with.empty())
+        text += wrapped(fmt::format("cannot be told apart on this record from {}; probability of the group {}",
+                                    named(c.confusable_with, "or"), probability(c.group_probability)),
+                        4);
+    for (const reading& r : c.readings)
+        text += wrapped(fmt::format("as {}: {}", name_of_effect(r.effect), listed(lines_of(r.parameters))), 6);
+    if (!c.exciting_motion.empty()) text += wrapped("shown by: " + c.exciting_motion, 4);
+    return text;
+}
+
+inline std::string summary(const diagnosis_result& d) {
+    std::string text = wrapped(
+        fmt::format("{}: {} against {}", capital(spaced(name_of(d.verdict))), d.log_file, d.machine_file), 0);
+    text += wrapped(verdict_sentence(d), 0) + "\n";
+    for (const axis_result& a : d.axes) text += summary_of(d, a);
+    if (!d.causes.empty()) {
+        text += "Causes\n";
+        for (const cause& c : d.causes) text += summary_of(c);
+        text += "\n";
+    }
+    if (d.verdict > verdict::within_tolerance) {
+        text += "What is left\n" + wrapped(percent(d.share_unexplained) + " of the gap stays unexplained.", 2) +
+                wrapped(d.remaining_structure, 2) + "\n";
+    }
+    if (!d.next.motion.empty()) {
+        text += "Next experiment\n" + wrapped(d.next.motion, 2);
+        if (!d.next.separates.empty())
+            text += wrapped("It separates " + named(d.next.separates, "and") + ".", 2);
+        text += wrapped(experiment_gain(d.next), 2) + "\n";
+    }
+    for (const std::string& note : d.notes) text += wrapped("Note: " + note, 0);
+    return text;
+}
+
+} // namespace quadrant_gap

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "quadrant/diagnosis/result.hpp"
+
+/// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
+namespace quadrant_gap {
+using namespace quadrant::diagnosis;
+
+// ---- numbers ----
+
+inline std::string fixed(double value, int decimals) {
+    if (!std::isfinite(value)) return "-";
+    const double step = std::pow(10.0, -decimals);
+    return fmt::format("{:.{}f}", std::round(value / step) * step + 0.0,
+                       std::max(decimals, 0)); // + 0.0: no "-0"
+}
+
+/// As many decimals as a gap deserves: 124, 20.7, 2.4, 0.92, 0.0031.
+inline std::string number(double value) {
+    const double size = std::abs(value);
+    if (size == 0 || size >= 100) return fixed(value, 0);
+    return fixed(value, size >= 1 ? 1 : std::min(6, 1 - static_cast<int>(std::floor(std::log10(size)))));
+}
+
+struct scale {
+    double factor;
+    std::string_view unit;
+};
+
+/// The unit in which a value of this size is read: 2.5e-6 m is 2.5 um.
+inline scale scale_of(std::string_view unit, double size) {
+    struct step {
+        std::string_view unit;
+        double from;
+        scale shown;
+    };
+    static constexpr step steps[] = {
+        {"m", 1, {1, "m"}},
+        {"m", 1e-3, {1e3, "mm"}},
+        {"m", 1e-7, {1e6, "µm"}},
+        {"m", 1e-12, {1e9, "nm"}},
+        {"m/s", 1, {1, "m/s"}},
+        {"m/s", 1e-3, {1e3, "mm/s"}},
+        {"m/s", 1e-9, {1e6, "µm/s"}},
+        {"s", 1, {1, "s"}},
+        {"s", 1e-4, {1e3, "ms"}},
+        {"s", 1e-9, {1e6, "µs"}},
+        {"N", 1e4, {1e-3, "kN"}},
+        {"N", 0.05, {1, "N"}},
+        {"N", 1e-6, {1e3, "mN"}},
+        {"V", 0.1, {1, "V"}},
+        {"V", 1e-6, {1e3, "mV"}},
+        {"N/m", 1e6, {1e-6, "N/µm"}},
+        {"rad", 0, {57.29577951308232, "deg"}},
+        {"%", 0, {100, "%"}},
+    };
+    for (const step& s : steps)
+        if (s.unit == unit && std::abs(size) >= s.from) return s.shown;
+    return {1, unit};
+}
+
+inline std::string with_unit(std::string text, std::string_view unit) {
+    return unit.empty() ? text : fmt::format("{} {}", text, unit);
+}
+
+inline std::string quantity(double value, std::string_view unit) {
+    const scale s = scale_of(unit, value);
+    return with_unit(number(value * s.factor), s.unit);
+}
+
+/// "20.7 → 2.4 N", both in the unit of the larger.
+inline std::string change(double before, double after, std::string_view unit) {
+    const scale s = scale_of(unit, std::max(std::abs(before), std::abs(after)));
+    return fmt::format("{} → {} {}", number(before * s.factor), number(after * s.factor), s.unit);
+}
+
+/// "20.3 N (19.9 to 20.7)": the digits are those that the 95 % interval leaves.
+inline std::string interval(const estimate& e, std::string_view unit) {
+    if (!(e.high > e.low)) return quantity(e.value, unit);
+    const scale s = scale_of(unit, std::max({std::abs(e.value), std::abs(e.low), std::abs(e.high)}));
+    const double half_width = (e.high - e.low) * s.factor / 2;
+    const int decimals = std::min(9, -static_cast<int>(std::floor(std::log10(half_width / 1.999))));
+    return fmt::format("{} ({} to {})", with_unit(fixed(e.value * s.factor, decimals), s.unit),
+                       fixed(e.low * s.factor, decimals), fixed(e.high * s.factor, decimals));
+}
+
+inline std::string percent(double share) { return fmt::format("{} %", fixed(100 * share, 0)); }
+
+inline std::string percent(const estimate& e) {
+    if (!(e.high > e.low)) return percent(e.value);
+    return fmt::format("{} ({} to {})", percent(e.value), fixed(100 * e.low, 0), fixed(100 * e.high, 0));
+}
+
+/// A probability is never said to be 0 or 1.
+inline std::string probability(double p) {
+    if (p > 0.99) return "> 99 %";
+    if (p < 0.01) return "< 1 %";
+    return percent(p);
+}
+
+// ---- names ----
+
+inline std::string spaced(std::string_view name) {
+    std::string text(name);
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+    return text;
+}
+
+struct effect_words {
+    std::string_view key, name, box;
+    bool always_described = false; ///< every machine file has a value: it differs, it cannot be missing
+};
+
+/// An effect that is not in the table keeps its key as its name.
+inline effect_words words_of(std::string_view effect) {
+    static constexpr effect_words all[] = {
+        {"coulomb_friction", "Coulomb friction", "mechanics"},
+        {"viscous_friction", "viscous friction", "mechanics", true},
+        {"stribeck_friction", "Stribeck friction", "mechanics"},
+        {"presliding_friction", "presliding friction", "mechanics"},
+        {"asymmetric_friction", "friction that differs by direction", "mechanics"},
+        {"position_dependent_friction", "friction that varies along the travel", "mechanics"},
+        {"friction_drift", "friction that drifts with time", "mechanics"},
+        {"mass", "moving mass", "mechanics", true},
+        {"structural_resonance", "structural resonance", "mechanics"},
+        {"backlash", "backlash", "mechanics"},
+        {"constant_force", "constant force", "mechanics"},
+        {"position_spring", "spring force", "mechanics"},
+        {"cross_coupling", "coupling from the other axis", "mechanics"},
+        {"cogging", "cogging", "mechanics"},
+        {"force_ripple", "force ripple", "actuator"},
+        {"force_constant", "force constant", "actuator", true},
+        {"time_delay", "time delay", "actuator", true},
+        {"actuator_lag", "current-loop lag", "actuator"},
+        {"actuator_saturation", "drive limit below the controller's", "actuator"},
+        {"actuator_dead_zone", "actuator dead zone", "actuator"},
+        {"sample_loss", "loss of command samples", "actuator"},
+        {"encoder_quantization", "encoder quantization", "sensor"},
+        {"encoder_cyclic_error", "cyclic encoder error", "sensor"},
+        {"cutting_force", "cutting force", "process"},
+        {"controller_mismatch", "controller", "controller", true},
+    };
+    for (const effect_words& e : all)
+        if (e.key == effect) return e;
+    return {effect, effect, ""};
+}
+
+inline std::string name_of_effect(std::string_view effect) {
+    const effect_words w = words_of(effect);
+    return w.box.empty() ? spaced(w.name) : std::string(w.name);
+}
+
+inline std::string capital(std::string text) {
+    if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+    return text;
+}
+
+/// "a", "a and b", "a, b and c".
+inline std::string listed(const std::vector<std::string>& items, std::string_view last = "and") {
+    std::string text;
+    for (std::size_t k = 0; k < items.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == items.size() ? fmt::format(" {} ", last) : ", ") + items[k];
+    return text;
+}
+
+inline std::string named(const std::vector<std::string>& effects, std::string_view last) {
+    std::vector<std::string> names;
+    for (const std::string& e : effects) names.push_back(name_of_effect(e));
+    return listed(names, last);
+}
+
+/// A machine key as label and SI unit: "stribeck_velocity_m_per_s" is {"stribeck velocity", "m/s"}.
+inline std::pair<std::string, std::string_view> label_of(std::string_view key) {
+    struct suffix {
+        std::string_view text, unit;
+    };
+    static constexpr suffix suffixes[] = {
+        {"_V_s2_per_m", "V s²/m"},
+        {"_N_s_per_m", "N s/m"},
+        {"_V_s_per_m", "V s/m"},
+        {"_V_per_m", "V/m"},
+        {"_N_per_m", "N/m"},
+        {"_N_per_V", "N/V"},
+        {"_N_per_A", "N/A"},
+        {"_m_per_s", "m/s"},
+        {"_per_s", "1/s"},
+        {"_Hz", "Hz"},
+        {"_kg", "kg"},
+        {"_rad", "rad"},
+        {"_Nm", "N m"},
+        {"_N", "N"},
+        {"_V", "V"},
+        {"_A", "A"},
+        {"_m", "m"},
+        {"_s", "s"},
+    };
+    for (const suffix& s : suffixes)
+        if (key.ends_with(s.text)) return {spaced(key.substr(0, key.size() - s.text.size())), s.unit};
+    const bool relative = key.ends_with("asymmetry") || key.ends_with("amplitude") || key.ends_with("drift") ||
+                          key.ends_with("ripple") || key.ends_with("probability");
+    return {spaced(key), relative ? "%" : ""};
+}
+
+/// "coulomb: 20.3 N (19.9 to 20.7)"; one line a harmonic.
+inline std::vector<std::string> lines_of(const parameter_estimate& p) {
+    const auto [label, unit] = label_of(p.key);
+    std::vector<std::string> lines;
+    for (std::size_t k = 0; k < p.values.size(); ++k) {
+        const std::string harmonic = p.values.size() > 1 ? fmt::format(" {}", k + 1) : "";
+        lines.push_back(fmt::format("{}{}: {}", label, harmonic, interval(p.values[k], unit)));
+    }
+    return lines;
+}
+
+inline std::vector<std::string> lines_of(const std::vector<parameter_estimate>& parameters) {
+    std::vector<std::string> lines;
+    for (const parameter_estimate& p : parameters)
+        for (std::string& line : lines_of(p)) lines.push_back(std::move(line));
+    return lines;
+}
+
+// ---- sentences ----
+
+inline bool claimed(const cause& c) { return std::max(c.probability, c.group_probability) >= 0.5; }
+
+/// "cogging", or "a or b" when the record does not say which.
+inline std::string claim(const cause& c) {
+    if (c.probability >= 0.5) return name_of_effect(c.effect);
+    std::vector<std::string> names{c.effect};
+    names.insert(names.end(), c.confusable_with.begin(), c.confusable_with.end());
+    return named(names, "or");
+}
+
+/// "Coulomb friction is missing or wrong in the simulation of axis x: with it, ..."
+inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
+    const std::string before = quantity(a.gap.force_rms_N, "N"),
+                      floor = quantity(a.gap.noise_floor_force_rms_N, "N");
+    if (a.verdict == verdict::no_gap)
+        return fmt::format("Simulation and machine agree on axis {}: the force gap is {}, and sensor noise and "
+                           "rounding alone leave {}.",
+                           a.name, before, floor);
+    if (a.verdict == verdict::within_tolerance)
+        return fmt::format(
+            "The force gap of axis {}, {} (floor {}), lies within the tolerances of the machine file: "
+            "calibrate its values, nothing is missing.",
+            a.name, before, floor);
+    std::vector<std::string> claims;
+    const cause* suspect = nullptr;
+    bool differs = false; // all that is claimed has a value in every machine file
+    for (const cause& c : d.causes) {
+        if (c.axis != a.name) continue;
+        if (claimed(c)) {
+            differs = words_of(c.effect).always_described && (claims.empty() || differs);
+            claims.push_back(claim(c));
+        } else if (!suspect) {
+            suspect = &c;
+        }
+    }
+    if (a.verdict == verdict::unexplained || claims.empty()) {
+        const std::string hint = !suspect ? ""
+                                          : fmt::format("; the nearest suspect is {} (probability {})",
+                                                        claim(*suspect), probability(suspect->probability));
+        return fmt::format(
+            "No known effect explains the gap of axis {}: {} of force remain where sensor noise and "
+            "rounding leave {}{}.",
+            a.name, before, floor, hint);
+    }
+    const std::string what = listed(claims);
+    const std::string_view verb = claims.size() > 1 ? "are" : "is";
+    return fmt::format(
+        "{}: with {}, the force gap shrinks from {} to {} (floor {}){}.",
+        differs
+            ? fmt::format("The {} of axis {} {} not as the machine file says", what, a.name, verb)
+            : fmt::format("{} {} missing or wrong in the simulation of axis {}", capital(what), verb, a.name),
+        claims.size() > 1 ? "them" : "it", before, quantity(a.gap_after.force_rms_N, "N"), floor,
+        a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
+}
+
+/// The sentence of the worst axis.
+inline std::string verdict_sentence(const diagnosis_result& d) {
+    const auto worst =
+        std::max_element(d.axes.begin(), d.axes.end(),
+                         [](const axis_result& a, const axis_result& b) { return a.verdict < b.verdict; });
+    return worst == d.axes.end() ? "The log has no axis." : sentence(d, *worst);
+}
+
+inline std::string experiment_gain(const experiment& e) {
+    if (e.expected_gain <= 0) return "";
+    return fmt::format("Expected to separate them by a log-score of {}, odds of {} to 1.",
+                       number(e.expected_gain),
+                       e.expected_gain > 7 ? "more than 1000" : fixed(std::exp(e.expected_gain), 0));
+}
+
+inline bool closed_loop(const axis_result& a) { return !a.signals.simulated_position_before.empty(); }
+
+struct gap_row {
+    std::string name, before, after, floor;
+};
+
+/// In the order in which an engineer asks; a row is in the unit of its first number.
+inline std::vector<gap_row> gap_rows(const axis_result& a) {
+    const gap_numbers &b = a.gap, &c = a.gap_after;
+    const auto row = [](std::string name, double before, double after, std::string_view unit) {
+        const scale s = scale_of(unit, before);
+        return gap_row{std::move(name), fmt::format("{} {}", number(before * s.factor), s.unit),
+                       fmt::format("{} {}", number(after * s.factor), s.unit), ""};
+    };
+    std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, "N")};
+    rows[0].floor = quantity(b.noise_floor_force_rms_N, "N");
+    if (!closed_loop(a)) return rows;
+    rows.push_back(row("position, rms", b.position_rms_m, c.position_rms_m, "m"));
+    rows.push_back(row("position, peak", b.position_peak_m, c.position_peak_m, "m"));
+    rows.push_back(row("command, rms", b.command_rms_V, c.command_rms_V, "V"));
+    return rows;
+}
+
+inline std::string gap_basis(const axis_result& a) {
+    return fmt::format(
+        "Residual force up to {}{}{}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
+        a.evaluated_on.empty() ? "" : ", judged on ", a.evaluated_on,
+        closed_loop(a) ? "" : " No closed loop was simulated: there are no position and command gaps.");
+}
+
+inline constexpr std::pair<std::string_view, std::string_view> views[] = {
+    {"block", "by box of the loop"},
+    {"velocity", "by velocity"},
+    {"reversal", "at reversals"},
+    {"position", "along the travel"},
+    {"time", "in time"},
+    {"frequency", "by frequency"},
+    {"acceleration", "by acceleration"},
+    {"other_axis", "by the motion of the other axis"},
+};
+
+} // namespace quadrant_gap
