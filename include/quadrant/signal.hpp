@@ -69,6 +69,6 @@ constexpr quantity<Unit, Real> in_real(const quantity<Unit, Number>& q) {
 /// Out is In per second: what a differentiator may map.
 template <class Out, class In>
 concept rate_of = signal_tag<Out> && signal_tag<In> &&
-                  std::same_as<typename Out::unit, unit_quotient<typename In::unit, si::time>>;
+    std::same_as<typename Out::unit, unit_quotient<typename In::unit, si::time>>;
 
 } // namespace quadrant

@@ -77,7 +77,7 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     r.acceleration = derivative(r.velocity, period);
     r.segment = motion_segments(log.reference, period);
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
-    r.bandwidth_Hz = std::min(100.0, 0.1 / period);
+    r.bandwidth_Hz = std::min(100.0, 0.15 / period);
 
     // A position's step is at least the rounding of its column.
     const double q = std::max({resolution, log.position_step, 1e-12});

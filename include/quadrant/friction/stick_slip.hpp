@@ -32,8 +32,9 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
     const bool forward = push > force();
     const force size = forward ? push : -push;
 
-    // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution.
-    constexpr int most_passes = 32; // a machine axis needs 2 to 5; more only where two solutions are about to vanish
+    // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A machine
+    // axis needs 2 to 5 passes; more only where two solutions are about to vanish.
+    constexpr int most_passes = 32;
     force dry = friction.slip(size / slope);
     for (int pass = 0; pass < most_passes && size > dry; ++pass) {
         const force next = friction.slip((size - dry) / slope);

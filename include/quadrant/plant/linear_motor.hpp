@@ -26,8 +26,7 @@ namespace quadrant {
 /// substeps; the friction box throws in its own name.
 /// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. No other plant yet.
 template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double>
-requires friction_law<Friction, Real> && (Capacity > 0)
-class linear_motor {
+requires friction_law<Friction, Real> &&(Capacity > 0) class linear_motor {
 public:
     using input = signal::voltage;
     using output = signal::position;

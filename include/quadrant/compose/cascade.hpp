@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../finite.hpp"
+#include "maps.hpp"
+#include "taps.hpp"
+
+#include <array>
+#include <tuple>
+
+namespace quadrant {
+
+/// The signal that the velocity loop of a set of boxes puts out; every box behind it has to carry the same.
+template <class Boxes> using command_of = typename decltype(Boxes::velocity_loop)::output;
+template <class Boxes> using real_of_boxes = real_of<decltype(Boxes::velocity_loop)>;
+
+/// One box per role, each mapping what its place in the diagram maps. Write `static_assert(axis_boxes<my_axis>)` under
+/// your struct: the compiler then names the member that is missing or maps something else.
+template <class B>
+concept axis_boxes = requires {
+    typename command_of<B>; // velocity_loop
+    requires maps<decltype(B::reference_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::reference_acceleration), signal::velocity, signal::acceleration,
+                  real_of_boxes<B>>;
+    requires maps<decltype(B::measured_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::position_loop), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::velocity_feedforward), signal::velocity, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
+    requires maps<decltype(B::resonance), command_of<B>, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::acceleration_feedforward), signal::acceleration, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::friction), signal::velocity, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::amplifier), command_of<B>, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::dac), command_of<B>, command_of<B>, real_of_boxes<B>>;
+};
+
+/// Every wire of the diagram, readable after every step.
+template <signal_tag Command, class Real> struct cascade_wires {
+    quantity_of<signal::position, Real> reference, measured, position_error;
+    quantity_of<signal::velocity, Real> reference_velocity, measured_velocity, demand, velocity_error;
+    quantity_of<signal::acceleration, Real> reference_acceleration;
+    quantity_of<Command, Real> feedback, damped, inertia, friction, wanted, limited, command;
+
+    static constexpr auto taps() {
+        using wires = cascade_wires;
+        return std::array{tap<signal::position, &wires::reference>("reference"),
+                          tap<signal::position, &wires::measured>("measured"),
+                          tap<signal::position, &wires::position_error>("position_error"),
+                          tap<signal::velocity, &wires::reference_velocity>("reference_velocity"),
+                          tap<signal::velocity, &wires::measured_velocity>("measured_velocity"),
+                          tap<signal::velocity, &wires::demand>("demand"),
+                          tap<signal::velocity, &wires::velocity_error>("velocity_error"),
+                          tap<signal::acceleration, &wires::reference_acceleration>("reference_acceleration"),
+                          tap<Command, &wires::feedback>("feedback"),
+                          tap<Command, &wires::damped>("damped"),
+                          tap<Command, &wires::inertia>("inertia"),
+                          tap<Command, &wires::friction>("friction"),
+                          tap<Command, &wires::wanted>("wanted"),
+                          tap<Command, &wires::limited>("limited"),
+                          tap<Command, &wires::command>("command")};
+    }
+};
+
+/// The classical servo axis: P on position, PI on velocity, notch, feedforward, limit, DAC. A worked example with a
+/// concept, not a framework: for another diagram copy the body and redraw it.
+///   v_ref = (r[k]-r[k-1])/T, a_ref = (v_ref[k]-v_ref[k-1])/T, e = position_gain (r-y) + velocity_feedforward v_ref - v
+///   u = round(limit(notch(PI(e)) + acceleration_feedforward a_ref + friction(v_ref)))
+/// Source: gap/FORMAT.md, controller kind cascade_p_pi.
+/// Ports: position reference and measured position in, command out (to act from this sample on).
+/// State: that of the boxes. `reset` as new (at rest at zero). `settle(start)` is the bumpless start in the middle of a
+/// motion: the next row, if the motion goes on as `start` says, gives start.command (as far as the limits allow).
+/// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
+/// Cost: that of the boxes. limited() tells that the amplifier clipped; the PI learns what was applied.
+template <axis_boxes Boxes> struct cascade {
+    using real = real_of_boxes<Boxes>;
+    using position = quantity_of<signal::position, real>;
+    using velocity = quantity_of<signal::velocity, real>;
+    using acceleration = quantity_of<signal::acceleration, real>;
+    using command = quantity_of<command_of<Boxes>, real>;
+    using wires = cascade_wires<command_of<Boxes>, real>;
+    static_assert(every_wire_has_a_tap(wires::taps()));
+
+    Boxes box;
+    wires wire{};
+    bool fault = false; ///< a sample was not finite; cleared by reset and settle
+
+    command operator()(position reference, position measured) noexcept {
+        if (!finite(reference, measured)) {
+            fault = true;
+            return wire.command;
+        }
+        wire.reference = reference;
+        wire.measured = measured;
+        wire.reference_velocity = box.reference_velocity(reference);
+        wire.reference_acceleration = box.reference_acceleration(wire.reference_velocity);
+        wire.measured_velocity = box.measured_velocity(measured);
+        wire.position_error = reference - measured;
+        wire.demand =
+            box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.feedback = box.velocity_loop(wire.velocity_error);
+        wire.damped = box.resonance(wire.feedback);
+        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
+        wire.friction = box.friction(wire.reference_velocity);
+        wire.wanted = wire.damped + wire.inertia + wire.friction;
+        wire.limited = box.amplifier(wire.wanted);
+        wire.command = box.dac(wire.limited);
+        // What was cut off is charged to the PI: it may wind up no further, whoever asked for too much.
+        if constexpr (requires { box.velocity_loop.applied(wire.feedback); })
+            box.velocity_loop.applied(wire.feedback + (wire.limited - wire.wanted));
+        return wire.command;
+    }
+
+    /// The last row before the next call: where the axis was, how it moved, what was commanded.
+    struct start {
+        position reference{}, measured{};
+        velocity reference_velocity{}, measured_velocity{};
+        acceleration reference_acceleration{};
+        cascade::command command{};
+    };
+    void settle(const start& s) noexcept {
+        if (!finite(s.reference, s.measured, s.reference_velocity, s.measured_velocity,
+                    s.reference_acceleration, s.command)) {
+            fault = true;
+            return;
+        }
+        wire.reference = s.reference;
+        wire.measured = s.measured;
+        wire.reference_velocity = s.reference_velocity;
+        wire.reference_acceleration = s.reference_acceleration;
+        wire.measured_velocity = s.measured_velocity;
+        box.reference_velocity.settle(s.reference, s.reference_velocity);
+        box.reference_acceleration.settle(s.reference_velocity, s.reference_acceleration);
+        box.measured_velocity.settle(s.measured, s.measured_velocity);
+        wire.position_error = s.reference - s.measured;
+        wire.demand = detail::settled(box.position_loop, wire.position_error) +
+                      detail::settled(box.velocity_feedforward, s.reference_velocity);
+        wire.velocity_error = wire.demand - s.measured_velocity;
+        wire.inertia = detail::settled(box.acceleration_feedforward, s.reference_acceleration);
+        wire.friction = detail::settled(box.friction, s.reference_velocity);
+        wire.feedback = s.command - wire.inertia - wire.friction; // the notch has gain one at standstill
+        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
+        wire.damped = detail::settled(box.resonance, wire.feedback);
+        wire.wanted = wire.damped + wire.inertia + wire.friction;
+        wire.limited = detail::settled(box.amplifier, wire.wanted);
+        wire.command = detail::settled(box.dac, wire.limited);
+        fault = false;
+    }
+    void reset() noexcept {
+        std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));
+        wire = {};
+        fault = false;
+    }
+
+    bool limited() const noexcept { return wire.limited != wire.wanted; }
+    bool faulted() const noexcept {
+        return fault ||
+               std::apply([](const auto&... each) { return (detail::is_faulted(each) || ...); }, boxes(box));
+    }
+
+    static constexpr auto taps() { return wires::taps(); }
+
+private:
+    static constexpr auto boxes(auto& b) noexcept {
+        return std::tie(b.reference_velocity, b.reference_acceleration, b.measured_velocity, b.position_loop,
+                        b.velocity_feedforward, b.velocity_loop, b.resonance, b.acceleration_feedforward,
+                        b.friction, b.amplifier, b.dac);
+    }
+};
+
+} // namespace quadrant

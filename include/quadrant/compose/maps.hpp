@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../signal.hpp"
+
+#include <concepts>
+
+namespace quadrant {
+
+namespace detail {
+template <class Block> struct real_of_block { using type = double; };
+template <class Block>
+requires requires { typename Block::value::value_type; }
+struct real_of_block<Block> {
+    using type = typename Block::value::value_type;
+};
+} // namespace detail
+
+/// The number type of a block; double for one that does not say.
+template <class Block> using real_of = typename detail::real_of_block<Block>::type;
+
+/// Calling B with In's quantity gives Out's, and B can be reset: all that a box must do to sit between two wires.
+/// A type with these two members is a box; nothing to derive from. (No noexcept here: a quantity's copy is not.)
+template <class B, class In, class Out, class Real = real_of<B>>
+concept maps = signal_tag<In> && signal_tag<Out> && requires(B b, const quantity_of<In, Real>& x) {
+    { b(x) } -> std::same_as<quantity_of<Out, Real>>;
+    b.reset();
+};
+
+namespace detail {
+/// Settles a block at x and tells what it then gives, without stepping it.
+template <class Block, class X> auto settled(Block& block, const X& x) {
+    block.settle(x);
+    Block copy = block;
+    return copy(x);
+}
+template <class Block>
+concept responds = requires(const Block& block, frequency f) {
+    block.response(f);
+};
+/// A user's box need not have a fault flag.
+template <class Block> constexpr bool is_faulted(const Block& block) noexcept {
+    if constexpr (requires { block.faulted(); })
+        return block.faulted();
+    else
+        return false;
+}
+} // namespace detail
+
+} // namespace quadrant

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+namespace quadrant {
+
+/// Ignores small values and shifts the rest towards zero: a command that has to overcome a dead zone, or an error that
+/// shall not hunt around one encoder count.
+///   y = x - half_width for x > half_width, x + half_width for x < -half_width, else 0
+/// Source: gap/FORMAT.md (actuator_dead_zone: the dead zone shifts the command); LinuxCNC deadzone, whose threshold is the
+/// whole width.
+/// Ports: one scalar in, one scalar out, the same signal; sign kept, odd and continuous.
+/// State: none; `reset` and `settle` set the held output and clear the fault.
+/// Range: half_width >= 0; 0 passes everything.
+/// NaN and infinities: holds the last output, raises faulted().
+/// Throws "dead_band.half_width = ...: must be finite and not below 0".
+/// Cost: 2 comparisons, 1 addition. For steps over the whole range: `quantizer`.
+template <signal_tag Signal, class Real = double> class dead_band {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity_of<Signal, number> half_width; ///< >= 0
+    };
+    struct state {};
+
+    dead_band(const parameters& p, duration period) : given_(p), half_width_(in_real<Real>(p.half_width)) {
+        require_positive("dead_band.period", period);
+        require_not_negative("dead_band.half_width", p.half_width);
+    }
+
+    value operator()(value x) noexcept { return finite(x) ? out_.keep(shifted(x)) : out_.hold(); }
+    void reset() noexcept { out_.reset(); }
+    void settle(value x) noexcept { finite(x) ? out_.reset(shifted(x)) : out_.raise(); }
+
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    state now() const noexcept { return {}; }
+
+private:
+    value shifted(value x) const noexcept {
+        return x > half_width_ ? x - half_width_ : x < -half_width_ ? x + half_width_ : value();
+    }
+
+    parameters given_;
+    value half_width_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

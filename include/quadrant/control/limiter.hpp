@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+namespace quadrant {
+
+/// Clips a wire to what the amplifier can do.
+///   y = low if x < low, high if x > high, else x
+/// Source: gap/FORMAT.md (limit of cascade_p_pi).
+/// Ports: one scalar in, one scalar out, the same signal.
+/// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was clipped.
+/// Range: low <= high; an infinite bound is no bound.
+/// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large demand).
+/// Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number".
+/// Cost: 2 comparisons. To bound the slope: `rate_limiter`.
+template <signal_tag Signal, class Real = double> class limiter {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity_of<Signal, number> low;  ///< may be minus infinity
+        quantity_of<Signal, number> high; ///< >= low, may be infinite
+    };
+    struct state {};
+
+    limiter(const parameters& p, duration period)
+        : given_(p), low_(in_real<Real>(p.low)), high_(in_real<Real>(p.high)) {
+        require_positive("limiter.period", period);
+        const double low = detail::plain(p.low), high = detail::plain(p.high);
+        require(low == low, "limiter.low", p.low, "must be a number");
+        require(low <= high, "limiter.high", p.high, "must not lie below low (" + detail::shortest(low) + ")");
+    }
+
+    value operator()(value x) noexcept {
+        if (!finite(x)) return out_.hold();
+        limited_ = x > high_ || x < low_;
+        return out_.keep(clipped(x));
+    }
+    void reset() noexcept {
+        limited_ = false;
+        out_.reset();
+    }
+    void settle(value x) noexcept {
+        if (!finite(x)) return out_.raise();
+        limited_ = x > high_ || x < low_;
+        out_.reset(clipped(x));
+    }
+
+    bool limited() const noexcept { return limited_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    state now() const noexcept { return {}; }
+
+private:
+    value clipped(value x) const noexcept { return x > high_ ? high_ : x < low_ ? low_ : x; }
+
+    parameters given_;
+    value low_, high_;
+    bool limited_ = false;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

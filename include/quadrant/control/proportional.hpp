@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <complex>
+
+namespace quadrant {
+
+/// Multiplies a wire by a gain: position loop, velocity and acceleration feedforward.
+///   u = gain x
+/// Source: [Ellis2012], position-control loops (the P of a P/PI cascade).
+/// Ports: one scalar in, one scalar out; the sign is that of the gain.
+/// State: none; `reset` and `settle` set the held output and clear the fault.
+/// Range: any finite gain, negative and zero included; the output is not limited.
+/// NaN and infinities: holds the last output, raises faulted().
+/// Throws "proportional.gain = ...: must be finite", "proportional.period = ...: must be finite and above 0".
+/// Cost: 1 multiplication. With an integral: `proportional_integral`; no gain at all: `through`.
+template <signal_tag In, signal_tag Out, class Real = double> class proportional {
+public:
+    using input = In;
+    using output = Out;
+    using argument = quantity_of<In, Real>;
+    using value = quantity_of<Out, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        gain_of<Out, In, number> gain; ///< any finite value
+    };
+    struct state {};
+
+    proportional(const parameters& p, duration period) : given_(p), gain_(in_real<Real>(p.gain)) {
+        require_positive("proportional.period", period);
+        require_finite("proportional.gain", p.gain);
+    }
+
+    value operator()(argument x) noexcept {
+        const value y = gain_ * x;
+        return finite(y) ? out_.keep(y) : out_.hold();
+    }
+    void reset() noexcept { out_.reset(); }
+    void settle(argument x) noexcept {
+        const value y = gain_ * x;
+        finite(y) ? out_.reset(y) : out_.raise();
+    }
+
+    std::complex<double> response(frequency) const { return detail::plain(gain_); }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    state now() const noexcept { return {}; }
+
+private:
+    parameters given_;
+    gain_of<Out, In, Real> gain_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

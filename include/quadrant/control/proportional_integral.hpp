@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <complex>
+#include <concepts>
+#include <numbers>
+
+namespace quadrant {
+
+/// How the integral of a `proportional_integral` is kept from winding up while the amplifier is at its limit.
+struct integral_clamp {}; ///< the integral alone is clamped to +-limit
+struct conditional_integration {
+};                          ///< stands still while the output is beyond limit and the error drives it out
+struct back_calculation {   ///< moves by T / tracking_time times (applied - output)
+    duration tracking_time; ///< > 0; not below the period: one period undoes the whole excess at once
+};
+template <class A>
+concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, conditional_integration> ||
+    std::same_as<A, back_calculation>;
+
+/// Velocity loop: drives the error to zero and holds against a constant force.
+///   I[k] = I[k-1] + integral_gain T e[k] (restrained by AntiWindup),   u[k] = gain e[k] + I[k]
+/// Source: gap/FORMAT.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that a gain
+/// change does not jump (control_toolbox #294).
+/// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is assumed.
+/// State: the integral and the excess output - applied, both in output units; `reset` leaves zero; `settle(e, u)` is
+/// the bumpless start: the next step with e gives u, as far as the limit of the integral allows.
+/// Range: gains not negative; integral_gain = 0 is a plain gain that keeps its integral; limit > 0, infinite = none.
+/// u itself is never clipped: a notch and feedforward follow, then a `limiter`. limited() = the integral was restrained.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "proportional_integral.<field> = ...: must be ..." for gain, integral_gain, limit, tracking_time, period.
+/// Cost: 2 multiplications (3 with back calculation), 24 bytes of state. No integral: `proportional`.
+template <signal_tag In, signal_tag Out, anti_windup_rule AntiWindup = integral_clamp, class Real = double>
+class proportional_integral {
+public:
+    using input = In;
+    using output = Out;
+    using argument = quantity_of<In, Real>;
+    using value = quantity_of<Out, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        gain_of<Out, In, number> gain;               ///< >= 0
+        gain_rate_of<Out, In, number> integral_gain; ///< >= 0
+        quantity_of<Out, number> limit;              ///< of the amplifier, > 0; infinite = none
+        AntiWindup anti_windup = {};
+    };
+    struct state {
+        value integral{};
+        value excess{}; ///< last output minus what was applied of it
+    };
+
+    proportional_integral(const parameters& p, duration period)
+        : given_(p), gain_(in_real<Real>(p.gain)), limit_(in_real<Real>(p.limit)) {
+        require_positive("proportional_integral.period", period);
+        require_not_negative("proportional_integral.gain", p.gain);
+        require_not_negative("proportional_integral.integral_gain", p.integral_gain);
+        require(detail::plain(p.limit) > 0, "proportional_integral.limit", p.limit,
+                "must be above 0 (infinite: no limit)");
+        per_sample_ =
+            gain_of<Out, In, Real>::from_value(Real(p.integral_gain.value() * number(period.value())));
+        if constexpr (std::same_as<AntiWindup, back_calculation>) {
+            const duration tracking = p.anti_windup.tracking_time;
+            require(std::isfinite(tracking.value()) && tracking >= period,
+                    "proportional_integral.tracking_time", tracking,
+                    "must be finite and not below the period (" + detail::shortest(period.value()) + ")");
+            tracking_ = Real(period.value() / tracking.value());
+        }
+        period_ = period;
+    }
+
+    value operator()(argument e) noexcept {
+        const value proportion = gain_ * e, more = per_sample_ * e, free = state_.integral + more;
+        const value integral = restrained(free, more, proportion), u = proportion + integral;
+        if (!finite(u, integral)) return out_.hold();
+        limited_ = integral != free;
+        state_.integral = integral;
+        if constexpr (std::same_as<AntiWindup, back_calculation>)
+            state_.excess = u - clamped(u);
+        else
+            state_.excess = value();
+        return out_.keep(u);
+    }
+    /// What the amplifier applied of the last output, in its unit and before anything that was added to it.
+    void applied(value u) noexcept {
+        if constexpr (!std::same_as<AntiWindup, integral_clamp>) {
+            const value excess = out_.last() - u;
+            if (!finite(excess)) return out_.raise();
+            state_.excess = excess;
+        }
+    }
+    void reset() noexcept {
+        state_ = {};
+        limited_ = false;
+        out_.reset();
+    }
+    void settle(argument e, value u) noexcept {
+        const value proportion = gain_ * e, more = per_sample_ * e;
+        value integral = u - proportion; // after the coming step
+        if (!finite(u, integral, more)) return out_.raise();
+        if constexpr (std::same_as<AntiWindup, integral_clamp>)
+            integral = clamped(clamped(integral) - more);
+        else if (!(std::same_as<AntiWindup, conditional_integration> && drives_out(u, more)))
+            integral -= more;
+        state_ = {integral, value()};
+        limited_ = false;
+        out_.reset(u);
+    }
+
+    /// Of the unrestrained loop.
+    std::complex<double> response(frequency f) const {
+        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
+        return detail::plain(gain_) + detail::plain(per_sample_) / (1.0 - back);
+    }
+    bool limited() const noexcept { return limited_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    value clamped(value u) const noexcept { return u > limit_ ? limit_ : u < -limit_ ? -limit_ : u; }
+    bool drives_out(value u, value more) const noexcept {
+        return (more > value() && u > limit_) || (more < value() && u < -limit_);
+    }
+    value restrained(value free, value more, value proportion) const noexcept {
+        if constexpr (std::same_as<AntiWindup, integral_clamp>) {
+            return clamped(free);
+        } else if constexpr (std::same_as<AntiWindup, conditional_integration>) {
+            const bool short_of_it =
+                (more > value() && state_.excess > value()) || (more < value() && state_.excess < value());
+            return short_of_it || drives_out(proportion + free, more) ? state_.integral : free;
+        } else {
+            return free - tracking_ * state_.excess;
+        }
+    }
+
+    parameters given_;
+    duration period_;
+    gain_of<Out, In, Real> gain_, per_sample_;
+    value limit_;
+    Real tracking_{0};
+    state state_;
+    bool limited_ = false;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <cmath>
+
+namespace quadrant {
+
+/// Rounds a wire to the steps of a DAC or an encoder.
+///   y = round(x / step) step, halves away from zero; step = 0: y = x
+/// Source: gap/FORMAT.md (DAC rounding of cascade_p_pi).
+/// Ports: one scalar in, one scalar out, the same signal.
+/// State: none; `reset` and `settle` set the held output and clear the fault.
+/// Range: step >= 0; from 2^52 steps on (2^23 in float) the input is its own rounding. A dual's derivative passes unchanged.
+/// NaN and infinities: holds the last output, raises faulted().
+/// Throws "quantizer.step = ...: must be finite and not below 0".
+/// Cost: 1 division, 1 rounding, 1 multiplication. To bound the range as a real DAC does, put a `limiter` before it.
+template <signal_tag Signal, class Real = double> class quantizer {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity_of<Signal, number> step; ///< one count; 0 = no rounding
+    };
+    struct state {};
+
+    quantizer(const parameters& p, duration period) : given_(p), step_(in_real<Real>(p.step)) {
+        require_positive("quantizer.period", period);
+        require_not_negative("quantizer.step", p.step);
+    }
+
+    value operator()(value x) noexcept {
+        const value y = rounded(x);
+        return finite(x, y) ? out_.keep(y) : out_.hold();
+    }
+    void reset() noexcept { out_.reset(); }
+    void settle(value x) noexcept {
+        const value y = rounded(x);
+        finite(x, y) ? out_.reset(y) : out_.raise();
+    }
+
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    state now() const noexcept { return {}; }
+
+private:
+    value rounded(value x) const noexcept {
+        using std::round;
+        if (!(step_ > value())) return x;
+        return Real(round(Real(x / step_))) * step_;
+    }
+
+    parameters given_;
+    value step_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

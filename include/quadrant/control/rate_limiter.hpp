@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+namespace quadrant {
+
+/// Bounds how fast a wire may change: a demand that must not jump.
+///   y[k] = x[k], but at most rate T away from y[k-1]
+/// Source: LinuxCNC limit2 (its maxv).
+/// Ports: one scalar in, one scalar out, the same signal.
+/// State: the last output; `reset` leaves 0, `settle(x)` stands at x. limited() = the last sample could not follow.
+/// Range: rate > 0, the same up and down; infinite = no bound.
+/// NaN and infinities: holds the last output, raises faulted().
+/// Throws "rate_limiter.rate = ...: must be above 0".
+/// Cost: 2 additions, 2 comparisons, 8 bytes of state. To bound the value: `limiter`.
+template <signal_tag Signal, class Real = double> class rate_limiter {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity<unit_quotient<typename Signal::unit, si::time>, number> rate; ///< > 0, may be infinite
+    };
+    struct state {
+        value y{}; ///< last output
+    };
+
+    rate_limiter(const parameters& p, duration period) : given_(p) {
+        require_positive("rate_limiter.period", period);
+        require(detail::plain(p.rate) > 0, "rate_limiter.rate", p.rate, "must be above 0 (infinite: no bound)");
+        most_ = value::from_value(Real(p.rate.value() * number(period.value())));
+    }
+
+    value operator()(value x) noexcept {
+        const value low = state_.y - most_, high = state_.y + most_;
+        const value y = x > high ? high : x < low ? low : x;
+        if (!finite(x, y)) return out_.hold();
+        limited_ = x > high || x < low;
+        state_.y = y;
+        return out_.keep(y);
+    }
+    void reset() noexcept { settle(value()); }
+    void settle(value x) noexcept {
+        if (!finite(x)) return out_.raise();
+        state_.y = x;
+        limited_ = false;
+        out_.reset(x);
+    }
+
+    bool limited() const noexcept { return limited_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    parameters given_;
+    value most_;
+    state state_;
+    bool limited_ = false;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

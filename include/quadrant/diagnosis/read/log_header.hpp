@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "axis_name.hpp"
+#include "csv_cells.hpp"
+#include "decimal.hpp"
+#include "text.hpp"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace quadrant::diagnosis::detail {
+
+struct log_column {
+    std::string name;
+    bool used = false;
+    std::vector<double> values{};
+    written_step step{};
+};
+
+/// Which column is what.
+struct log_header {
+    struct axis_columns {
+        std::optional<std::size_t> reference, position, command;
+        std::string command_unit;
+    };
+    std::vector<log_column> columns;
+    std::size_t time = 0;
+    std::map<std::string, axis_columns> axes;
+    std::vector<std::string> notes;
+};
+
+enum class column_role { reference, position, command, not_used_yet, rotary };
+
+struct column_suffix {
+    std::string_view text;
+    column_role role;
+    std::string_view unit = {};
+};
+inline constexpr std::array column_suffixes{
+    column_suffix{"_ref_m", column_role::reference},
+    column_suffix{"_pos_m", column_role::position},
+    column_suffix{"_cmd_V", column_role::command, "V"},
+    column_suffix{"_cmd_A", column_role::command, "A"},
+    column_suffix{"_cmd_N", column_role::command, "N"},
+    column_suffix{"_vel_m_per_s", column_role::not_used_yet},
+    column_suffix{"_acc_m_per_s2", column_role::not_used_yet},
+    column_suffix{"_force_N", column_role::not_used_yet},
+    column_suffix{"_ref_rad", column_role::rotary},
+    column_suffix{"_pos_rad", column_role::rotary},
+    column_suffix{"_cmd_Nm", column_role::rotary},
+};
+
+/// `refuse(offset, message)` throws.
+template <class Refuse> log_header read_header(std::string_view line, Refuse refuse) {
+    if (const auto other = line.find_first_of(";\t"); other != line.npos && line.find(',') == line.npos)
+        refuse(other, "cells must be separated by commas");
+    log_header out;
+    std::set<std::string_view> seen;
+    std::optional<std::size_t> time;
+    csv_cells cells(line);
+    const auto join_axis = [&](const column_suffix& suffix, std::size_t index) {
+        const std::string_view name = cells.text();
+        const std::string axis_name(name.substr(0, name.size() - suffix.text.size()));
+        if (!is_axis_name(axis_name))
+            refuse(cells.offset(),
+                   fmt::format("{}: an axis is named by letters, digits, _ and -", in_quotes(name)));
+        auto& axis = out.axes[axis_name];
+        if (suffix.role == column_role::command && axis.command)
+            refuse(cells.offset(), fmt::format("axis {} has two commands: {} and {}", axis_name,
+                                               out.columns[*axis.command].name, name));
+        (suffix.role == column_role::reference  ? axis.reference
+         : suffix.role == column_role::position ? axis.position
+                                                : axis.command) = index;
+        if (suffix.role == column_role::command) axis.command_unit = suffix.unit;
+        out.columns[index].used = true;
+    };
+
+    while (cells.next()) {
+        if (cells.broken())
+            refuse(cells.offset(), "a quote is not closed before the comma or the end of the line");
+        const std::string_view name = cells.text();
+        const std::size_t index = out.columns.size();
+        if (double number = 0; index == 0 && !parse_number(name, number))
+            refuse(cells.offset(), "the first line must name the columns (t_s, x_ref_m, ...)");
+        if (!name.empty() && !seen.insert(name).second)
+            refuse(cells.offset(), fmt::format("column {} is there twice", in_quotes(name)));
+        out.columns.push_back({.name = std::string(name)});
+        if (name == "t_s") {
+            time = index;
+            out.columns.back().used = true;
+            continue;
+        }
+        const auto suffix =
+            std::find_if(column_suffixes.begin(), column_suffixes.end(), [&](const column_suffix& s) {
+                return name.size() > s.text.size() && name.ends_with(s.text);
+            });
+        if (suffix == column_suffixes.end())
+            out.notes.push_back(
+                fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
+        else if (suffix->role == column_role::rotary)
+            refuse(cells.offset(),
+                   fmt::format("{} belongs to a rotary axis; this version reads linear axes only (x_ref_m, "
+                               "x_pos_m, x_cmd_V)",
+                               in_quotes(name)));
+        else if (suffix->role == column_role::not_used_yet)
+            out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
+        else
+            join_axis(*suffix, index);
+    }
+
+    if (!time) refuse(line.size(), "column t_s is missing");
+    if (out.axes.empty())
+        refuse(line.size(), "no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
+    for (const auto& [name, axis] : out.axes) {
+        if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_m is missing", name));
+        if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_m is missing", name));
+        if (!axis.command)
+            refuse(line.size(), fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_N)", name));
+    }
+    out.time = *time;
+    return out;
+}
+
+} // namespace quadrant::diagnosis::detail

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect_names.hpp"
+#include "plant_model.hpp"
+#include "read/axis_name.hpp"
+#include "read/json_keys.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// One reading of a machine file, box by box. An unknown key is told before a missing one: it is often the same slip.
+class machine_reader {
+public:
+    machine_reader(std::string_view text, std::string_view file)
+        : root_(parse_json(text, file)), top_{&root_, "", file} {}
+
+    machine_description read() {
+        top_.object();
+        constexpr const char* schema = "must be \"quadrant.machine/1\"";
+        if (const auto given = top_.need("schema"); given.text() != "quadrant.machine/1") given.refuse(schema);
+        refuse_unknown_keys(top_, "", {}, machine_file_keys);
+        out_.file = one_line(top_.file);
+        out_.sample_period_s = top_.need("sample_period_s").number(rule::positive);
+        if (const auto excluded = top_.find("excluded_effects")) read_excluded(*excluded);
+        const json_node axes = top_.need("axes").object();
+        if (axes.value->empty()) axes.refuse("must name at least one axis");
+        for (const auto& [name, axis] : axes.value->items()) {
+            if (!is_axis_name(name))
+                axes.refuse(fmt::format("{}: an axis is named by letters, digits, _ and -", in_quotes(name)));
+            out_.axes.push_back(read_axis(name, axes.at(name, axis).object()));
+        }
+        return std::move(out_);
+    }
+
+private:
+    void read_excluded(const json_node& node) {
+        if (!node.value->is_array()) node.refuse("must be an array of effect names");
+        constexpr auto known = names_of(effect_names);
+        for (const auto& entry : *node.value) {
+            const json_node one{&entry, fmt::format("{}[{}]", node.path, out_.excluded_effects.size()),
+                                node.file};
+            const std::string& name = one.text();
+            if (std::find(known.begin(), known.end(), name) == known.end())
+                one.refuse(fmt::format("{} is not an effect{}", in_quotes(name), suggestion(name, known)));
+            out_.excluded_effects.push_back(name);
+        }
+    }
+
+    axis_description read_axis(const std::string& name, const json_node& node) {
+        refuse_unknown_keys(node, "axis", {}, axis_keys);
+        axis_description axis;
+        axis.name = name;
+        read_plant(node.need("plant"), axis);
+        if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
+        if (const auto encoder = node.find("encoder"))
+            read_numbers(*encoder, "encoder", encoder_keys, {}, axis);
+        if (const auto actuator = node.find("actuator")) read_actuator(*actuator, axis.actuator);
+        if (const auto controller = node.find("controller"))
+            read_controller(*controller, axis);
+        else
+            note(axis, "no controller is described: diagnosed from the command onwards");
+        note_what_is_assumed(axis);
+        return axis;
+    }
+
+    static void read_plant(const json_node& node, axis_description& axis) {
+        auto& plant = axis.plant;
+        read_numbers(node, "plant", plant_keys, plant_other_keys, plant);
+        const auto per_volt = node.find("force_constant_N_per_V"),
+                   per_ampere = node.find("force_constant_N_per_A");
+        if (per_volt && per_ampere) per_ampere->refuse("contradicts force_constant_N_per_V: give one of them");
+        axis.command_unit = per_volt ? "V" : per_ampere ? "A" : "N";
+        plant.force_constant_N_per_V = per_volt     ? per_volt->number(rule::positive)
+                                       : per_ampere ? per_ampere->number(rule::positive)
+                                                    : 1;
+        if (axis.command_unit == "N") axis.tolerance.given["force_constant"] = 0; // by definition
+
+        if (plant.static_N && !plant.stribeck_velocity_m_per_s)
+            node.find("static_N")->refuse("needs stribeck_velocity_m_per_s");
+        if (plant.stribeck_velocity_m_per_s && !plant.static_N)
+            node.find("stribeck_velocity_m_per_s")->refuse("needs static_N");
+        if (plant.static_N && *plant.static_N < plant.coulomb_N.value_or(0))
+            node.find("static_N")->refuse("must not lie below coulomb_N");
+
+        const auto cogging = node.find("cogging_N"), phase = node.find("cogging_phase_rad");
+        if (cogging) plant.cogging_N = cogging->numbers(rule::any_number);
+        if (phase) plant.cogging_phase_rad = phase->numbers(rule::any_number);
+        if (plant.cogging_N.size() > plant_model::max_harmonics)
+            cogging->refuse(
+                fmt::format("this version simulates {} harmonics at most", plant_model::max_harmonics));
+        if (cogging && !plant.cogging_period_m) cogging->refuse("needs cogging_period_m");
+        if (plant.cogging_period_m && !cogging) node.find("cogging_period_m")->refuse("needs cogging_N");
+        if (phase && plant.cogging_phase_rad.size() != plant.cogging_N.size())
+            phase->refuse("must have one entry for each of cogging_N");
+    }
+
+    static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
+        refuse_unknown_keys(node.object(), "tolerance", names_of(tolerance_keys), {});
+        for (const auto& [key, value] : node.value->items())
+            tolerance.given[key] = node.at(key, value).number(rule::relative);
+    }
+
+    static void read_actuator(const json_node& node, actuator_description& actuator) {
+        read_numbers(node, "actuator", actuator_keys, actuator_other_keys, actuator);
+        const auto dac = node.find("dac_bits");
+        if (dac) actuator.dac_bits = static_cast<int>(dac->number(rule::bits));
+        if (dac && !actuator.dac_range_V) dac->refuse("needs dac_range_V");
+    }
+
+    void read_controller(const json_node& node, axis_description& axis) {
+        const std::string& kind = node.object().need("kind").text();
+        if (kind != "cascade_p_pi")
+            return note(axis, fmt::format("controller kind {} is not known: diagnosed from the command onwards",
+                                          in_quotes(kind)));
+        auto& controller = axis.controller.emplace();
+        read_numbers(node, "controller", controller_keys_of_file, controller_other_keys, controller);
+
+        using estimator = controller_description::estimator;
+        if (const auto given = node.find("velocity_estimator")) {
+            const std::string& text = given->text();
+            if (text != "filtered_derivative" && text != "two_sample_mean")
+                given->refuse("must be \"filtered_derivative\" or \"two_sample_mean\"");
+            controller.velocity_estimator =
+                text == "two_sample_mean" ? estimator::two_sample_mean : estimator::filtered_derivative;
+        }
+        const auto filter = node.find("velocity_filter_Hz");
+        if (controller.velocity_estimator == estimator::filtered_derivative) {
+            node.need("velocity_filter_Hz");
+            need_below_nyquist(*filter);
+        } else if (filter) {
+            note(axis, "velocity_filter_Hz is not used by the velocity estimator two_sample_mean");
+        }
+        if (const auto notch = node.find("notch")) {
+            read_numbers(*notch, "notch", notch_keys, {}, controller.notch.emplace());
+            need_below_nyquist(notch->need("frequency_Hz"));
+        }
+    }
+
+    void need_below_nyquist(const json_node& frequency) const {
+        const double nyquist = 0.5 / out_.sample_period_s;
+        if (frequency.value->get<double>() >= nyquist)
+            frequency.refuse(fmt::format("must lie below half the sampling rate ({:.6g} Hz)", nyquist));
+    }
+
+    void note_what_is_assumed(const axis_description& axis) {
+        std::string missing;
+        for (const auto& key : tolerance_keys)
+            if (key.of(axis.plant) != 0 && !axis.tolerance.given.contains(std::string(key.name)))
+                missing += (missing.empty() ? "" : ", ") + std::string(key.name);
+        if (!missing.empty())
+            note(axis, fmt::format("no tolerance is given for {}: {} is assumed", missing,
+                                   tolerance_description::unstated));
+        if (axis.command_unit == "N")
+            note(axis, "no force constant is given: the command is taken for newtons");
+    }
+
+    void note(const axis_description& axis, std::string_view text) {
+        out_.notes.push_back(fmt::format("axis {}: {}.", axis.name, text));
+    }
+
+    nlohmann::json root_;
+    json_node top_;
+    machine_description out_{};
+};
+
+} // namespace detail
+
+/// Reads a machine file (FORMAT.md) or throws bad_input. Nothing in it is ignored but a controller of unknown kind.
+inline machine_description read_machine(std::string_view text, std::string_view name) {
+    return detail::machine_reader(text, name).read();
+}
+inline machine_description read_machine(const std::filesystem::path& path) {
+    return read_machine(detail::read_whole(path), path.string());
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "bad_input.hpp"
+#include "result.hpp"
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+using ordered_json = nlohmann::ordered_json;
+
+inline ordered_json interval_json(const estimate& e) { return {e.low, e.high}; }
+
+/// A value of one number stands alone, one of several harmonics as arrays.
+inline ordered_json parameters_json(const std::vector<parameter_estimate>& parameters) {
+    ordered_json out = ordered_json::object();
+    for (const auto& p : parameters) {
+        ordered_json value = ordered_json::array(), ci95 = ordered_json::array();
+        for (const auto& e : p.values) {
+            value.push_back(e.value);
+            ci95.push_back(interval_json(e));
+        }
+        const bool alone = p.values.size() == 1;
+        out[p.key] = {{"value", alone ? value[0] : value}, {"ci95", alone ? ci95[0] : ci95}};
+    }
+    return out;
+}
+
+inline ordered_json gap_json(const gap_numbers& g) {
+    return {{"position_rms_m", g.position_rms_m},
+            {"position_peak_m", g.position_peak_m},
+            {"command_rms_V", g.command_rms_V},
+            {"force_rms_N", g.force_rms_N},
+            {"noise_floor_force_rms_N", g.noise_floor_force_rms_N},
+            {"bandwidth_Hz", g.bandwidth_Hz}};
+}
+
+inline ordered_json place_json(const place& p) {
+    ordered_json out = ordered_json::object();
+    out["view"] = p.view;
+    if (p.view == "block") out["block"] = p.block;
+    out["finding"] = p.finding;
+    out["share"] = p.share.value;
+    out["share_ci95"] = interval_json(p.share);
+    if (p.view == "block") out["basis"] = p.basis;
+    return out;
+}
+
+inline ordered_json axis_json(const axis_result& a) {
+    ordered_json where = ordered_json::array();
+    for (const auto& p : a.where) where.push_back(place_json(p));
+    return {{"verdict", name_of(a.verdict)},
+            {"gap", gap_json(a.gap)},
+            {"gap_after", gap_json(a.gap_after)},
+            {"where", where},
+            {"evaluated_on", a.evaluated_on}};
+}
+
+inline ordered_json cause_json(const cause& c) {
+    ordered_json readings = ordered_json::array();
+    for (const auto& r : c.readings)
+        readings.push_back({{"effect", r.effect}, {"parameters", parameters_json(r.parameters)}});
+    return {{"axis", c.axis},
+            {"effect", c.effect},
+            {"probability", c.probability},
+            {"group_probability", c.group_probability},
+            {"confusable_with", c.confusable_with},
+            {"parameters", parameters_json(c.parameters)},
+            {"readings", readings},
+            {"gap_before_force_rms_N", c.gap_before_force_rms_N.value},
+            {"gap_after_force_rms_N", c.gap_after_force_rms_N.value},
+            {"gap_before_position_rms_m", c.gap_before_position_rms_m.value},
+            {"gap_after_position_rms_m", c.gap_after_position_rms_m.value},
+            {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
+            {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
+            {"shrink", c.shrink.value},
+            {"shrink_ci95", interval_json(c.shrink)},
+            {"exciting_motion", c.exciting_motion}};
+}
+
+} // namespace detail
+
+/// The diagnosis file (FORMAT.md, docs/schema/diagnosis.schema.json). A number that is not finite becomes null, which
+/// the schema refuses.
+inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
+    using detail::ordered_json;
+    ordered_json axes = ordered_json::object(), causes = ordered_json::array();
+    for (const auto& a : d.axes) axes[a.name] = detail::axis_json(a);
+    for (const auto& c : d.causes) causes.push_back(detail::cause_json(c));
+    return {
+        {"schema", "quadrant.diagnosis/1"},
+        {"verdict", name_of(d.verdict)},
+        {"axes", axes},
+        {"causes", causes},
+        {"remaining",
+         {{"share_of_gap_unexplained", d.share_unexplained}, {"structure", d.remaining_structure}}},
+        {"next_experiment",
+         {{"motion", d.next.motion}, {"separates", d.next.separates}, {"expected_gain", d.next.expected_gain}}},
+        {"notes", d.notes}};
+}
+
+/// Writes beside `path` and renames: a reader sees the old file or the whole new one. Throws bad_input.
+inline void write_aside(const std::filesystem::path& path, std::string_view text) {
+    std::filesystem::path aside = path;
+    aside += fmt::format(".tmp-{}", getpid());
+    std::ofstream out(aside, std::ios::binary | std::ios::trunc);
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.close();
+    std::error_code fault;
+    if (out) std::filesystem::rename(aside, path, fault);
+    if (out && !fault) return;
+    std::error_code ignored;
+    std::filesystem::remove(aside, ignored);
+    const bool no_folder = path.has_parent_path() && !std::filesystem::exists(path.parent_path(), ignored);
+    throw bad_input(path.string(), no_folder ? "cannot be written: no such folder" : "cannot be written");
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <complex>
+#include <numbers>
+
+namespace quadrant {
+
+/// Velocity from an encoder: a derivative behind a first-order low-pass.
+///   H(s) = wc s / (s + wc), wc = 2 pi corner, bilinear without pre-warp:
+///   v[k] = ((2 - wc T) v[k-1] + 2 wc (y[k] - y[k-1])) / (2 + wc T)
+/// Source: gap/FORMAT.md (velocity_estimator filtered_derivative).
+/// Ports: one scalar in, its rate out; sign kept.
+/// State: the last input and the last output; `reset` leaves 0, so a first sample y0 reads as a jump: `settle(y0)` first.
+/// `settle(y)` stands still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.
+/// Range: corner > 0. Above the sampling rate / pi (wc T > 2) the pole is negative and the output rings, but decays.
+/// The gain of a ramp is exactly one; the -3 dB point lies below corner by the bilinear warp.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "filtered_derivative.corner = ...: must be finite and above 0".
+/// Cost: 2 multiplications, 16 bytes of state. Shorter delay, more noise: `two_sample_derivative`.
+template <signal_tag In, rate_of<In> Out, class Real = double> class filtered_derivative {
+public:
+    using input = In;
+    using output = Out;
+    using argument = quantity_of<In, Real>;
+    using value = quantity_of<Out, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity<si::frequency, number> corner; ///< > 0
+    };
+    struct state {
+        argument y{}; ///< last input
+        value v{};    ///< last output
+    };
+
+    filtered_derivative(const parameters& p, duration period) : given_(p), period_(period) {
+        require_positive("filtered_derivative.period", period);
+        require_positive("filtered_derivative.corner", p.corner);
+        const number wc = number(2 * std::numbers::pi) * p.corner.value(), wt = wc * number(period.value());
+        keep_ = Real((2 - wt) / (2 + wt));
+        take_ = quantity<si::frequency, Real>::from_value(Real(2 * wc / (2 + wt)));
+    }
+
+    value operator()(argument y) noexcept {
+        const value v = keep_ * state_.v + take_ * (y - state_.y);
+        if (!finite(v)) return out_.hold();
+        state_ = {y, v};
+        return out_.keep(v);
+    }
+    void reset() noexcept { settle(argument()); }
+    void settle(argument y) noexcept { settle(y, value()); }
+    void settle(argument y, value rate) noexcept {
+        if (!finite(y, rate)) return out_.raise();
+        state_ = {y, rate};
+        out_.reset(rate);
+    }
+
+    std::complex<double> response(frequency f) const {
+        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
+        return detail::plain(take_) * (1.0 - back) / (1.0 - detail::plain(keep_) * back);
+    }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    parameters given_;
+    duration period_;
+    Real keep_;
+    quantity<si::frequency, Real> take_;
+    state state_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

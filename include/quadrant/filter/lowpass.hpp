@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace quadrant {
+
+/// Smooths a wire: passes what is slower than the corner, takes 20 dB per decade off what is faster.
+///   H(s) = w / (s + w), bilinear, pre-warped at w = 2 pi corner: -3 dB and -45 degrees sit exactly there.
+///   y[k] = y[k-1] + t/(1+t) (x[k] + x[k-1] - 2 y[k-1]), t = tan(w T/2)
+/// In steps towards the input, not as a sum of products: the gain at standstill is one exactly, in float too.
+/// Source: [Franklin1998] ch. 6; LinuxCNC lowpass is the zero-order-hold form of the same filter.
+/// Ports: one scalar in, one scalar out, the same signal; sign kept, gain one at standstill.
+/// State: the last input and the last output; `reset` leaves zero, `settle(x)` the state of a constant x.
+/// Range: 0 < corner < half the sampling rate; zero gain at half the sampling rate.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "lowpass.corner = ...: must lie between 0 and half the sampling rate (...)".
+/// Cost: 1 multiplication, 16 bytes of state. Steeper: `butterworth`.
+template <signal_tag Signal, class Real = double> class lowpass {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity<si::frequency, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
+    };
+    struct state {
+        value x{}, y{}; ///< last input and output
+    };
+
+    lowpass(const parameters& p, duration period) : given_(p), period_(period) {
+        require_positive("lowpass.period", period);
+        require_below_nyquist("lowpass.corner", p.corner, period);
+        using std::tan;
+        const number t = tan(number(std::numbers::pi * period.value()) * p.corner.value());
+        b_ = Real(t / (1 + t));
+    }
+
+    value operator()(value x) noexcept {
+        const value y = state_.y + b_ * ((x - state_.y) + (state_.x - state_.y));
+        if (!finite(y)) return out_.hold();
+        state_ = {x, y};
+        return out_.keep(y);
+    }
+    void reset() noexcept { settle(value()); }
+    void settle(value x) noexcept {
+        if (!finite(x)) return out_.raise();
+        state_ = {x, x};
+        out_.reset(x);
+    }
+
+    std::complex<double> response(frequency f) const {
+        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
+        return detail::plain(b_) * (1.0 + back) / (1.0 - (1 - 2 * detail::plain(b_)) * back);
+    }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    parameters given_;
+    duration period_;
+    Real b_;
+    state state_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

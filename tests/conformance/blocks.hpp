@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <quadrant/literals.hpp>
+#include <quadrant/quadrant.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+
+/// Every block of the library, once. A block is not finished until it has its line in `blocks`, which buys it all
+/// cases of this folder: reset, settle, copies, zero, allocation, NaN, extremes, linearity, number types, derivatives, response.
+namespace conformance {
+
+using namespace quadrant;
+using namespace quadrant::literals;
+inline const duration T = 500_us;
+inline constexpr std::size_t most_parameters = 8;
+
+/// Hands out the parameters of a block under test, numbered in the order of the calls. For a dual the number i is the
+/// variable i; else the one that is `bumped` is scaled, for a difference quotient. `fixed` is for what has no derivative.
+template <class Real> struct values {
+    std::size_t bumped = std::size_t(-1);
+    double factor = 1;
+    std::size_t count = 0;
+    std::array<double, most_parameters> given{};
+
+    template <class Unit> quantity<Unit, parameter_real<Real>> operator()(quantity<Unit> q) {
+        return quantity<Unit, parameter_real<Real>>::from_value((*this)(q.value()));
+    }
+    parameter_real<Real> operator()(double q) {
+        const std::size_t i = count++;
+        given.at(i) = q;
+        if constexpr (std::is_floating_point_v<Real>)
+            return i == bumped ? factor * q : q;
+        else
+            return Real::variable(q, i);
+    }
+    parameter_real<Real> fixed(double q) const { return q; }
+    template <class Unit> quantity<Unit, parameter_real<Real>> fixed(quantity<Unit> q) const {
+        return quantity<Unit, parameter_real<Real>>::from_value(parameter_real<Real>(q.value()));
+    }
+};
+template <class Make> struct entry {
+    std::string name;
+    double amplitude; ///< of the input, SI; a power of two, so that float, double and dual see the same numbers
+    Make make;
+
+    template <class Real> auto operator()(values<Real> given = {}) const { return make(given); }
+};
+template <class Make> entry(const char*, double, Make) -> entry<Make>;
+
+namespace s = quadrant::signal;
+inline const std::tuple blocks{
+    entry{"proportional", 0.125,
+          []<class R>(values<R>& p) { return proportional<s::position, s::velocity, R>({p(150.0 / 1_s)}, T); }},
+    entry{"proportional_integral", 0.125,
+          []<class R>(values<R>& p) {
+              return proportional_integral<s::velocity, s::voltage, integral_clamp, R>(
+                  {p(60_V / 1_mps), p(450_V / 1_m), p.fixed(10_V)}, T);
+          }},
+    entry{"proportional_integral, conditional", 0.125,
+          []<class R>(values<R>& p) {
+              return proportional_integral<s::velocity, s::voltage, conditional_integration, R>(
+                  {p(60_V / 1_mps), p(450_V / 1_m), p.fixed(10_V)}, T);
+          }},
+    entry{"proportional_integral, back calculation", 0.125,
+          []<class R>(values<R>& p) {
+              return proportional_integral<s::velocity, s::voltage, back_calculation, R>(
+                  {p(60_V / 1_mps), p(450_V / 1_m), p.fixed(10_V), {2_ms}}, T);
+          }},
+    entry{"limiter", 8,
+          []<class R>(values<R>& p) {
+              return limiter<s::voltage, R>({p(-3.01_V), p(5.01_V)}, T);
+          }},
+    entry{"rate_limiter", 8,
+          []<class R>(values<R>& p) { return rate_limiter<s::voltage, R>({p(3003_V / 1_s)}, T); }},
+    entry{"dead_band", 8, []<class R>(values<R>& p) { return dead_band<s::voltage, R>({p(1.01_V)}, T); }},
+    entry{"quantizer", 8, []<class R>(values<R>& p) { return quantizer<s::voltage, R>({p.fixed(0.25_V)}, T); }},
+    entry{"backward_difference", 0.125,
+          []<class R>(values<R>&) { return backward_difference<s::position, s::velocity, R>({}, T); }},
+    entry{
+        "filtered_derivative", 0.125,
+        []<class R>(values<R>& p) { return filtered_derivative<s::position, s::velocity, R>({p(150_Hz)}, T); }},
+    entry{"two_sample_derivative", 0.125,
+          []<class R>(values<R>&) { return two_sample_derivative<s::position, s::velocity, R>({}, T); }},
+    entry{"notch", 64,
+          []<class R>(values<R>& p) {
+              return notch<s::force, R>({p(330_Hz), p(0.1)}, T);
+          }},
+    entry{"lowpass", 64, []<class R>(values<R>& p) { return lowpass<s::force, R>({p(100_Hz)}, T); }},
+    entry{"butterworth", 64, []<class R>(values<R>& p) { return butterworth<s::force, R>({p(100_Hz)}, T); }},
+    entry{"transfer_function", 64,
+          []<class R>(values<R>& p) {
+              return transfer_function<s::force, s::position, 2, R>(
+                  {{p(1_m / 4_N), p(1_m / 8_N), p(1_m / 16_N)}, {p(1.1), p(-0.7), p(0.3)}}, T);
+          }},
+    entry{"transfer_function, integrating", 64,
+          []<class R>(values<R>& p) {
+              return transfer_function<s::force, s::position, 1, R>(
+                  {{p(0.25_m / 1_N), p(0.5_m / 1_N)}, {p.fixed(1.0), p.fixed(-1.0)}}, T);
+          }},
+    entry{"delay_line", 64, []<class R>(values<R>&) { return delay_line<s::force, 7, R>({3}, T); }},
+    entry{"fractional_delay, line", 64,
+          []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 1, R>({p(1.7_ms)}, T); }},
+    entry{"fractional_delay, cubic", 64,
+          []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 3, R>({p(1.7_ms)}, T); }},
+    entry{"absent", 64, []<class R>(values<R>&) { return absent<s::velocity, s::force, R>({}, T); }},
+    entry{"through", 64, []<class R>(values<R>&) { return through<s::force, R>({}, T); }},
+    entry{"series", 64,
+          []<class R>(values<R>& p) {
+              return series<notch<s::force, R>, lowpass<s::force, R>, notch<s::force, R>>(
+                  {{p(330_Hz), p(0.1)}, {p(200_Hz)}, {p(500_Hz), p(0.2)}}, T);
+          }},
+    entry{"coulomb_viscous", 0.125,
+          []<class R>(values<R>& p) {
+              return coulomb_viscous<s::velocity, s::force, R>({p(122_N), p(850_N / 1_mps)}, T);
+          }},
+    entry{"stribeck", 0.125,
+          []<class R>(values<R>& p) {
+              return stribeck<s::velocity, s::force, R>({p(122_N), p(177_N), p(2.2_mmps), p(850_N / 1_mps)}, T);
+          }},
+    entry{"linear_motor", 8,
+          []<class R>(values<R>& p) {
+              return linear_motor<coulomb_viscous<s::velocity, s::force, R>, 8, R>(
+                  {.mass = p(340_kg),
+                   .force_constant = p(1450_N / 1_V),
+                   .friction = {p(122_N), p(850_N / 1_mps)},
+                   .delay = p(0.41_ms)},
+                  T);
+          }},
+};
+
+/// Calls f(entry) for every block.
+template <class F> void for_each_block(F&& f) {
+    std::apply([&](const auto&... each) { (f(each), ...); }, blocks);
+}
+
+template <class Block, class Real> using input_of = quantity_of<typename Block::input, Real>;
+template <class Block>
+concept linear = requires(const Block& b) {
+    b.response(1_Hz);
+};
+
+/// Repeatable input between -amplitude and amplitude in steps of 1/1024: exact in float, and never at a switch of a block.
+class noise {
+public:
+    explicit noise(std::uint32_t seed = 1) : x_(seed) {}
+    double operator()(double amplitude) {
+        x_ = x_ * 1664525u + 1013904223u;
+        return amplitude * (double(x_ >> 22) * 2 - 1023) / 1024;
+    }
+
+private:
+    std::uint32_t x_;
+};
+
+} // namespace conformance

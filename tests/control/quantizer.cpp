@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSL-1.0
+#include <quadrant/control/quantizer.hpp>
+#include <quadrant/dual.hpp>
+#include <quadrant/literals.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace quadrant;
+using namespace quadrant::literals;
+using dac = quantizer<signal::voltage>;
+
+TEST_CASE("quantizer: of a 16-bit DAC over 20 V, 1 V is 3277 steps, 1.00006103515625 V") {
+    dac d{{.step = 20_V / 65536.0}, 500_us};
+    CHECK(d(1_V).value() == 1.00006103515625);
+    CHECK(d(-1_V).value() == -1.00006103515625);
+}
+TEST_CASE("quantizer: halves go away from zero, on both sides") {
+    dac d{{.step = 0.25_V}, 500_us};
+    CHECK(d(0.125_V) == 0.25_V);
+    CHECK(d(-0.125_V) == -0.25_V);
+    CHECK(d(0.375_V) == 0.5_V);
+    CHECK(d(-0.375_V) == -0.5_V);
+    CHECK(d(std::nextafter(0.125, 0.0) * 1_V) == 0_V);
+}
+TEST_CASE("quantizer: never off by more than half a step, and its own output stays") {
+    dac d{{.step = 20_V / 65536.0}, 500_us};
+    for (double x = -10; x < 10; x += 0.00777) {
+        const auto y = d(x * 1_V);
+        CHECK(std::abs(y.value() - x) <= 0.5 * 20 / 65536 * (1 + 1e-12));
+        CHECK(d(y) == y);
+    }
+}
+TEST_CASE("quantizer: a step of 0 does not round") {
+    dac d{{}, 500_us};
+    CHECK(d(0.123456789_V) == 0.123456789_V);
+}
+TEST_CASE("quantizer: a derivative passes as if the steps were seen from afar") {
+    using D = dual<1>;
+    quantizer<signal::voltage, D> d{{.step = quantity_of<signal::voltage, D>::from_value(0.25)}, 500_us};
+    const D y = d(quantity_of<signal::voltage, D>::from_value(D::variable(1.1, 0))).value();
+    CHECK(y.value == 1.0);
+    CHECK(y.partial[0] == 1);
+}
+TEST_CASE("quantizer: refuses a negative step") {
+    CHECK_THROWS_WITH_AS((dac{{.step = -1_V}, 1_ms}), "quantizer.step = -1: must be finite and not below 0",
+                         invalid_parameter);
+}
