@@ -118,20 +118,19 @@ inline std::string spaced(std::string_view name) {
 
 struct effect_words {
     std::string_view key, name, box;
-    bool always_described = false; ///< every machine file has a value: it differs, it cannot be missing
 };
 
 /// An effect that is not in the table keeps its key as its name.
 inline effect_words words_of(std::string_view effect) {
     static constexpr effect_words all[] = {
         {"coulomb_friction", "Coulomb friction", "mechanics"},
-        {"viscous_friction", "viscous friction", "mechanics", true},
+        {"viscous_friction", "viscous friction", "mechanics"},
         {"stribeck_friction", "Stribeck friction", "mechanics"},
         {"presliding_friction", "presliding friction", "mechanics"},
         {"asymmetric_friction", "friction that differs by direction", "mechanics"},
         {"position_dependent_friction", "friction that varies along the travel", "mechanics"},
         {"friction_drift", "friction that drifts with time", "mechanics"},
-        {"mass", "moving mass", "mechanics", true},
+        {"mass", "moving mass", "mechanics"},
         {"structural_resonance", "structural resonance", "mechanics"},
         {"backlash", "backlash", "mechanics"},
         {"constant_force", "constant force", "mechanics"},
@@ -139,8 +138,8 @@ inline effect_words words_of(std::string_view effect) {
         {"cross_coupling", "coupling from the other axis", "mechanics"},
         {"cogging", "cogging", "mechanics"},
         {"force_ripple", "force ripple", "actuator"},
-        {"force_constant", "force constant", "actuator", true},
-        {"time_delay", "time delay", "actuator", true},
+        {"force_constant", "force constant", "actuator"},
+        {"time_delay", "time delay", "actuator"},
         {"actuator_lag", "current-loop lag", "actuator"},
         {"actuator_saturation", "drive limit below the controller's", "actuator"},
         {"actuator_dead_zone", "actuator dead zone", "actuator"},
@@ -148,7 +147,7 @@ inline effect_words words_of(std::string_view effect) {
         {"encoder_quantization", "encoder quantization", "sensor"},
         {"encoder_cyclic_error", "cyclic encoder error", "sensor"},
         {"cutting_force", "cutting force", "process"},
-        {"controller_mismatch", "controller", "controller", true},
+        {"controller_mismatch", "controller", "controller"},
     };
     for (const effect_words& e : all)
         if (e.key == effect) return e;
@@ -241,7 +240,7 @@ inline std::string claim(const cause& c) {
     return named(names, "or");
 }
 
-/// "Coulomb friction is missing or wrong in the simulation of axis x: with it, ..."
+/// "Coulomb friction is missing from the simulation of axis x: with it, ..."
 inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
     const std::string before = quantity(a.gap.force_rms_N, "N"),
                       floor = quantity(a.gap.noise_floor_force_rms_N, "N");
@@ -254,19 +253,19 @@ inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
             "The force gap of axis {}, {} (floor {}), lies within the tolerances of the machine file: "
             "calibrate its values, nothing is missing.",
             a.name, before, floor);
-    std::vector<std::string> claims;
-    const cause* suspect = nullptr;
-    bool differs = false; // all that is claimed has a value in every machine file
+    std::vector<std::string> missing, wrong;
+    const cause *suspect = nullptr, *first = nullptr, *last = nullptr;
     for (const cause& c : d.causes) {
         if (c.axis != a.name) continue;
         if (claimed(c)) {
-            differs = words_of(c.effect).always_described && (claims.empty() || differs);
-            claims.push_back(claim(c));
+            (c.described ? wrong : missing).push_back(claim(c));
+            if (!first) first = &c;
+            last = &c;
         } else if (!suspect) {
             suspect = &c;
         }
     }
-    if (a.verdict == verdict::unexplained || claims.empty()) {
+    if (a.verdict == verdict::unexplained || !first) {
         const std::string hint = !suspect ? ""
                                           : fmt::format("; the nearest suspect is {} (probability {})",
                                                         claim(*suspect), probability(suspect->probability));
@@ -275,15 +274,19 @@ inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
             "rounding leave {}{}.",
             a.name, before, floor, hint);
     }
-    const std::string what = listed(claims);
-    const std::string_view verb = claims.size() > 1 ? "are" : "is";
-    return fmt::format(
-        "{}: with {}, the force gap shrinks from {} to {} (floor {}){}.",
-        differs
-            ? fmt::format("The {} of axis {} {} not as the machine file says", what, a.name, verb)
-            : fmt::format("{} {} missing or wrong in the simulation of axis {}", capital(what), verb, a.name),
-        claims.size() > 1 ? "them" : "it", before, quantity(a.gap_after.force_rms_N, "N"), floor,
-        a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
+    const auto are = [](const auto& names) { return names.size() > 1 ? "are" : "is"; };
+    std::string what;
+    if (!missing.empty())
+        what = fmt::format("{} {} missing from the simulation of axis {}", capital(listed(missing)),
+                           are(missing), a.name);
+    if (!wrong.empty())
+        what += fmt::format("{} {}{} {} not as the machine file says", missing.empty() ? "The" : ", and the",
+                            listed(wrong), missing.empty() ? " of axis " + a.name : "", are(wrong));
+    // The numbers are those of what is claimed, not of the suspects behind it.
+    return fmt::format("{}: with {}, the force gap shrinks from {} to {} (floor {}){}.", what,
+                       first != last ? "them" : "it", quantity(first->gap_before_force_rms_N.value, "N"),
+                       quantity(last->gap_after_force_rms_N.value, "N"), floor,
+                       a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
 }
 
 /// The sentence of the worst axis.

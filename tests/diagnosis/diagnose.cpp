@@ -227,6 +227,14 @@ TEST_CASE("diagnose: the forecast is kept on a log of another motion") {
     CHECK(d.axes[0].gap_after.force_rms_N < 2 * d.axes[0].gap_after.noise_floor_force_rms_N);
 }
 
+TEST_CASE("diagnose: a record too short to leave motions out is refused") {
+    const machine real;
+    auto log = as_log(run(real, 1.9));
+    log.file = "short.csv";
+    CHECK_THROWS_WITH_AS(diagnose(described(real), log),
+                         "short.csv: 3799 samples are 1.9 s: a diagnosis needs at least 2 s", bad_input);
+}
+
 TEST_CASE("diagnose: same input, same output") {
     machine real;
     const auto file = described(real);

@@ -107,6 +107,9 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
         named.effect = e.name;
         named.exciting_motion = e.exciting_motion;
         named.parameters = estimates(c.best(), e, c.record.score);
+        plant_model as_given = c.models.given().fit.plant;
+        for (const parameter& p : c.best().fit.parameters)
+            if (p.key == named.parameters.front().key && p.of(as_given) != 0) named.described = true;
         for (const auto& r : rivals[i]) {
             if (r.name == &e) {
                 named.probability = r.weight;
@@ -139,6 +142,7 @@ inline std::optional<cause> controller_cause(const axis_case& c) {
     out.axis = c.axis.name;
     out.effect = "controller_mismatch";
     out.exciting_motion = "any: the controller is replayed from the log";
+    out.described = true;
     out.probability = out.group_probability = c.controller->mended ? 0.97 : 0.4;
     if (!c.controller->key.empty())
         out.parameters.push_back(

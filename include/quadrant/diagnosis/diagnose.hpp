@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "bad_input.hpp"
 #include "block_places.hpp"
 #include "causes.hpp"
 #include "how_far.hpp"
@@ -26,7 +27,8 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     const double floor = square(c.floor_force());
     double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
     double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
-    if (c.coarse()) before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
+    if (c.coarse())
+        before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
     std::string text = "axis " + c.axis.name + ": ";
     if (c.controller_differs()) {
         before += square(rms(c.command_difference(c.log, *c.axis.controller)));
@@ -108,11 +110,17 @@ template <class Axes> auto named(const Axes& axes, const std::string& name) {
 } // namespace detail
 
 /// From a machine file and a log to where they differ, why, how surely, and how far the gap shrinks with each cause.
-/// Deterministic. Machine and log match (match.hpp). Cost: linear in rows; each suspect costs a few dozen passes of the
+/// Deterministic. Machine and log match (match.hpp); a log below 2 s is refused (bad_input). Cost: linear in rows; each suspect costs a few dozen passes of the
 /// plant over the log.
 inline diagnosis_result diagnose(
     const machine_description& machine, const machine_log& log, const machine_log* holdout = nullptr,
     const progress& tell = [](const std::string&) {}, const rules& r = {}) {
+    constexpr double shortest_s = 2; // less holds too few motions to leave some out
+    for (const machine_log* l : {&log, holdout})
+        if (l && static_cast<double>(l->samples) * machine.sample_period_s < shortest_s)
+            throw bad_input(
+                l->file, detail::worded("%zu samples are %.3g s: a diagnosis needs at least %.0f s", l->samples,
+                                        static_cast<double>(l->samples) * machine.sample_period_s, shortest_s));
     diagnosis_result out;
     out.machine_file = machine.file;
     out.log_file = log.file;

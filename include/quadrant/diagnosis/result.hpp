@@ -59,7 +59,8 @@ struct reading {
 
 struct cause {
     std::string axis, effect;
-    double probability = 0;       ///< of this name
+    bool described = false; ///< the machine file has a value for it, another one than found; else it has none
+    double probability = 0; ///< of this name
     double group_probability = 0; ///< of this name or one it is confusable with
     std::vector<std::string> confusable_with;
     std::vector<parameter_estimate> parameters;

@@ -33,7 +33,8 @@ public:
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
         fit.evaluate(given_.fit);
-        given_.total = -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
+        given_.total =
+            -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis.plant, axis.tolerance);

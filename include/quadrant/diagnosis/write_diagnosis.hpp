@@ -44,11 +44,11 @@ inline ordered_json gap_json(const gap_numbers& g) {
 inline ordered_json place_json(const place& p) {
     ordered_json out = ordered_json::object();
     out["view"] = p.view;
-    if (p.view == "block") out["block"] = p.block;
+    if (!p.block.empty()) out["block"] = p.block; // what no cause tells has none
     out["finding"] = p.finding;
     out["share"] = p.share.value;
     out["share_ci95"] = interval_json(p.share);
-    if (p.view == "block") out["basis"] = p.basis;
+    if (!p.basis.empty()) out["basis"] = p.basis;
     return out;
 }
 
@@ -68,6 +68,7 @@ inline ordered_json cause_json(const cause& c) {
         readings.push_back({{"effect", r.effect}, {"parameters", parameters_json(r.parameters)}});
     return {{"axis", c.axis},
             {"effect", c.effect},
+            {"described", c.described},
             {"probability", c.probability},
             {"group_probability", c.group_probability},
             {"confusable_with", c.confusable_with},
