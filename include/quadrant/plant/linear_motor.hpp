@@ -51,7 +51,7 @@ public:
     struct state {
         position x{};
         velocity v{};
-        std::array<voltage, Capacity + 1> past{}; ///< commands, the newest first
+        std::array<voltage, Capacity + 1> past{}; ///< [0]: place of the coming command; then the newest first
     };
 
     linear_motor(const parameters& p, duration period)
@@ -66,11 +66,9 @@ public:
 
     /// Applies u from sample k on; returns the encoder reading of sample k+1.
     position operator()(voltage u, force external = force()) noexcept {
-        if (!finite(u, external)) return out_.hold();
-        const voltage applied = clipped(u), oldest = state_.past[Capacity];
-        for (std::size_t i = Capacity; i > 0; --i) state_.past[i] = state_.past[i - 1];
-        state_.past[0] = rounded(applied, dac_step_);
-
+        const bool beyond = limit_ > voltage() && (u > limit_ || u < -limit_);
+        state_.past[0] = rounded(beyond ? (u > voltage() ? limit_ : -limit_) : u, dac_step_);
+        const voltage newer = state_.past[whole_], older = state_.past[whole_ + 1];
         position x = state_.x;
         velocity v = state_.v;
         const auto n = given_.substeps;
@@ -78,21 +76,21 @@ public:
             // Share of the sub-step in which the newer command already acts.
             const Real late = fraction_ * Real(static_cast<double>(n)) - Real(static_cast<double>(i));
             const Real share = late < Real(0) ? Real(1) : late >= Real(1) ? Real(0) : Real(1) - late;
-            const voltage acting = state_.past[whole_] * share + state_.past[whole_ + 1] * (Real(1) - share);
+            const voltage acting = newer * share + older * (Real(1) - share);
             const velocity next =
                 stick_slip<Real>(friction_, mass_, v, force_constant_ * acting + external, h_);
             x += (v + next) * (h_ * Real(0.5));
             v = next;
         }
-        const position reading = rounded(x, encoder_step_);
-        if (!finite(x, v, reading)) {
-            for (std::size_t i = 0; i < Capacity; ++i) state_.past[i] = state_.past[i + 1];
-            state_.past[Capacity] = oldest;
+        const position reading = rounded(x, encoder_step_); // not finite when x or v is not
+        if (!finite(u, external, reading)) {
+            state_.past[0] = state_.past[1];
             return out_.hold();
         }
         state_.x = x;
         state_.v = v;
-        limited_ = applied != u;
+        for (std::size_t i = Capacity; i > 0; --i) state_.past[i] = state_.past[i - 1];
+        limited_ = beyond;
         return out_.keep(reading);
     }
     void reset() noexcept { settle(position()); }
@@ -129,10 +127,6 @@ private:
         using std::round;
         if (!(step > Quantity())) return x;
         return step * Real(round(Real(x / step)));
-    }
-    voltage clipped(voltage u) const noexcept {
-        if (!(limit_ > voltage())) return u;
-        return u > limit_ ? limit_ : u < -limit_ ? -limit_ : u;
     }
 
     parameters given_;

@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    static constexpr int none = std::numeric_limits<int>::max(), top = 20;
+    static constexpr int none = std::numeric_limits<int>::max(), top = 12;
 
     static int exponent(std::string_view text) {
         if (text.starts_with('+')) text.remove_prefix(1);
@@ -78,9 +78,9 @@ private:
     }
 
     struct decade { ///< cells with the same power of ten in front
-        int finest = none;
         double last = 0;
-        std::size_t changes = 0;
+        int finest = none;
+        unsigned changes = 0;
     };
     std::array<decade, 2 * top + 1> decades_{};
     int finest_ = none;

@@ -2,8 +2,10 @@
 #pragma once
 #include "json_text.hpp"
 
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace quadrant::diagnosis::detail {

@@ -4,80 +4,97 @@
 
 #include <nlohmann/json.hpp>
 
-#include <set>
 #include <vector>
 
 namespace quadrant::diagnosis::detail {
 
-/// Follows the parser, which itself keeps the last of two equal keys without a word and nests without a limit.
-class json_watch {
+/// Builds the document itself: the library's own parsers keep the last of two equal keys without a word, nest without
+/// a limit and, with a callback, take time by the square of the number of objects.
+class json_builder final : public nlohmann::json_sax<nlohmann::json> {
 public:
-    explicit json_watch(std::string_view file) : file_(file) {}
+    json_builder(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
-    void operator()(nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
-        using on = nlohmann::json::parse_event_t;
-        constexpr std::size_t deepest = 32;
-        switch (event) {
-        case on::object_start:
-        case on::array_start:
-            if (open_.size() == deepest) throw bad_input(file_, "is nested too deeply");
-            open_.emplace_back();
-            break;
-        case on::key: {
-            auto& object = open_.back();
-            object.key = parsed.get_ref<const std::string&>();
-            if (!object.seen.insert(object.key).second) throw bad_input(file_, path() + ": is there twice");
-            break;
-        }
-        case on::object_end:
-        case on::array_end:
-            open_.pop_back();
-            break;
-        case on::value:
-            break;
-        }
+    nlohmann::json& root() { return root_; }
+
+    bool null() override { return put(nullptr); }
+    bool boolean(bool value) override { return put(value); }
+    bool number_integer(number_integer_t value) override { return put(value); }
+    bool number_unsigned(number_unsigned_t value) override { return put(value); }
+    bool number_float(number_float_t value, const string_t&) override { return put(value); }
+    bool string(string_t& value) override { return put(std::move(value)); }
+    bool binary(binary_t& value) override { return put(std::move(value)); }
+    bool start_object(std::size_t) override { return open(nlohmann::json::object()); }
+    bool start_array(std::size_t) override { return open(nlohmann::json::array()); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override {
+        auto& object = open_.back();
+        object.key = std::move(name);
+        if (object.value->contains(object.key)) throw bad_input(file_, path() + ": is there twice");
+        return true;
     }
 
-    /// Dotted keys down to the value being read.
-    std::string path() const {
-        std::string out;
-        for (const auto& level : open_)
-            if (!level.key.empty()) out += (out.empty() ? "" : ".") + level.key;
-        return out;
-    }
-
-private:
-    struct level_of_nesting {
-        std::string key; ///< stays empty in an array
-        std::set<std::string> seen;
-    };
-    std::vector<level_of_nesting> open_;
-    std::string_view file_;
-};
-
-/// Parses JSON (RFC 8259) or throws bad_input.
-inline nlohmann::json parse_json(std::string_view text, std::string_view file) {
-    text = without_byte_order_mark(text);
-    json_watch watch(file);
-    try {
-        return nlohmann::json::parse(text,
-                                     [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
-                                         watch(event, parsed);
-                                         return true;
-                                     });
-    } catch (const nlohmann::json::parse_error& fault) {
-        const std::size_t last_read = std::min(std::max<std::size_t>(fault.byte, 1) - 1, text.size());
-        const std::string_view before = text.substr(0, last_read);
+    bool parse_error(std::size_t read, const std::string&, const nlohmann::json::exception& fault) override {
+        constexpr int number_overflow = 406;
+        if (fault.id == number_overflow)
+            throw bad_input(file_, open_.empty() ? "must be an object" : path() + ": must be a finite number");
+        const std::string_view before = text_.substr(0, read == 0 ? 0 : read - 1);
         const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
         const std::size_t column = characters(before.substr(before.find_last_of('\n') + 1)) + 1;
         // "[json.exception...] parse error at line 3, column 5: syntax error while parsing ..."
         const std::string_view what = fault.what();
         const std::size_t place = what.find(": ");
-        throw bad_input(file, line, column, what.substr(place == what.npos ? 0 : place + 2));
-    } catch (const nlohmann::json::out_of_range&) {
-        const std::string path = watch.path();
-        throw bad_input(file, path.empty() ? "must be an object" : path + ": must be a finite number");
+        throw bad_input(file_, line, column, what.substr(place == what.npos ? 0 : place + 2));
     }
+
+private:
+    struct level {
+        nlohmann::json* value;
+        std::string key{}; ///< the one being read; empty in an array
+    };
+
+    /// Dotted keys down to the value being read.
+    std::string path() const {
+        std::string out;
+        for (const auto& outer : open_)
+            if (!outer.key.empty()) out += (out.empty() ? "" : ".") + outer.key;
+        return out;
+    }
+
+    nlohmann::json& joined(nlohmann::json value) {
+        if (open_.empty()) return root_ = std::move(value);
+        auto& parent = *open_.back().value;
+        if (parent.is_object()) return parent[open_.back().key] = std::move(value);
+        parent.push_back(std::move(value));
+        return parent.back();
+    }
+    template <class Value> bool put(Value&& value) {
+        joined(std::forward<Value>(value));
+        return true;
+    }
+    bool open(nlohmann::json container) {
+        constexpr std::size_t deepest = 32;
+        if (open_.size() == deepest) throw bad_input(file_, "is nested too deeply");
+        auto& opened = joined(std::move(container));
+        open_.push_back({&opened});
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    nlohmann::json root_;
+    std::vector<level> open_;
+    std::string_view text_, file_;
+};
+
+/// Parses JSON (RFC 8259) or throws bad_input.
+inline nlohmann::json parse_json(std::string_view text, std::string_view file) {
+    text = without_byte_order_mark(text);
+    json_builder builder(text, file);
+    nlohmann::json::sax_parse(text, &builder);
+    return std::move(builder.root());
 }
 
 } // namespace quadrant::diagnosis::detail

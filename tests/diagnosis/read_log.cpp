@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/read_log.hpp"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+machine_log read(const std::string& text) {
+    std::istringstream in(text);
+    return read_log(in, "log.csv");
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        read(text);
+    } catch (const bad_input& fault) {
+        return fault.what();
+    }
+    return "accepted";
+}
+
+const std::string header = "t_s,x_ref_m,x_pos_m,x_cmd_V\n";
+const std::string good = header + "0.0000,0.000,0.0001,0.5\n"
+                                  "0.0005,0.001,0.0002,0.6\n"
+                                  "0.0010,0.002,0.0003,0.7\n"
+                                  "0.0015,0.003,0.0004,0.8\n";
+
+/// A log of one axis from its stamps.
+std::string with_stamps(const std::vector<std::string>& stamps) {
+    std::string text = header;
+    for (std::size_t k = 0; k < stamps.size(); ++k) text += stamps[k] + ",0," + std::to_string(k) + ",0\n";
+    return text;
+}
+
+/// The step of a position column, from its cells.
+template <class Cell> double position_step(std::size_t rows, Cell cell) {
+    std::string text = header;
+    for (std::size_t k = 0; k < rows; ++k)
+        text += fmt::format("{:.4f},0,{},0\n", 0.0005 * static_cast<double>(k), cell(k));
+    return read(text).axes[0].position_step;
+}
+
+} // namespace
+
+TEST_CASE("read_log: a plain log comes out as it stands") {
+    const auto log = read(good);
+    CHECK(log.file == "log.csv");
+    CHECK(log.samples == 4);
+    CHECK(log.sample_period_s == doctest::Approx(0.0005).epsilon(1e-14));
+    CHECK(log.notes.empty());
+    REQUIRE(log.axes.size() == 1);
+    CHECK(log.axes[0].name == "x");
+    CHECK(log.axes[0].command_unit == "V");
+    CHECK(log.axes[0].reference == std::vector{0.0, 0.001, 0.002, 0.003});
+    CHECK(log.axes[0].position == std::vector{0.0001, 0.0002, 0.0003, 0.0004});
+    CHECK(log.axes[0].command == std::vector{0.5, 0.6, 0.7, 0.8});
+}
+
+TEST_CASE("read_log: columns come in any order, axes in the order of their names") {
+    const auto log = read("y_cmd_A,x_pos_m,t_s,y_pos_m,x_cmd_N,y_ref_m,x_ref_m\n"
+                          "1,2,0.0,3,4,5,6\n"
+                          "1,2.5,0.1,3.5,4,5,6\n");
+    REQUIRE(log.axes.size() == 2);
+    CHECK(log.axes[0].name == "x");
+    CHECK(log.axes[0].command_unit == "N");
+    CHECK(log.axes[0].position == std::vector{2.0, 2.5});
+    CHECK(log.axes[1].name == "y");
+    CHECK(log.axes[1].command_unit == "A");
+    CHECK(log.axes[1].reference == std::vector{5.0, 5.0});
+}
+
+TEST_CASE("read_log: unknown columns are ignored with a note, whatever they hold") {
+    const auto log = read("t_s,x_ref_m,remark,x_pos_m,x_cmd_V,\n"
+                          "0.0,0,\"start, with \"\"care\"\"\",0,0,\n"
+                          "0.1,0,nan,1,0,\n");
+    CHECK(log.axes[0].position == std::vector{0.0, 1.0});
+    REQUIRE(log.notes.size() == 2);
+    CHECK(log.notes[0] == "log.csv: column \"remark\" is not one of the format's and is ignored.");
+    CHECK(log.notes[1] == "log.csv: column \"\" is not one of the format's and is ignored.");
+}
+
+TEST_CASE("read_log: the optional columns get a note that they are not used") {
+    const auto log = read("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_m_per_s,x_acc_m_per_s2,x_force_N\n"
+                          "0.0,0,0,0,1,2,3\n0.1,0,1,0,1,2,3\n");
+    REQUIRE(log.notes.size() == 3);
+    CHECK(log.notes[0] == "log.csv: column \"x_vel_m_per_s\" is not used by this version.");
+    CHECK(log.notes[1] == "log.csv: column \"x_acc_m_per_s2\" is not used by this version.");
+    CHECK(log.notes[2] == "log.csv: column \"x_force_N\" is not used by this version.");
+}
+
+TEST_CASE(
+    "read_log: CRLF, a byte order mark, quoted headers, spaces and blank lines at the end change nothing") {
+    const auto plain = read(good);
+    const auto dressed = read("\xEF\xBB\xBF \"t_s\" ,\"x_ref_m\", x_pos_m ,\tx_cmd_V\r\n"
+                              " 0.0000 ,0.000,0.0001,0.5\r\n"
+                              "+0.0005,\"0.001\", 0.0002,0.6  \r\n"
+                              "0.0010,0.002,0.0003,\t0.7\r\n"
+                              "0.0015,0.003,0.0004,0.8\r\n"
+                              "\r\n \t\r\n\n");
+    CHECK(dressed.samples == plain.samples);
+    CHECK(dressed.sample_period_s == plain.sample_period_s);
+    CHECK(dressed.axes[0].reference == plain.axes[0].reference);
+    CHECK(dressed.axes[0].position == plain.axes[0].position);
+    CHECK(dressed.axes[0].command == plain.axes[0].command);
+    CHECK(dressed.axes[0].position_step == plain.axes[0].position_step);
+    CHECK(dressed.notes.empty());
+}
+
+TEST_CASE("read_log: the last line needs no line break") {
+    CHECK(read(good.substr(0, good.size() - 1)).samples == 4);
+}
+
+TEST_CASE("read_log: a missing row is refused with its line") {
+    CHECK(refusal(with_stamps({"0", "0.0005", "0.001", "0.0025", "0.003", "0.0035"})) ==
+          "log.csv:5:1: rows missing before this one: 2 (the stamps advance by 0.0015 s here, by 0.0005 s "
+          "elsewhere)");
+    CHECK(
+        refusal("x_ref_m,x_pos_m,t_s,x_cmd_V\n"
+                "0,0,0.0,0\n0,1,0.1,0\n0,1,0.3,0\n0,1,0.4,0\n") ==
+        "log.csv:4:5: rows missing before this one: 1 (the stamps advance by 0.2 s here, by 0.1 s elsewhere)");
+}
+
+TEST_CASE("read_log: a missing row is found among stamps that jitter as much as they may") {
+    std::vector<std::string> stamps;
+    for (int k = 0; k < 40; ++k)
+        if (k != 21) stamps.push_back(fmt::format("{:.5f}", 1e-3 * k + (k % 2 ? 1.9e-4 : -1.9e-4)));
+    CHECK(refusal(with_stamps(stamps))
+              .starts_with("log.csv:23:1: rows missing before this one: 1 (the stamps advance by 0.002 s"));
+}
+
+TEST_CASE("read_log: time that stands still or runs back is refused") {
+    CHECK(refusal(with_stamps({"0", "0.0005", "0.0005"})) ==
+          "log.csv:4:1: t_s: 0.0005 does not come after 0.0005");
+    CHECK(refusal(with_stamps({"0", "0.0005", "-0.001"})) ==
+          "log.csv:4:1: t_s: -0.001 does not come after 0.0005");
+}
+
+TEST_CASE("read_log: stamps may jitter by a fifth of the period, and a note tells the size") {
+    std::vector<std::string> stamps;
+    for (int k = 0; k < 400; ++k) stamps.push_back(fmt::format("{:.6f}", 1e-3 * k + (k % 3 - 1) * 1.5e-4));
+    const auto log = read(with_stamps(stamps));
+    CHECK(log.sample_period_s == doctest::Approx(1e-3).epsilon(1e-5));
+    REQUIRE(log.notes.size() == 1);
+    CHECK(log.notes[0] == "log.csv: the stamps jitter by up to 15 % of the sample period.");
+
+    stamps[100] = "0.100301";
+    CHECK(refusal(with_stamps(stamps)) == "log.csv:102:1: t_s: the stamps jitter by 0.23 of the period of "
+                                          "0.001 s, here most; up to 0.2 is allowed");
+}
+
+TEST_CASE("read_log: stamps that are written too coarsely still give the period") {
+    std::vector<std::string> stamps; // a quarter of a millisecond in four decimals
+    for (int k = 0; k < 400; ++k) stamps.push_back(fmt::format("{:.4f}", 2.5e-4 * k));
+    const auto log = read(with_stamps(stamps));
+    CHECK(log.sample_period_s == doctest::Approx(2.5e-4).epsilon(1e-3));
+}
+
+TEST_CASE("read_log: a log may begin at any time") {
+    const auto log = read(with_stamps({"1754300000.0005", "1754300000.0010", "1754300000.0015"}));
+    CHECK(log.sample_period_s == doctest::Approx(5e-4).epsilon(1e-3));
+}
+
+TEST_CASE("read_log: what is not a number is refused with its place") {
+    const auto with_cell = [](const std::string& cell) {
+        return refusal(header + "0,0,0,0\n0.1,0,1," + cell + "\n");
+    };
+    CHECK(with_cell("1.5") == "accepted");
+    CHECK(with_cell("-2.5E-3") == "accepted");
+    CHECK(with_cell(".5") == "accepted");
+    CHECK(with_cell("1.5abc") == "log.csv:3:9: x_cmd_V: \"1.5abc\" is not a number");
+    CHECK(with_cell("1.5 2") == "log.csv:3:9: x_cmd_V: \"1.5 2\" is not a number");
+    CHECK(with_cell("0x10") == "log.csv:3:9: x_cmd_V: \"0x10\" is not a number");
+    CHECK(with_cell("1e") == "log.csv:3:9: x_cmd_V: \"1e\" is not a number");
+    CHECK(with_cell("+-1") == "log.csv:3:9: x_cmd_V: \"+-1\" is not a number");
+    CHECK(with_cell("--1") == "log.csv:3:9: x_cmd_V: \"--1\" is not a number");
+    CHECK(with_cell("") == "log.csv:3:9: x_cmd_V: \"\" is empty");
+    CHECK(with_cell("\"1,5\"") == "log.csv:3:9: x_cmd_V: \"1,5\" is not a number");
+    CHECK(with_cell("1\x1b[31m\xff") == "log.csv:3:9: x_cmd_V: \"1?[31m?\" is not a number");
+    CHECK(with_cell(std::string("1\0", 2)) == "log.csv:3:9: x_cmd_V: \"1?\" is not a number");
+    CHECK(with_cell(std::string(100, 'x')) ==
+          "log.csv:3:9: x_cmd_V: \"" + std::string(40, 'x') + "...\" is not a number");
+}
+
+TEST_CASE("read_log: a number that is not finite is refused with its place") {
+    const auto with_cell = [](const std::string& cell) {
+        return refusal(header + "0,0,0,0\n0.1,0, " + cell + ",0\n");
+    };
+    CHECK(with_cell("nan") == "log.csv:3:8: x_pos_m: \"nan\" is not finite");
+    CHECK(with_cell("-inf") == "log.csv:3:8: x_pos_m: \"-inf\" is not finite");
+    CHECK(with_cell("1e999") == "log.csv:3:8: x_pos_m: \"1e999\" is out of range");
+    CHECK(with_cell("1e13") == "log.csv:3:8: x_pos_m: \"1e13\" is out of range");
+}
+
+TEST_CASE("read_log: the column of a message counts characters, not bytes") {
+    CHECK(refusal("t_s,x_ref_m,Bemerkung,x_pos_m,x_cmd_V\n0,0,\xC3\xBC\xE2\x82\xAC,?,0\n") ==
+          "log.csv:2:8: x_pos_m: \"?\" is not a number");
+}
+
+TEST_CASE("read_log: a ragged row is refused with its place") {
+    CHECK(refusal(header + "0,0,0,0\n0.1,0,1\n") == "log.csv:3:8: the row has 3 cells, the header 4");
+    CHECK(refusal(header + "0,0,0,0\n0.1,0,1,0,7\n") == "log.csv:3:11: more cells than the 4 of the header");
+    CHECK(refusal(header + "0,0,0,0\n\n0.1,0,1,0\n") == "log.csv:3:1: a blank line inside the log");
+    CHECK(refusal(header + "0,0,0,0\n0.1,0,1,\"0\n") ==
+          "log.csv:3:9: a quote is not closed before the comma or the end of the line");
+    CHECK(refusal(header + "0,0,0,0\n0.1,0,1,\"0\"0\n") ==
+          "log.csv:3:9: a quote is not closed before the comma or the end of the line");
+}
+
+TEST_CASE("read_log: a missing column is refused by name") {
+    CHECK(refusal("x_ref_m,x_pos_m,x_cmd_V\n0,0,0\n") == "log.csv:1:24: column t_s is missing");
+    CHECK(refusal("t_s,x_pos_m,x_cmd_V\n0,0,0\n") == "log.csv:1:20: column x_ref_m is missing");
+    CHECK(refusal("t_s,x_ref_m,x_cmd_V\n0,0,0\n") == "log.csv:1:20: column x_pos_m is missing");
+    CHECK(refusal("t_s,x_ref_m,x_pos_m\n0,0,0\n") ==
+          "log.csv:1:20: column x_cmd_V is missing (or x_cmd_A, x_cmd_N)");
+    CHECK(refusal("t_s,a\n0,0\n") ==
+          "log.csv:1:6: no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
+    CHECK(refusal("t_s;x_ref_m;x_pos_m\n0;0;0\n") == "log.csv:1:4: cells must be separated by commas");
+    CHECK(refusal("0,0,0,0\n0.1,0,1,0\n") ==
+          "log.csv:1:1: the first line must name the columns (t_s, x_ref_m, ...)");
+}
+
+TEST_CASE("read_log: a column that is there twice is refused") {
+    CHECK(refusal("t_s,x_ref_m,x_pos_m,x_ref_m,x_cmd_V\n") ==
+          "log.csv:1:21: column \"x_ref_m\" is there twice");
+    CHECK(refusal("t_s,x_ref_m,t_s\n") == "log.csv:1:13: column \"t_s\" is there twice");
+    CHECK(refusal("t_s,x_cmd_V,x_cmd_A\n") == "log.csv:1:13: axis x has two commands: x_cmd_V and x_cmd_A");
+}
+
+TEST_CASE("read_log: an axis is named so that a message and a key can name it") {
+    CHECK(refusal("t_s,my axis_ref_m\n") ==
+          "log.csv:1:5: \"my axis_ref_m\": an axis is named by letters, digits, _ and -");
+    CHECK(refusal("t_s,_ref_m\n").ends_with("are missing"));
+    CHECK(read("t_s,z_2-b_ref_m,z_2-b_pos_m,z_2-b_cmd_N\n0,0,0,0\n1,0,1,0\n").axes[0].name == "z_2-b");
+}
+
+TEST_CASE("read_log: rotary axes are refused in plain words") {
+    const std::string said =
+        " belongs to a rotary axis; this version reads linear axes only (x_ref_m, x_pos_m, x_cmd_V)";
+    CHECK(refusal("t_s,c_ref_rad,c_pos_rad,c_cmd_Nm\n") == "log.csv:1:5: \"c_ref_rad\"" + said);
+    CHECK(refusal("t_s,c_pos_rad\n") == "log.csv:1:5: \"c_pos_rad\"" + said);
+    CHECK(refusal("t_s,c_cmd_Nm\n") == "log.csv:1:5: \"c_cmd_Nm\"" + said);
+}
+
+TEST_CASE("read_log: a log without motion is refused") {
+    CHECK(refusal(header + "0,0.5,0.25,1\n0.1,0.5,0.25,2\n") ==
+          "log.csv: axis x does not move: x_ref_m and x_pos_m never change");
+    CHECK(refusal(header + "0,0.5,0.25,1\n0.1,0.5,0.26,2\n") == "accepted");
+    CHECK(refusal(header + "0,0.5,0.25,1\n0.1,0.6,0.25,2\n") == "accepted");
+}
+
+TEST_CASE("read_log: empty and nearly empty files are refused") {
+    CHECK(refusal("") == "log.csv: is empty");
+    CHECK(refusal("\xEF\xBB\xBF\r\n\n ") == "log.csv: is empty");
+    CHECK(refusal(header) == "log.csv: holds no sample");
+    CHECK(refusal(header + "0,0,0,0\n") == "log.csv: holds one sample only: its period cannot be known");
+}
+
+TEST_CASE("read_log: a file that cannot be read is refused by its name") {
+    const auto said = [](const std::filesystem::path& path) {
+        try {
+            read_log(path);
+        } catch (const bad_input& fault) {
+            return std::string(fault.what());
+        }
+        return std::string("accepted");
+    };
+    CHECK(said("/nowhere/log.csv") == "/nowhere/log.csv: no such file");
+    CHECK(said("/tmp") == "/tmp: is a directory");
+    std::istringstream broken(good);
+    broken.setstate(std::ios::badbit);
+    CHECK_THROWS_WITH_AS(read_log(broken, "pipe"), "pipe: cannot be read", bad_input);
+}
+
+TEST_CASE("read_log: a message stays one line whatever the names hold") {
+    std::istringstream in("t_s,x\n");
+    CHECK_THROWS_WITH_AS(read_log(in, "a\nb\x1b.csv"),
+                         "a?b?.csv:1:6: no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing",
+                         bad_input);
+}
+
+TEST_CASE("read_log: the step of a column is the decimal unit that it is written in") {
+    const auto wave = [](std::size_t k) { return 0.03 * std::sin(0.01 * static_cast<double>(k)); };
+    CHECK(position_step(1000, [&](auto k) { return fmt::format("{:.9f}", wave(k)); }) == 1e-9);
+    CHECK(position_step(1000, [&](auto k) { return fmt::format("{:.3f}", wave(k)); }) == 1e-3);
+    CHECK(position_step(2, [](auto k) { return k ? "0.00000745" : "0.00000000"; }) == 1e-8);
+    CHECK(position_step(2, [](auto k) { return k ? "7.45e-6" : "0"; }) == 1e-8);
+    CHECK(position_step(2, [](auto k) { return k ? "25E+2" : "1E+1"; }) == 10);
+}
+
+TEST_CASE("read_log: the step of a column that drops trailing zeros is its finest digit") {
+    CHECK(position_step(1000, [](auto k) { return fmt::format("{}", static_cast<double>(k) / 400); }) == 1e-4);
+    CHECK(position_step(1000, [](auto k) {
+              return k % 7 == 0 ? "10" : fmt::format("{}", static_cast<double>(k) / 1e3);
+          }) == 1e-3);
+}
+
+TEST_CASE("read_log: the step of a column of so many significant digits is that of its large values") {
+    const auto wave = [](std::size_t k) { return 0.03 * std::sin(0.01 * static_cast<double>(k)); };
+    CHECK(position_step(1000, [&](auto k) { return fmt::format("{:.6g}", wave(k)); }) == 1e-7);
+    CHECK(position_step(1000, [&](auto k) { return fmt::format("{:.8e}", wave(k)); }) == 1e-10);
+    CHECK(position_step(1000, [&](auto k) { return fmt::format("{}", wave(k)); }) < 1e-16);
+}
+
+TEST_CASE("read_log: a set value that hardly ever changes is not taken for a rounded one") {
+    CHECK(position_step(1000, [](auto k) { return k < 500 ? "0" : "0.5"; }) == 0);
+    CHECK(position_step(1000, [](auto k) { return std::to_string(k); }) == 0);
+}
+
+TEST_CASE("read_log: a long log is read fast, and eight times the log in eight times the time") {
+    const auto text = [](int rows) {
+        std::string out = "t_s,x_ref_m,x_pos_m,x_cmd_V\n";
+        for (int k = 0; k < rows; ++k)
+            out +=
+                fmt::format("{:.5f},{:.12f},{:.8f},{:.6f}\n", 2.5e-4 * k, 1e-4 * k, 1.1e-4 * k, 0.1 * (k % 99));
+        return out;
+    };
+    const auto seconds = [](const std::string& log) {
+        const auto start = std::chrono::steady_clock::now();
+        read(log);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const std::string once = text(56000), eightfold = text(8 * 56000);
+    const double best = std::min({seconds(once), seconds(once), seconds(once)});
+    MESSAGE("56000 rows in " << 1e3 * best << " ms");
+    CHECK(seconds(eightfold) < 8 * 4 * best + 0.05);
+}
+
+TEST_CASE("read_log: wide files take time by their size, not by its square") {
+    std::string wide = "t_s,x_ref_m,x_pos_m,x_cmd_V", row = ",0,1,0";
+    for (int k = 0; k < 100000; ++k) {
+        wide += fmt::format(",a{}_force_N", k);
+        row += ",1";
+    }
+    const auto log = read(wide + "\n0.0" + row + "\n0.1,0,2,0" + row.substr(6) + "\n");
+    CHECK(log.notes.size() == 100000);
+}

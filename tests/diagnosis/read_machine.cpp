@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/read_machine.hpp"
+#include "quadrant/diagnosis/match.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+/// FORMAT.md's example.
+const char* const example = R"({
+  "schema": "quadrant.machine/1",
+  "sample_period_s": 0.0005,
+  "excluded_effects": ["backlash"],
+  "axes": {
+    "x": {
+      "plant": {"mass_kg": 340, "force_constant_N_per_V": 1450, "viscous_N_s_per_m": 850, "delay_s": 0.0004,
+                "coulomb_N": 122, "static_N": 177, "stribeck_velocity_m_per_s": 0.0022},
+      "tolerance": {"mass": 0.02, "force_constant": 0.01, "viscous": 0.10, "coulomb": 0.05, "static": 0.05},
+      "encoder": {"resolution_m": 2.5e-7},
+      "actuator": {"limit_V": 10, "dac_bits": 16, "dac_range_V": 20},
+      "controller": {"kind": "cascade_p_pi", "position_gain_per_s": 150, "velocity_gain_V_s_per_m": 60,
+                     "velocity_integral_V_per_m": 450, "velocity_filter_Hz": 150, "velocity_feedforward": 1,
+                     "acceleration_feedforward_V_s2_per_m": 0.2345, "viscous_feedforward_V_s_per_m": 0.586,
+                     "coulomb_feedforward_V": 0, "notch": {"frequency_Hz": 330, "damping": 0.06}}
+    }
+  }
+})";
+
+/// The example with the value at a JSON pointer replaced (or added).
+std::string with(const std::string& pointer, const std::string& value) {
+    auto json = nlohmann::json::parse(example);
+    json[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    return json.dump();
+}
+std::string without(const std::string& parent, const std::string& key) {
+    auto json = nlohmann::json::parse(example);
+    json[nlohmann::json::json_pointer(parent)].erase(key);
+    return json.dump();
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        read_machine(text, "machine.json");
+    } catch (const bad_input& fault) {
+        return fault.what();
+    }
+    return "accepted";
+}
+std::string refused_value(const std::string& pointer, const std::string& value) {
+    return refusal(with(pointer, value));
+}
+
+const std::string plant = "/axes/x/plant", controller = "/axes/x/controller", actuator = "/axes/x/actuator";
+
+} // namespace
+
+TEST_CASE("read_machine: the format's example comes out as it stands") {
+    const auto machine = read_machine(std::string_view(example), "machine.json");
+    CHECK(machine.file == "machine.json");
+    CHECK(machine.sample_period_s == 0.0005);
+    CHECK(machine.excluded_effects == std::vector<std::string>{"backlash"});
+    REQUIRE(machine.axes.size() == 1);
+    const auto& x = machine.axes[0];
+    CHECK(x.name == "x");
+    CHECK(x.command_unit == "V");
+    CHECK(x.plant.mass_kg == 340);
+    CHECK(x.plant.force_constant_N_per_V == 1450);
+    CHECK(x.plant.viscous_N_s_per_m == 850);
+    CHECK(x.plant.delay_s == 0.0004);
+    CHECK(x.plant.coulomb_N == 122);
+    CHECK(x.plant.static_N == 177);
+    CHECK(x.plant.stribeck_velocity_m_per_s == 0.0022);
+    CHECK_FALSE(x.plant.constant_force_N);
+    CHECK(x.tolerance.of("mass") == 0.02);
+    CHECK(x.tolerance.of("viscous") == 0.1);
+    CHECK(x.tolerance.of("delay") == 0.05);
+    CHECK(x.encoder_resolution_m == 2.5e-7);
+    CHECK(x.actuator.limit_V == 10);
+    CHECK(x.actuator.dac_bits == 16);
+    CHECK(x.actuator.dac_range_V == 20);
+    REQUIRE(x.controller);
+    CHECK(x.controller->position_gain_per_s == 150);
+    CHECK(x.controller->velocity_gain_V_s_per_m == 60);
+    CHECK(x.controller->velocity_integral_V_per_m == 450);
+    CHECK(x.controller->velocity_estimator == controller_description::estimator::filtered_derivative);
+    CHECK(x.controller->velocity_filter_Hz == 150);
+    CHECK(x.controller->velocity_feedforward == 1);
+    CHECK(x.controller->acceleration_feedforward_V_s2_per_m == 0.2345);
+    CHECK(x.controller->viscous_feedforward_V_s_per_m == 0.586);
+    CHECK(x.controller->coulomb_feedforward_V == 0);
+    REQUIRE(x.controller->notch);
+    CHECK(x.controller->notch->frequency_Hz == 330);
+    CHECK(x.controller->notch->damping == 0.06);
+}
+
+TEST_CASE("read_machine: every key of the plant arrives in its field") {
+    const auto machine = read_machine(
+        R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"y": {"plant": {"mass_kg": 1,
+            "force_constant_N_per_A": 2, "constant_force_N": -3, "viscous_asymmetry": 0.4, "coulomb_asymmetry": -0.5,
+            "cogging_period_m": 0.032, "cogging_N": [6, 7], "cogging_phase_rad": [0.8, -0.9]}}, "x": {"plant": {"mass_kg": 9}}}})",
+        "m");
+    REQUIRE(machine.axes.size() == 2);
+    CHECK(machine.axes[0].name == "x");
+    CHECK(machine.axes[0].command_unit == "N");
+    CHECK(machine.axes[0].plant.force_constant_N_per_V == 1);
+    CHECK(machine.axes[0].tolerance.of("force_constant") == 0);
+    const auto& y = machine.axes[1];
+    CHECK(y.command_unit == "A");
+    CHECK(y.plant.force_constant_N_per_V == 2);
+    CHECK(y.plant.constant_force_N == -3);
+    CHECK(y.plant.viscous_asymmetry == 0.4);
+    CHECK(y.plant.coulomb_asymmetry == -0.5);
+    CHECK(y.plant.cogging_period_m == 0.032);
+    CHECK(y.plant.cogging_N == std::vector{6.0, 7.0});
+    CHECK(y.plant.cogging_phase_rad == std::vector{0.8, -0.9});
+}
+
+TEST_CASE("read_machine: text that is not JSON is refused with its place") {
+    CHECK(refusal("{\n  \"schema\": \"quadrant.machine/1\"\n  \"axes\": {}\n}") ==
+          "machine.json:3:8: syntax error while parsing object - unexpected string literal; expected '}'");
+    CHECK(
+        refusal("\xEF\xBB\xBF{\n\"\xC3\xBC\": nan}") ==
+        "machine.json:2:7: syntax error while parsing value - invalid literal; last read: '\"\xC3\xBC\": na'");
+    CHECK(refusal("") ==
+          "machine.json:1:1: syntax error while parsing value - unexpected end of input; expected '[', "
+          "'{', or a literal");
+    CHECK(refusal("{} x") == "machine.json:1:4: syntax error while parsing value - invalid literal; last read: "
+                             "'{} x'; expected end of input");
+    CHECK(refusal("{\"a\": \"\xff\"}")
+              .starts_with("machine.json:1:8: syntax error while parsing value - invalid string"));
+    CHECK(refusal("{\"a\": \"\n\"}").find('\n') == std::string::npos);
+}
+
+TEST_CASE("read_machine: a key that is there twice is refused") {
+    CHECK(
+        refusal(
+            R"({"schema": "quadrant.machine/1", "axes": {"x": {"plant": {"mass_kg": 1, "delay_s": 0, "mass_kg": 2}}}})") ==
+        "machine.json: axes.x.plant.mass_kg: is there twice");
+    CHECK(refusal(R"({"schema": 1, "schema": 2})") == "machine.json: schema: is there twice");
+    CHECK(refusal(R"({"axes": {"x": {}, "y": {}, "x": {}}})") == "machine.json: axes.x: is there twice");
+}
+
+TEST_CASE("read_machine: a file of many objects takes time by its size, not by its square") {
+    std::string text = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {)";
+    for (int k = 0; k < 50000; ++k)
+        text += fmt::format("{}\"a{}\": {{\"plant\": {{\"mass_kg\": 1}}}}", k ? "," : "", k);
+    CHECK(read_machine(text + "}}", "machine.json").axes.size() == 50000);
+}
+
+TEST_CASE("read_machine: nesting and size have their limits") {
+    CHECK(refusal(std::string(1000000, '[')) == "machine.json: is nested too deeply");
+    CHECK(refusal("{\"" + std::string(100000, 'k') + "\": 1}").size() < 600);
+}
+
+TEST_CASE("read_machine: another schema is refused before anything else") {
+    CHECK(refusal(R"({"schema": "quadrant.diagnosis/1", "verdict": "no_gap"})") ==
+          "machine.json: schema: must be \"quadrant.machine/1\"");
+    CHECK(refusal(R"({"sample_period_s": 1})") == "machine.json: schema: is missing");
+    CHECK(refusal(R"({"schema": 1})") == "machine.json: schema: must be a string");
+    CHECK(refusal("[]") == "machine.json: must be an object");
+    CHECK(refusal("1e999") == "machine.json: must be an object");
+}
+
+TEST_CASE("read_machine: a missing key is named with its path") {
+    CHECK(refusal(without("", "sample_period_s")) == "machine.json: sample_period_s: is missing");
+    CHECK(refusal(without("", "axes")) == "machine.json: axes: is missing");
+    CHECK(refusal(without("/axes/x", "plant")) == "machine.json: axes.x.plant: is missing");
+    CHECK(refusal(without(plant, "mass_kg")) == "machine.json: axes.x.plant.mass_kg: is missing");
+    CHECK(refusal(without(controller, "kind")) == "machine.json: axes.x.controller.kind: is missing");
+    CHECK(refusal(without(controller, "position_gain_per_s")) ==
+          "machine.json: axes.x.controller.position_gain_per_s: is missing");
+    CHECK(refusal(without(controller, "velocity_gain_V_s_per_m")) ==
+          "machine.json: axes.x.controller.velocity_gain_V_s_per_m: is missing");
+    CHECK(refusal(without(controller, "velocity_filter_Hz")) ==
+          "machine.json: axes.x.controller.velocity_filter_Hz: is missing");
+    CHECK(refusal(without(controller + "/notch", "damping")) ==
+          "machine.json: axes.x.controller.notch.damping: is missing");
+    CHECK(refused_value("/axes", "{}") == "machine.json: axes: must name at least one axis");
+}
+
+TEST_CASE("read_machine: an unknown key is refused and the nearest known one suggested") {
+    CHECK(refused_value(plant + "/mass_g", "340000") ==
+          "machine.json: axes.x.plant.mass_g: unknown key; did you mean mass_kg?");
+    auto slip = nlohmann::json::parse(example);
+    slip["axes"]["x"]["plant"].erase("mass_kg");
+    slip["axes"]["x"]["plant"]["mass_g"] = 340000;
+    CHECK(refusal(slip.dump()) == "machine.json: axes.x.plant.mass_g: unknown key; did you mean mass_kg?");
+    CHECK(
+        refused_value(plant + "/force_constant_N_per_v", "1") ==
+        "machine.json: axes.x.plant.force_constant_N_per_v: unknown key; did you mean force_constant_N_per_V?");
+    CHECK(refused_value(plant + "/temperature_K", "293") ==
+          "machine.json: axes.x.plant.temperature_K: unknown key");
+    CHECK(refused_value("/sample_period_ms", "0.5") ==
+          "machine.json: sample_period_ms: unknown key; did you mean sample_period_s?");
+    CHECK(refused_value("/axes/x/controler", "{}") ==
+          "machine.json: axes.x.controler: unknown key; did you mean controller?");
+    CHECK(refused_value("/axes/x/encoder/resolution_um", "1") ==
+          "machine.json: axes.x.encoder.resolution_um: unknown key; did you mean resolution_m?");
+    CHECK(refused_value(actuator + "/dac_bit", "16") ==
+          "machine.json: axes.x.actuator.dac_bit: unknown key; did you mean dac_bits?");
+    CHECK(refused_value(controller + "/position_gain", "1") ==
+          "machine.json: axes.x.controller.position_gain: unknown key; did you mean position_gain_per_s?");
+    CHECK(refused_value(controller + "/notch/width", "1") ==
+          "machine.json: axes.x.controller.notch.width: unknown key");
+    CHECK(refused_value("/axes/x/tolerance/mass_kg", "0.1") ==
+          "machine.json: axes.x.tolerance.mass_kg: unknown key; did you mean mass?");
+}
+
+TEST_CASE("read_machine: a value of the wrong kind or size is refused with its rule") {
+    for (const char* value : {"0", "-1", "\"340\"", "null", "true", "[340]"})
+        CHECK(refused_value(plant + "/mass_kg", value) ==
+              "machine.json: axes.x.plant.mass_kg: must be a number > 0");
+    CHECK(refused_value(plant + "/mass_kg", "1e13") ==
+          "machine.json: axes.x.plant.mass_kg: must lie between 1e-12 and 1e12 in magnitude");
+    CHECK(refused_value(plant + "/mass_kg", "1e-300") ==
+          "machine.json: axes.x.plant.mass_kg: must lie between 1e-12 and 1e12 in magnitude");
+    CHECK(refusal(R"({"schema": "quadrant.machine/1", "axes": {"x": {"plant": {"mass_kg": 1e999}}}})") ==
+          "machine.json: axes.x.plant.mass_kg: must be a finite number");
+    CHECK(refused_value("/sample_period_s", "0") == "machine.json: sample_period_s: must be a number > 0");
+    CHECK(refused_value(plant + "/force_constant_N_per_V", "0") ==
+          "machine.json: axes.x.plant.force_constant_N_per_V: must be a number > 0");
+    CHECK(refused_value(plant + "/viscous_N_s_per_m", "-1") ==
+          "machine.json: axes.x.plant.viscous_N_s_per_m: must be a number >= 0");
+    CHECK(refused_value(plant + "/coulomb_N", "-1") ==
+          "machine.json: axes.x.plant.coulomb_N: must be a number >= 0");
+    CHECK(refused_value(plant + "/constant_force_N", "\"1\"") ==
+          "machine.json: axes.x.plant.constant_force_N: must be a number");
+    CHECK(refused_value(plant + "/coulomb_asymmetry", "1") ==
+          "machine.json: axes.x.plant.coulomb_asymmetry: must be a number between -1 and 1 (relative)");
+    CHECK(refused_value("/axes/x/encoder/resolution_m", "-1e-9") ==
+          "machine.json: axes.x.encoder.resolution_m: must be a number >= 0");
+    CHECK(refused_value(actuator + "/limit_V", "0") ==
+          "machine.json: axes.x.actuator.limit_V: must be a number > 0");
+    for (const char* value : {"0", "33", "15.5", "\"16\""})
+        CHECK(refused_value(actuator + "/dac_bits", value) ==
+              "machine.json: axes.x.actuator.dac_bits: must be a whole number from 1 to 32");
+    CHECK(refused_value("/axes", "[]") == "machine.json: axes: must be an object");
+    CHECK(refused_value("/axes/x", "1") == "machine.json: axes.x: must be an object");
+    CHECK(refused_value(plant, "[]") == "machine.json: axes.x.plant: must be an object");
+    CHECK(refused_value("/axes/x/tolerance", "0.05") == "machine.json: axes.x.tolerance: must be an object");
+    CHECK(refused_value("/axes/x/encoder", "null") == "machine.json: axes.x.encoder: must be an object");
+    CHECK(refused_value(controller, "\"cascade_p_pi\"") ==
+          "machine.json: axes.x.controller: must be an object");
+    CHECK(refused_value("/axes/a b", "{}") ==
+          "machine.json: axes: \"a b\": an axis is named by letters, digits, _ and -");
+}
+
+TEST_CASE("read_machine: a delay that is negative or absurd is refused") {
+    for (const char* value : {"-0.0001", "1.5"})
+        CHECK(refused_value(plant + "/delay_s", value) ==
+              "machine.json: axes.x.plant.delay_s: must be a number from 0 to 1 (seconds)");
+}
+
+TEST_CASE("read_machine: a tolerance is a relative bound of a known name") {
+    for (const char* value : {"-0.01", "2", "\"5 %\""})
+        CHECK(
+            refused_value("/axes/x/tolerance/mass", value) ==
+            "machine.json: axes.x.tolerance.mass: must be a number from 0 to below 1 (relative: 0.05 is 5 %)");
+    CHECK(refused_value("/axes/x/tolerance/colour", "0.1") ==
+          "machine.json: axes.x.tolerance.colour: unknown key");
+}
+
+TEST_CASE("read_machine: an absent tolerance is noted with what is assumed") {
+    const auto machine = read_machine(without("/axes/x", "tolerance"), "m");
+    REQUIRE(machine.notes.size() == 1);
+    CHECK(machine.notes[0] ==
+          "axis x: no tolerance is given for mass, force_constant, viscous, delay, coulomb, static, "
+          "stribeck_velocity: 0.05 is assumed.");
+}
+
+TEST_CASE("read_machine: keys that belong together come together") {
+    CHECK(refusal(without(plant, "stribeck_velocity_m_per_s")) ==
+          "machine.json: axes.x.plant.static_N: needs stribeck_velocity_m_per_s");
+    CHECK(refusal(without(plant, "static_N")) ==
+          "machine.json: axes.x.plant.stribeck_velocity_m_per_s: needs static_N");
+    CHECK(refused_value(plant + "/static_N", "100") ==
+          "machine.json: axes.x.plant.static_N: must not lie below coulomb_N");
+    CHECK(refusal(without(actuator, "dac_range_V")) ==
+          "machine.json: axes.x.actuator.dac_bits: needs dac_range_V");
+    CHECK(refused_value(plant + "/cogging_N", "[1]") ==
+          "machine.json: axes.x.plant.cogging_N: needs cogging_period_m");
+    CHECK(refused_value(plant + "/cogging_period_m", "0.03") ==
+          "machine.json: axes.x.plant.cogging_period_m: needs cogging_N");
+    CHECK(refused_value(plant + "/cogging_phase_rad", "[1]") ==
+          "machine.json: axes.x.plant.cogging_phase_rad: must have one entry for each of cogging_N");
+    CHECK(refused_value(plant + "/cogging_N", "3") ==
+          "machine.json: axes.x.plant.cogging_N: must be an array of numbers");
+    CHECK(refused_value(plant + "/cogging_N", "[3, \"a\"]") ==
+          "machine.json: axes.x.plant.cogging_N[1]: must be a number");
+    CHECK(refused_value(plant + "/cogging_N", "[1, 2, 3, 4, 5]") ==
+          "machine.json: axes.x.plant.cogging_N: this version simulates 4 harmonics at most");
+    CHECK(refused_value(plant + "/force_constant_N_per_A", "1") ==
+          "machine.json: axes.x.plant.force_constant_N_per_A: contradicts force_constant_N_per_V: give one of "
+          "them");
+}
+
+TEST_CASE("read_machine: a corner above half the sampling rate is refused") {
+    CHECK(
+        refused_value(controller + "/velocity_filter_Hz", "1000") ==
+        "machine.json: axes.x.controller.velocity_filter_Hz: must lie below half the sampling rate (1000 Hz)");
+    CHECK(
+        refused_value(controller + "/notch/frequency_Hz", "1200") ==
+        "machine.json: axes.x.controller.notch.frequency_Hz: must lie below half the sampling rate (1000 Hz)");
+}
+
+TEST_CASE("read_machine: the velocity estimator is one of two") {
+    CHECK(refused_value(controller + "/velocity_estimator", "\"kalman\"") ==
+          "machine.json: axes.x.controller.velocity_estimator: must be \"filtered_derivative\" or "
+          "\"two_sample_mean\"");
+    const auto machine = read_machine(with(controller + "/velocity_estimator", "\"two_sample_mean\""), "m");
+    CHECK(machine.axes[0].controller->velocity_estimator == controller_description::estimator::two_sample_mean);
+    CHECK(machine.notes.at(0) ==
+          "axis x: velocity_filter_Hz is not used by the velocity estimator two_sample_mean.");
+}
+
+TEST_CASE(
+    "read_machine: without a controller, or with one of unknown kind, the axis is read and a note tells") {
+    const auto absent = read_machine(without("/axes/x", "controller"), "m");
+    CHECK_FALSE(absent.axes[0].controller);
+    CHECK(absent.notes.at(0) == "axis x: no controller is described: diagnosed from the command onwards.");
+    const auto strange = read_machine(with(controller, R"({"kind": "vendor", "gain": []})"), "m");
+    CHECK_FALSE(strange.axes[0].controller);
+    CHECK(strange.notes.at(0) ==
+          "axis x: controller kind \"vendor\" is not known: diagnosed from the command onwards.");
+    CHECK(refused_value(controller + "/kind", "7") == "machine.json: axes.x.controller.kind: must be a string");
+    CHECK(refused_value(controller + "/velocity_feedforward", "\"1\"") ==
+          "machine.json: axes.x.controller.velocity_feedforward: must be a number");
+}
+
+TEST_CASE("read_machine: an effect that this version cannot simulate is never passed over") {
+    CHECK(refused_value(plant + "/spring_N_per_m", "10") ==
+          "machine.json: axes.x.plant.spring_N_per_m: this version cannot simulate position_spring");
+    for (const auto& key : detail::unmodelled_keys) {
+        const std::string object =
+            key.object == "axis" ? "/axes/x/" : "/axes/x/" + std::string(key.object) + '/';
+        CHECK(refused_value(object + std::string(key.name), "1")
+                  .ends_with(fmt::format("{}: this version cannot simulate {}", key.name, key.effect)));
+    }
+}
+
+TEST_CASE("read_machine: excluded effects are the format's names") {
+    CHECK(refused_value("/excluded_effects", R"(["cogging", "backlsh"])") ==
+          "machine.json: excluded_effects[1]: \"backlsh\" is not an effect; did you mean backlash?");
+    CHECK(refused_value("/excluded_effects", R"(["gremlins"])") ==
+          "machine.json: excluded_effects[0]: \"gremlins\" is not an effect");
+    CHECK(refused_value("/excluded_effects", "\"cogging\"") ==
+          "machine.json: excluded_effects: must be an array of effect names");
+    CHECK(refused_value("/excluded_effects", "[1]") == "machine.json: excluded_effects[0]: must be a string");
+}
+
+TEST_CASE("read_machine: a missing file is refused by its name") {
+    CHECK_THROWS_WITH_AS(read_machine(std::filesystem::path("/nowhere/machine.json")),
+                         "/nowhere/machine.json: no such file", bad_input);
+}
+
+TEST_CASE("read_machine: the schema in docs names the keys that the reader knows, and no others") {
+    const auto schema = nlohmann::json::parse(
+        detail::read_whole(std::filesystem::path(QUADRANT_SOURCE_DIR "/docs/schema/machine.schema.json")));
+    const auto in_schema = [&](const std::string& name) {
+        std::set<std::string> out;
+        const auto& object = name.empty() ? schema : schema["$defs"][name];
+        for (const auto& [key, value] : object["properties"].items()) out.insert(key);
+        return out;
+    };
+    const auto in_reader = [](const std::string& object, const auto& numbers, detail::key_names others) {
+        std::set<std::string> out(others.begin(), others.end());
+        for (const auto& key : numbers) out.insert(std::string(key.name));
+        for (const auto& key : detail::unmodelled_keys)
+            if (key.object == object) out.insert(std::string(key.name));
+        return out;
+    };
+    const std::span<const detail::tolerance_key> none;
+    CHECK(in_schema("") == in_reader("", none, detail::machine_file_keys));
+    CHECK(in_schema("axis") == in_reader("axis", none, detail::axis_keys));
+    CHECK(in_schema("plant") == in_reader("plant", detail::plant_keys, detail::plant_other_keys));
+    CHECK(in_schema("tolerance") == in_reader("tolerance", detail::tolerance_keys, {}));
+    CHECK(in_schema("encoder") == in_reader("encoder", detail::encoder_keys, {}));
+    CHECK(in_schema("actuator") == in_reader("actuator", detail::actuator_keys, detail::actuator_other_keys));
+    CHECK(in_schema("cascade_p_pi") ==
+          in_reader("controller", detail::controller_keys_of_file, detail::controller_other_keys));
+    CHECK(in_schema("notch") == in_reader("notch", detail::notch_keys, {}));
+    std::vector<std::string> effects;
+    for (const auto& effect : effect_names) effects.emplace_back(effect.name);
+    CHECK(schema["$defs"]["effect"]["enum"] == effects);
+}
+
+TEST_CASE("check_match: a log of another machine is refused") {
+    const auto machine = read_machine(std::string_view(example), "machine.json");
+    const auto log = [](double period, const std::vector<std::string>& axes, const std::string& unit) {
+        machine_log out;
+        out.file = "log.csv";
+        out.sample_period_s = period;
+        for (const auto& name : axes) {
+            auto& axis = out.axes.emplace_back();
+            axis.name = name;
+            axis.command_unit = unit;
+        }
+        return out;
+    };
+    const auto said = [&](const machine_description& m, const machine_log& l) {
+        try {
+            check_match(m, l);
+        } catch (const bad_input& fault) {
+            return std::string(fault.what());
+        }
+        return std::string("accepted");
+    };
+    CHECK(said(machine, log(0.0005, {"x"}, "V")) == "accepted");
+    CHECK(said(machine, log(0.000504, {"x"}, "V")) == "accepted");
+    CHECK(said(machine, log(0.00025, {"x"}, "V")) ==
+          "log.csv: the sample period is 0.00025 s, sample_period_s of machine.json is 0.0005");
+    CHECK(said(machine, log(0.0005, {"x", "y"}, "V")) == "log.csv: axis y is not described in machine.json");
+    CHECK(said(machine, log(0.0005, {}, "V")) == "machine.json: axes.x: is not recorded in log.csv");
+    CHECK(said(machine, log(0.0005, {"x"}, "A")) ==
+          "machine.json: axes.x.plant.force_constant_N_per_V: the command column of log.csv is x_cmd_A");
+    const auto newtons = read_machine(without(plant, "force_constant_N_per_V"), "machine.json");
+    CHECK(said(newtons, log(0.0005, {"x"}, "N")) == "accepted");
+    CHECK(said(newtons, log(0.0005, {"x"}, "V")) == "machine.json: axes.x.plant.force_constant_N_per_V: is "
+                                                    "missing; the command column of log.csv is x_cmd_V");
+}

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "../../examples/quadrant_gap/report.hpp"
+
+#include <sstream>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "../../examples/quadrant_gap/summary.hpp"
+#include "sample_result.hpp"
+
+using namespace quadrant_gap;
+
+namespace {
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+std::size_t count(const std::string& text, std::string_view part) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+    return n;
+}
+
+nlohmann::json charts_of(const std::string& html) {
+    const std::string_view open = "<script type=\"application/json\" id=\"charts\">";
+    const std::size_t from = html.find(open) + open.size();
+    return nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
+}
+} // namespace
+
+TEST_CASE("words: a number has the digits that its interval leaves, and the unit that is read") {
+    CHECK(interval({20.36, 19.94, 20.77}, "N") == "20.4 N (19.9 to 20.8)");
+    CHECK(interval({2.5e-6, 2.41e-6, 2.59e-6}, "m") == "2.50 µm (2.41 to 2.59)");
+    CHECK(interval({0.0004, 0.0004, 0.0004}, "s") == "0.40 ms");
+    CHECK(interval({-0.01, -4, 4}, "") == "0 (-4 to 4)");
+    CHECK(quantity(0, "m") == "0 m");
+    CHECK(quantity(0.0032, "m/s") == "3.2 mm/s");
+    CHECK(quantity(12340, "N") == "12.3 kN");
+    CHECK(change(81e-6, 6.3e-6, "m") == "81.0 → 6.3 µm");
+    CHECK(percent(estimate{0.81, 0.79, 0.83}) == "81 % (79 to 83)");
+    CHECK(probability(0.9999) == "> 99 %");
+    CHECK(lines_of(parameter_estimate{"stribeck_velocity_m_per_s", {{0.0022, 0.0022, 0.0022}}})[0] ==
+          "stribeck velocity: 2.2 mm/s");
+    CHECK(lines_of(parameter_estimate{"cogging_N", {{3, 3, 3}, {1, 1, 1}}}) ==
+          std::vector<std::string>{"cogging 1: 3.0 N", "cogging 2: 1.0 N"});
+    CHECK(lines_of(parameter_estimate{"viscous_asymmetry", {{0.1, 0.08, 0.12}}})[0] ==
+          "viscous asymmetry: 10 % (8 to 12)");
+}
+
+TEST_CASE("verdict sentence: names the effects, the axis and the gap before, after and at the floor") {
+    diagnosis_result d = sample::explained();
+    CHECK(verdict_sentence(d) ==
+          "Coulomb friction and constant force are missing from the simulation of axis x: with them, the "
+          "force gap shrinks from 20.7 N to 2.4 N (floor 0.90 N).");
+    SUBCASE("one missing, one not as described") {
+        d.causes.resize(2);
+        d.causes[1].effect = "mass";
+        d.causes[1].described = true;
+        CHECK(has(verdict_sentence(d),
+                  "Coulomb friction is missing from the simulation of axis x, and the moving "
+                  "mass is not as the machine file says: with them,"));
+    }
+    SUBCASE("one cause that the machine file describes") {
+        d.causes.resize(1);
+        d.causes[0].effect = "mass";
+        d.causes[0].described = true;
+        CHECK(has(verdict_sentence(d), "The moving mass of axis x is not as the machine file says: with it,"));
+    }
+    SUBCASE("a record that cannot tell two names apart claims neither") {
+        d.causes = {d.causes[1]};
+        d.causes[0].probability = 0.45;
+        CHECK(has(verdict_sentence(d), "Constant force or friction that differs by direction is"));
+    }
+    SUBCASE("a suspect is not a claim") {
+        CHECK(has(verdict_sentence(sample::unexplained()),
+                  "the nearest suspect is cutting force (probability 22 %)"));
+    }
+    SUBCASE("no gap") {
+        CHECK(has(verdict_sentence(sample::no_gap()), "Simulation and machine agree on axis x"));
+    }
+    SUBCASE("an effect that this program does not know keeps its name") {
+        d.causes.resize(1);
+        d.causes[0].effect = "ball_screw_wear";
+        CHECK(has(verdict_sentence(d), "Ball screw wear is missing"));
+    }
+}
+
+TEST_CASE("report: says the verdict, the causes with their intervals, the alternatives and the next motion") {
+    const std::string html = html_report(sample::explained());
+    for (const char* part :
+         {"Coulomb friction and constant force", ">explained</span>", "20.4 N (19.9 to 20.8)",
+          "cannot be told apart from friction that differs by direction", "coulomb asymmetry", "20.7 → 3.9 N",
+          "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times", "odds of 67 to 1",
+          "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
+        CHECK_MESSAGE((has(html, part) || has(html, escape(part))), part);
+    CHECK(count(html, "data-effect=") == 3);
+    CHECK(charts_of(html).size() == 6);
+}
+
+TEST_CASE("report: every axis has its charts; what cannot be drawn says why") {
+    const std::string html = html_report(sample::unexplained());
+    CHECK(charts_of(html).size() == 10); // no position error for either axis
+    CHECK(count(html, "Not drawn: the machine file has no controller") == 2);
+    CHECK(count(html, "Servo loop of axis x") == 2); // label and title
+    CHECK(count(html, "Servo loop of axis y") == 2);
+}
+
+TEST_CASE("report: an empty result and an axis without signals are reports too") {
+    diagnosis_result d;
+    CHECK(charts_of(html_report(d)).empty());
+    d.axes.resize(1);
+    CHECK(charts_of(html_report(d)).empty());
+    CHECK(count(html_report(d), "Not drawn") == 6);
+}
+
+TEST_CASE("report: what is not finite is a gap in the line") {
+    diagnosis_result d = sample::no_gap();
+    d.axes[0].signals.residual_before.resize(2);
+    d.axes[0].signals.t = {0, 1};
+    d.axes[0].signals.residual_before[1] = NAN;
+    CHECK(charts_of(html_report(d))[0]["columns"][1][1].is_null());
+}
+
+TEST_CASE("report: a peak of one sample survives the drawing of few") {
+    diagnosis_result d = sample::no_gap();
+    d.axes[0].signals.residual_before[12345] = 777;
+    const auto forces = charts_of(html_report(d))[0]["columns"][1].get<std::vector<double>>();
+    CHECK(forces.size() <= 4000);
+    CHECK(*std::max_element(forces.begin(), forces.end()) == 777);
+}
+
+TEST_CASE("report: names from files cannot become markup") {
+    const std::string html = html_report(sample::hostile());
+    CHECK(count(html, "<script") == 3);
+    CHECK(count(html, "</script") == 3);
+    CHECK_FALSE(has(html, "<img"));
+    CHECK(has(html, "&lt;/script&gt;&lt;script&gt;alert(&#39;1&#39;)"));
+}
+
+TEST_CASE("report: loads nothing") {
+    const std::string html = html_report(sample::explained());
+    for (const char* part : {" src=", " href=", "url(h", "url(/", "@import", "sourceMappingURL"})
+        CHECK_FALSE_MESSAGE(has(html, part), part);
+    CHECK(has(html, "default-src 'none'"));
+}
+
+TEST_CASE("report: below 1 MB for one axis, below 3 MB for eight; the same bytes twice") {
+    diagnosis_result d = sample::explained();
+    CHECK(html_report(d).size() < 1'000'000);
+    CHECK(html_report(d) == html_report(d));
+    d.axes.resize(8, d.axes[0]);
+    CHECK(html_report(d).size() < 3'000'000);
+}
+
+TEST_CASE("summary: lines of at most 100 columns, no control characters, whatever the names") {
+    for (const diagnosis_result& d : {sample::explained(), sample::no_gap(), sample::unexplained(),
+                                      sample::hostile(), diagnosis_result{}}) {
+        std::istringstream text(summary(d));
+        for (std::string line; std::getline(text, line);) {
+            CHECK_MESSAGE(columns(line) <= 100, line);
+            CHECK_FALSE(has(line, "\x1b"));
+        }
+    }
+}
+
+TEST_CASE("summary: says what the report says") {
+    const std::string text = summary(sample::explained());
+    for (const char* part :
+         {"Explained: emps_run1.csv", "Coulomb friction, axis x: probability > 99 %", "coulomb: 20.4 N",
+          "95 % (93 to 97)", "a suspect, not a claim", "Next experiment", "Note: "})
+        CHECK_MESSAGE(has(text, part), part);
+}
