@@ -28,7 +28,8 @@ struct diagnose_options {
 /// One line on the terminal that is overwritten; every line with --verbose, none with --quiet or into a file.
 class progress_line {
 public:
-    explicit progress_line(const diagnose_options& o) : verbose_(o.verbose), shown_(!o.quiet && isatty(STDERR_FILENO)) {}
+    explicit progress_line(const diagnose_options& o)
+        : verbose_(o.verbose), shown_(!o.quiet && isatty(STDERR_FILENO)) {}
     ~progress_line() { clear(); }
     progress_line(const progress_line&) = delete;
     progress_line& operator=(const progress_line&) = delete;
@@ -56,9 +57,12 @@ int diagnose(const diagnose_options& o) {
         qd::check_match(machine, *holdout);
     }
     progress_line tell(o);
-    const auto result = qd::diagnose(machine, log, holdout ? &*holdout : nullptr, [&](const std::string& s) { tell(s); });
+    const auto result =
+        qd::diagnose(machine, log, holdout ? &*holdout : nullptr, [&](const std::string& s) { tell(s); });
     tell.clear();
-    if (!o.json.empty()) qd::write_aside(o.json, qd::to_json(result).dump(2) + "\n");
+    if (!o.json.empty())
+        qd::write_aside(
+            o.json, qd::to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.report.empty()) qd::write_aside(o.report, quadrant_gap::html_report(result));
     if (!o.quiet) std::fputs(quadrant_gap::summary(result).c_str(), stdout);
     return 0;
@@ -71,10 +75,13 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", QUADRANT_VERSION);
     app.require_subcommand(1);
     diagnose_options o;
-    auto* command = app.add_subcommand("diagnose", "name the effect that the simulation lacks, and how far the gap shrinks with it");
-    command->add_option("--machine", o.machine, "machine file (JSON): what the simulation believes")->required();
+    auto* command = app.add_subcommand(
+        "diagnose", "name the effect that the simulation lacks, and how far the gap shrinks with it");
+    command->add_option("--machine", o.machine, "machine file (JSON): what the simulation believes")
+        ->required();
     command->add_option("--log", o.log, "servo log (CSV): what the machine did")->required();
-    command->add_option("--holdout", o.holdout, "log of another motion of the same machine, to judge the forecast on");
+    command->add_option("--holdout", o.holdout,
+                        "log of another motion of the same machine, to judge the forecast on");
     command->add_option("--json", o.json, "write the diagnosis (JSON)");
     command->add_option("--report", o.report, "write the report (one HTML file, opens without a network)");
     auto* quiet = command->add_flag("--quiet", o.quiet, "no text, only the files");

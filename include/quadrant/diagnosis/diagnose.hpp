@@ -130,7 +130,7 @@ inline diagnosis_result diagnose(
     if (holdout) out.notes.insert(out.notes.end(), holdout->notes.begin(), holdout->notes.end());
     for (const axis_description& axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
-        if (!logged) continue;
+        if (!logged || logged->still) continue;
         const axis_log* other = holdout ? detail::named(holdout->axes, axis.name) : nullptr;
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
         detail::diagnose_axis(

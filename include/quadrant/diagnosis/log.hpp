@@ -8,6 +8,7 @@ namespace quadrant::diagnosis {
 /// One axis of a servo log: one entry a sample, SI.
 struct axis_log {
     std::string name;
+    bool still = false;             ///< neither reference nor position ever changes: a parked axis
     std::string command_unit = "V"; ///< "V", "A" or "N"
     std::vector<double> reference;  ///< position reference [m]
     std::vector<double> position;   ///< position as the controller read it [m]

@@ -106,10 +106,15 @@ private:
         for (auto& [name, at] : header_.axes) {
             auto &reference = header_.columns[*at.reference], &position = header_.columns[*at.position],
                  &command = header_.columns[*at.command];
-            if (is_constant(reference.values) && is_constant(position.values))
+            const bool still = is_constant(reference.values) && is_constant(position.values);
+            if (still && header_.axes.size() == 1)
                 throw bad_input(file_, fmt::format("axis {} does not move: {} and {} never change", name,
                                                    reference.name, position.name));
+            if (still)
+                out.notes.push_back(
+                    fmt::format("{}: axis {} never moves: nothing can be said of it.", out.file, name));
             out.axes.push_back({.name = name,
+                                .still = still,
                                 .command_unit = at.command_unit,
                                 .reference = std::move(reference.values),
                                 .position = std::move(position.values),
@@ -118,6 +123,8 @@ private:
                                 .position_step = position.step.step(),
                                 .command_step = command.step.step()});
         }
+        if (std::all_of(out.axes.begin(), out.axes.end(), [](const axis_log& a) { return a.still; }))
+            throw bad_input(file_, "no axis moves");
         return out;
     }
 

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "stribeck.hpp"
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+
+namespace quadrant {
+
+/// What a law with a memory answers to "and if the axis moved at v for h?"
+template <signal_tag In, signal_tag Out, class State, class Real> struct friction_outcome {
+    quantity_of<Out, Real> force{};   ///< at the end of the step, viscous part included
+    gain_of<Out, In, Real> slope{};   ///< of that force by v
+    State next{};                     ///< the memory then
+};
+
+/// A friction law that remembers where the axis came from: bristles, or elements that stick and slip. after(v, h) asks
+/// and changes nothing, become(next) lets it happen. The force at v = 0 is that of the memory; it does not fall with v
+/// faster than the inertia of the axis resists (mass / h).
+template <class F, class Real>
+concept friction_with_memory = requires(F& changed, const F& f, quantity_of<signal::velocity, Real> v,
+                                        quantity<si::time, Real> h) {
+    { f.after(v, h).force } -> std::convertible_to<quantity_of<signal::force, Real>>;
+    { f.after(v, h).slope } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
+    changed.become(f.after(v, h).next);
+    changed.reset();
+};
+
+/// Where an axis on such a law is after a step.
+template <class State, class Real> struct presliding_outcome {
+    quantity_of<signal::velocity, Real> v{};
+    State friction{};
+};
+
+/// Velocity v' after one step h of M dv/dt = drive - friction, the friction that of the end of the step:
+///   M (v' - v)/h + after(v', h).force = drive
+/// Each law solves its own equation exactly for a velocity that stands for h; which velocity that is, is found here
+/// implicitly. So a stiff contact neither rings nor needs a small h, and no step adds energy.
+/// Newton's method from v, kept between rest and the far side of the solution; 2 to 4 passes, one more where an element
+/// breaks away. Its last pass also carries the derivatives of a dual. Where several v' solve it, one near v is taken.
+/// Derivation: docs/derivations/maxwell_slip.md.
+template <class Real, friction_with_memory<Real> Friction>
+auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
+                quantity_of<signal::force, Real> drive, quantity<si::time, Real> h) noexcept {
+    using velocity = quantity_of<signal::velocity, Real>;
+    using force = quantity_of<signal::force, Real>;
+    using outcome = presliding_outcome<typename Friction::state, Real>;
+    const gain_of<signal::force, signal::velocity, Real> inertia = mass / h;
+    const force push = force(inertia * v) + drive; // what would bring the axis to rest within h, and the drive
+    const auto size = [](velocity x) { return x < velocity() ? -x : x; };
+
+    auto at = friction.after(velocity(), h);
+    const force missing = push - at.force;
+    if (missing == force()) return outcome{velocity(), at.next};
+    const bool forward = missing > force();
+    const auto beyond = [forward](velocity a, velocity b) { return forward ? a > b : a < b; };
+
+    velocity near{}, far{}; // the solution lies between, once far is known
+    bool bounded = false;
+    velocity x = beyond(v, near) ? v : velocity(missing / (inertia + at.slope));
+    const Real close = Real(detail::newton_accuracy<Real>);
+    const velocity scale = size(push / inertia);
+    constexpr int most_passes = 80; // halvings for a law that gives no usable slope; never seen
+    for (int pass = 0; pass < most_passes; ++pass) {
+        at = friction.after(x, h);
+        const force excess = inertia * x + at.force - push;
+        const gain_of<signal::force, signal::velocity, Real> slope = inertia + at.slope;
+        const velocity step = excess / slope, next = x - step;
+        const bool newton = slope > decltype(slope)() && beyond(next, velocity());
+        if (newton && size(step) <= close * (size(x) + scale)) {
+            x = next;
+            break;
+        }
+        if (forward ? excess < force() : excess > force())
+            near = x;
+        else {
+            far = x;
+            bounded = true;
+        }
+        if (newton && beyond(next, near) && (!bounded || beyond(far, next)))
+            x = next;
+        else
+            x = bounded ? (near + far) * Real(0.5) : x * Real(2);
+    }
+    return outcome{x, friction.after(x, h).next};
+}
+
+} // namespace quadrant
