@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/literals.hpp>
+#include <quadrant/memory/repetitive.hpp>
 #include <quadrant/quadrant.hpp>
 
 #include <array>
@@ -106,6 +107,24 @@ inline const std::tuple blocks{
           []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 1, R>({p(1.7_ms)}, T); }},
     entry{"fractional_delay, cubic", 64,
           []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 3, R>({p(1.7_ms)}, T); }},
+    entry{"repetitive, leaking", 64,
+          []<class R>(values<R>& p) {
+              return repetitive<s::force, 12, 2, 3, 3, R>({.cycle = p(4.3_ms),
+                                                           .weights = {p(0.7), p(0.1)},
+                                                           .learning = {p(0.3), p(0.9), p(-0.2)},
+                                                           .ahead = 1,
+                                                           .smoothing = {0.25, 0.5, 0.25}},
+                                                          T);
+          }},
+    entry{"repetitive, integrating", 64,
+          []<class R>(values<R>& p) {
+              return repetitive<s::force, 12, 1, 3, 3, R>({.cycle = p(4.3_ms),
+                                                           .weights = {p.fixed(1.0)},
+                                                           .learning = {p(0.3), p(0.9), p(-0.2)},
+                                                           .ahead = 1,
+                                                           .smoothing = {0.25, 0.5, 0.25}},
+                                                          T);
+          }},
     entry{"absent", 64, []<class R>(values<R>&) { return absent<s::velocity, s::force, R>({}, T); }},
     entry{"through", 64, []<class R>(values<R>&) { return through<s::force, R>({}, T); }},
     entry{"series", 64,
@@ -128,6 +147,19 @@ inline const std::tuple blocks{
                    .force_constant = p(1450_N / 1_V),
                    .friction = {p(122_N), p(850_N / 1_mps)},
                    .delay = p(0.41_ms)},
+                  T);
+          }},
+    entry{"disturbance_observer", 0.125,
+          []<class R>(values<R>& p) {
+              using number = parameter_real<R>;
+              return disturbance_observer<s::voltage, s::position, 2, 0, 2, 0, R>(
+                  {p(60_Hz), axis_model<s::voltage, number>{p(4.526_mps2 / 1_V), p(28.57 / 1_s)}}, T);
+          }},
+    entry{"disturbance_observer, n = 3, a plant with a zero", 0.125,
+          []<class R>(values<R>& p) {
+              using number = parameter_real<R>;
+              return disturbance_observer<s::voltage, s::velocity, 3, 0, 3, 1, R>(
+                  {p(200_Hz), nominal_plant<3, 1, number>{{p(600), p(3)}, {p.fixed(0), p.fixed(13700), p(345), p(1)}}},
                   T);
           }},
 };

@@ -222,8 +222,8 @@ private:
     }
     std::string describe(const candidate& c) const {
         std::string out = axis_.name + ":";
-        for (const effect* e : c.effects) out += " " + std::string(e->name);
-        return out + " " + std::to_string(static_cast<long>(c.total - calibrated_.total));
+        for (const effect* e : c.effects) (out += ' ') += e->name;
+        return (out += ' ') += std::to_string(static_cast<long>(c.total - calibrated_.total));
     }
 
     const axis_record& record_;

@@ -1,0 +1,33 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# The first command of the README, for a bare Debian 12: installs what is missing, builds quadrant-gap, and asks it why
+# the machine in examples/data does not do what its simulation says.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+build=$root/build/run
+log=$build/build.log
+data=$root/examples/data
+mkdir -p "$build"
+
+sh "$root/examples/install.sh" g++ cmake ninja-build libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
+    libcli11-dev libjs-dygraphs
+
+build_it() {
+    cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DQUADRANT_BUILD_TESTS=OFF \
+        -DQUADRANT_BUILD_BENCHMARKS=OFF &&
+        cmake --build "$build" --target quadrant-gap --parallel "$(nproc 2>/dev/null || echo 2)"
+}
+program=$build/examples/quadrant-gap
+echo "building quadrant-gap (the first time a minute or two; what the compiler says: $log)"
+build_it >"$log" 2>&1 || {
+    tail -n 30 "$log" >&2
+    echo "The build failed; the whole of it: $log" >&2
+    exit 1
+}
+
+set -- diagnose --machine "$data/machine.json" --log "$data/log.csv" --holdout "$data/holdout.csv" \
+    --json "$build/diagnosis.json" --report "$build/report.html"
+echo "running quadrant-gap $*"
+"$program" "$@"
+echo
+echo "Report: $build/report.html"

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSL-1.0
+// A notch for forces on a wire that carries a position.
+// MUST SAY: notch<quadrant::signal::force
+#include "quadrant/filter/notch.hpp"
+#include "quadrant/literals.hpp"
+using namespace quadrant::literals;
+
+auto filtered(quadrant::notch<quadrant::signal::force>& resonance) {
+#ifdef MEND
+    return resonance(3_N);
+#else
+    return resonance(3_um);
+#endif
+}

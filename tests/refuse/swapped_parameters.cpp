@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSL-1.0
+// Gain and integral gain exchanged: they differ by a second, so the compiler can tell.
+// MUST SAY: could not convert | no viable conversion
+#include "quadrant/control/proportional_integral.hpp"
+#include "quadrant/literals.hpp"
+using namespace quadrant::literals;
+namespace signal = quadrant::signal;
+
+const auto gain = 60_V / 1_mps;
+const auto integral_gain = 450_V / 1_m;
+#ifdef MEND
+const quadrant::proportional_integral<signal::velocity, signal::voltage>::parameters p{
+    .gain = gain, .integral_gain = integral_gain, .limit = 10_V};
+#else
+const quadrant::proportional_integral<signal::velocity, signal::voltage>::parameters p{
+    .gain = integral_gain, .integral_gain = gain, .limit = 10_V};
+#endif

@@ -1,0 +1,178 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# usage: tests/run.sh          everything that a change must pass; at most 12 minutes on 2 cores
+#        tests/run.sh all      and clang-tidy, longer fuzzing, the practice set of ../shared/gap
+#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy practice
+# Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
+#              QUADRANT_BUILD   where to build (default: build in the repository)
+# The last line is "N passed, N failed, N skipped"; the exit code is 1 when something failed.
+set -u
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root" || exit 1
+build=${QUADRANT_BUILD:-$root/build}
+shared=${QUADRANT_SHARED:-$root/../shared}
+[ ! -d "$shared" ] || shared=$(cd "$shared" && pwd)
+export QUADRANT_SHARED="$shared"
+logs=$build/logs
+mkdir -p "$logs"
+jobs=$(nproc 2>/dev/null || echo 2)
+
+# Test folders that start threads, themselves or through the diagnosis: these run under the thread sanitizer.
+threaded() { grep -rlE '#include <(thread|future)>' "$@" 2>/dev/null; }
+thread_tests=$(threaded tests | cut -d/ -f2 | sort -u)
+[ -z "$(threaded include/quadrant/diagnosis)" ] || thread_tests=$(printf '%s\ndiagnosis\n' "$thread_tests" | sort -u)
+fuzz_seconds=20          # all fuzzers together
+
+case "${1-}" in
+'') set -- release sanitize thread fuzz callgrind ;;
+all)
+    fuzz_seconds=120
+    set -- release sanitize thread fuzz callgrind tidy practice
+    ;;
+esac
+
+passed=0 failed=0 skipped=0
+count() { # PASSED FAILED SKIPPED
+    passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+}
+broken() { # MESSAGE LOG
+    printf 'FAILED: %s\n' "$1"
+    grep -E 'FAILED: |[Ee]rror[: ]|: warning: ' "$2" | head -n 20
+    echo ...
+    tail -n 20 "$2"
+    printf '(all of it: %s)\n' "$2"
+    count 0 1 0
+}
+left_out() {
+    printf 'SKIPPED: %s\n' "$1"
+    count 0 0 1
+}
+
+# Configures and builds a preset in $build/PRESET: build_preset PRESET TARGET...
+build_preset() {
+    preset=$1
+    shift
+    {
+        cmake --preset "$preset" -B "$build/$preset" "-DQUADRANT_SHARED=$shared" &&
+            cmake --build "$build/$preset" --parallel "$jobs" --target "$@" -- -k 0
+    } >"$logs/$preset-build.txt" 2>&1 && return
+    broken "building $preset" "$logs/$preset-build.txt"
+    return 1
+}
+
+# Counts what ctest -V wrote: cases for a doctest executable, else one per test. Names what failed or was left out.
+tally() { # LOG
+    awk '
+        /^[0-9]+: \[doctest\] test cases:/ {
+            id = $1 + 0
+            n = split($0, part, "|")
+            for (i = 2; i <= n; ++i) { split(part[i], w, " "); cases[id, w[2]] += w[1] }
+            seen[id] = 1
+        }
+        /^[0-9]+: SKIPPED: / { sub(/^[0-9]+: /, ""); print > "/dev/stderr" }
+        /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / {
+            match($0, /#[0-9]+/)
+            id = substr($0, RSTART + 1, RLENGTH - 1) + 0
+            rest = substr($0, RSTART + RLENGTH + 2)
+            name = rest
+            sub(/ .*/, "", name)
+            good = rest ~ /   Passed  /
+            out = rest ~ /\*\*\*(Skipped|Not Run \(Disabled\))/
+            if (seen[id]) {
+                p += cases[id, "passed"]; f += cases[id, "failed"]; s += cases[id, "skipped"]
+                if (!good && !cases[id, "failed"]) f += 1
+            } else if (good) p += 1
+            else if (out) { s += 1; print "SKIPPED: " name > "/dev/stderr" }
+            else f += 1
+            if (!good && !out) print "FAILED: " name > "/dev/stderr"
+        }
+        END { print p + 0, f + 0, s + 0 }' "$1"
+}
+run_ctest() { # PRESET CTEST-ARGUMENTS...
+    preset=$1
+    shift
+    log=$logs/$preset-ctest.txt
+    ctest --test-dir "$build/$preset" --no-tests=error -V --parallel "$jobs" "$@" >"$log" 2>&1
+    code=$?
+    before=$failed
+    count $(tally "$log")
+    [ $code = 0 ] && return
+    [ $failed != $before ] || broken "ctest in $preset" "$log"
+    # What the failed ones said.
+    awk '/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / && !/   Passed  / && !/\*\*\*Skipped/ { match($0, /#[0-9]+/); bad[substr($0, RSTART + 1, RLENGTH - 1)] = 1 }
+         { line[NR] = $0 }
+         END { for (i = 1; i <= NR; ++i) { split(line[i], w, ":"); if (w[1] in bad) print line[i] } }' "$log" | tail -n 100
+    printf '(all of it: %s)\n' "$log"
+}
+
+release() { # GCC: every test, what must not compile with both compilers, the consumers, the page in a browser
+    build_preset release all && run_ctest release
+}
+sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables
+    build_preset sanitize unit_tests && run_ctest sanitize -R '^unit\.'
+}
+thread() { # Clang, thread sanitizer: what starts threads
+    [ -n "$thread_tests" ] || echo "no test starts a thread"
+    for name in $thread_tests; do
+        build_preset thread "test_$name" && run_ctest thread -R "^unit\.$name\$"
+    done
+}
+fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the reader
+    build_preset fuzz fuzz || return
+    set -- "$build"/fuzz/tests/fuzz_*
+    [ -x "$1" ] || { left_out "fuzz: no fuzzers"; return; }
+    for fuzzer; do
+        name=${fuzzer##*/}
+        found=$build/fuzz/found/$name # grows from run to run
+        mkdir -p "$found"
+        { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
+        { printf '\001' && cat examples/data/machine.json; } >"$found/machine"
+        if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+            -artifact_prefix="$found/" "$found" >"$logs/$name.txt" 2>&1; then
+            printf '%s: %s\n' "$name" "$(grep number_of_executed_units "$logs/$name.txt")"
+            count 1 0 0
+        else
+            broken "$name" "$logs/$name.txt"
+        fi
+    done
+}
+callgrind() { # the typed axis loop needs no more instructions than the hand-written one
+    QUADRANT_BUILD="$build" sh benchmarks/callgrind.sh >"$logs/callgrind.txt" 2>&1
+    case $? in
+    0) cat "$logs/callgrind.txt"; count 1 0 0 ;;
+    77) left_out "$(cat "$logs/callgrind.txt")" ;;
+    *) broken "callgrind" "$logs/callgrind.txt" ;;
+    esac
+}
+tidy() { # clang-tidy over every header
+    build_preset tidy quadrant_headers && count 1 0 0
+}
+practice() { # quadrant-gap on logs of a simulator that shares nothing with this project
+    [ -d "$shared/gap/practice" ] || { left_out "practice: no $shared/gap/practice"; return; }
+    build_preset release quadrant-gap || return
+    python3 "$shared/gap/check.py" "$shared/gap/practice" "$build/release/examples/quadrant-gap" diagnose \
+        >"$logs/practice.txt" 2>&1
+    total=$(sed -n 's|^TOTAL \([0-9]*\)/\([0-9]*\) .*|\1 \2|p' "$logs/practice.txt")
+    [ -n "$total" ] || { broken "practice" "$logs/practice.txt"; return; }
+    cat "$logs/practice.txt"
+    count "${total% *}" $((${total#* } - ${total% *})) 0
+}
+
+sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
+    libcli11-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
+    chromium-driver python3 python3-selenium python3-jsonschema || exit 1
+
+for phase; do
+    case $phase in
+    release | sanitize | thread | fuzz | callgrind | tidy | practice) ;;
+    *) echo "no phase $phase"; exit 2 ;;
+    esac
+    began=$(date +%s) p=$passed f=$failed s=$skipped
+    printf '\n== %s\n' "$phase"
+    $phase
+    printf -- '-- %s: %s passed, %s failed, %s skipped in %s s\n' "$phase" $((passed - p)) $((failed - f)) \
+        $((skipped - s)) $(($(date +%s) - began))
+done
+echo
+echo "$passed passed, $failed failed, $skipped skipped"
+[ $failed = 0 ]
