@@ -4,10 +4,28 @@
 
 #include <cmath>
 #include <concepts>
-#include <cstddef>
-#include <limits>
 
 namespace quadrant {
+
+namespace detail {
+/// How near to the solution Newton's method is before its last pass, which then is exact to rounding.
+template <class Real> inline constexpr double newton_accuracy = 1e-11;
+template <> inline constexpr double newton_accuracy<float> = 3e-7;
+
+/// d slip/d|v| of a Stribeck curve, never above zero; at rest, where an exponent below one is infinitely steep, as for one.
+template <signal_tag In, signal_tag Out, class Real>
+gain_of<Out, In, Real> slip_slope(const stribeck<In, Out, Real>& curve, quantity_of<In, Real> v) noexcept {
+    using std::abs, std::exp, std::log;
+    const auto& given = curve.given();
+    const Real delta(given.shape);
+    const quantity_of<In, Real> scale = in_real<Real>(given.stribeck_velocity);
+    const quantity_of<Out, Real> excess = curve.slip(v) - in_real<Real>(given.coulomb);
+    if (given.shape == 1) return -(excess / scale);
+    const Real ratio = abs((v / scale).value());
+    if (ratio == Real(0)) return given.shape > 1 ? gain_of<Out, In, Real>() : -(excess / scale);
+    return -(excess / scale) * (delta * exp((delta - Real(1)) * log(ratio)));
+}
+} // namespace detail
 
 /// What a law with a memory answers to "and if the axis moved at v for h?"
 template <signal_tag In, signal_tag Out, class State, class Real> struct friction_outcome {
@@ -79,6 +97,7 @@ auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantit
             far = x;
             bounded = true;
         }
+        if (bounded && size(far - near) <= close * (size(far) + scale)) break; // a jump of the law
         if (newton && beyond(next, near) && (!bounded || beyond(far, next)))
             x = next;
         else

@@ -22,8 +22,8 @@ namespace quadrant {
 ///   held command is averaged inside the sub-step where it changes).
 /// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the state,
 /// raises faulted(). Commands beyond the limit are clipped, limited() tells.
-/// Throws "linear_motor.<field> = ...: must ..." for period, mass, force_constant, delay, limit, dac_step, encoder_step,
-/// substeps; the friction box throws in its own name.
+/// Throws "linear_motor.<field> = ...: must ..." for every field and the period; the friction box throws in its own
+/// name.
 /// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. No other plant yet.
 template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double>
 requires friction_law<Friction, Real> &&(Capacity > 0) class linear_motor {
