@@ -226,5 +226,5 @@ TEST_CASE("fit: bounds hold, and a value beyond them is found once it is free") 
     const auto record = prepare(log, workshop::period, workshop::count);
     const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
     CHECK(models.calibrated().fit.plant.mass <= 180 * 1.012 * 1.02 * (1 + 1e-9));
-    CHECK(models.with({&mass}).fit.plant.mass == doctest::Approx(225).epsilon(0.02));
+    CHECK(models.with({&suspect::mass}).fit.plant.mass == doctest::Approx(225).epsilon(0.02));
 }

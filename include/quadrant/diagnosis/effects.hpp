@@ -13,14 +13,14 @@
 namespace quadrant::diagnosis {
 
 /// Every suspect behind the command wire. The controller is judged apart, by replay.
-inline constexpr std::array plant_effects{&coulomb_friction,
-                                          &viscous_friction,
-                                          &stribeck_friction,
-                                          &asymmetric_friction,
-                                          &mass,
-                                          &force_constant,
-                                          &time_delay,
-                                          &constant_force,
-                                          &cogging};
+inline constexpr std::array plant_effects{&suspect::coulomb_friction,
+                                          &suspect::viscous_friction,
+                                          &suspect::stribeck_friction,
+                                          &suspect::asymmetric_friction,
+                                          &suspect::mass,
+                                          &suspect::force_constant,
+                                          &suspect::time_delay,
+                                          &suspect::constant_force,
+                                          &suspect::cogging};
 
 } // namespace quadrant::diagnosis

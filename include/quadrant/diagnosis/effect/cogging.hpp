@@ -72,6 +72,9 @@ template <std::size_t I> parameter sine(double size) {
 
 } // namespace detail
 
+} // namespace quadrant::diagnosis
+
+namespace quadrant::diagnosis::suspect {
 /// Force periodic in position: sum of N_i sin(2 pi i x / period + phase_i), the magnets' pitch of a motor or one turn
 /// of a screw. Joins the force. Shows as a residual that repeats with position whatever the speed; as a motion it
 /// fades with the square of the speed, which tells it from an encoder's cyclic error. Periods up to half the travel:
@@ -112,4 +115,4 @@ inline constexpr effect cogging{
     },
     .join = [](plant_model& p) { p.cogging.harmonics = 3; }};
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::diagnosis::suspect {
 
 /// F = kf u with another kf than described. Joins the actuator gain. Scales whatever the command does: acceleration,
 /// and also what balances friction and offset.
@@ -20,4 +20,4 @@ inline constexpr effect force_constant{
         return {{"force_constant_N_per_V", {p.force_constant}}};
     }};
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::diagnosis::suspect {
 
 /// M dv/dt with another M than described. Joins the inertia. Shows as a residual proportional to the acceleration,
 /// and only there: friction and offset keep their size, which is what tells it from the force constant.
@@ -19,4 +19,4 @@ inline constexpr effect mass{
         return {{"mass_kg", {p.mass}}};
     }};
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::diagnosis::suspect {
 
 /// F = (Fs - Fc) exp(-|v|/vs) sign(v) on top of the Coulomb level [Jamaludin2008] eq. (3.5). Joins the force, in the
 /// friction box. Shows as a residual that grows as the axis gets slower.
@@ -51,4 +51,4 @@ inline constexpr effect stribeck_friction{
                 {"stribeck_velocity_m_per_s", {p.friction.stribeck_velocity}}};
     }};
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::diagnosis::suspect
