@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # usage: tests/run.sh          everything that a change must pass; at most 12 minutes on 2 cores
-#        tests/run.sh all      and clang-tidy, longer fuzzing, the practice set of ../shared/gap
-#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy practice
+#        tests/run.sh all      and clang-tidy and longer fuzzing
+#        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
 # The last line is "N passed, N failed, N skipped"; the exit code is 1 when something failed.
@@ -27,7 +27,7 @@ case "${1-}" in
 '') set -- release sanitize thread fuzz callgrind ;;
 all)
     fuzz_seconds=120
-    set -- release sanitize thread fuzz callgrind tidy practice
+    set -- release sanitize thread fuzz callgrind tidy
     ;;
 esac
 
@@ -147,16 +147,6 @@ callgrind() { # the typed axis loop needs no more instructions than the hand-wri
 tidy() { # clang-tidy over every header
     build_preset tidy quadrant_headers && count 1 0 0
 }
-practice() { # quadrant-gap on logs of a simulator that shares nothing with this project
-    [ -d "$shared/gap/practice" ] || { left_out "practice: no $shared/gap/practice"; return; }
-    build_preset release quadrant-gap || return
-    python3 "$shared/gap/check.py" "$shared/gap/practice" "$build/release/examples/quadrant-gap" diagnose \
-        >"$logs/practice.txt" 2>&1
-    total=$(sed -n 's|^TOTAL \([0-9]*\)/\([0-9]*\) .*|\1 \2|p' "$logs/practice.txt")
-    [ -n "$total" ] || { broken "practice" "$logs/practice.txt"; return; }
-    cat "$logs/practice.txt"
-    count "${total% *}" $((${total#* } - ${total% *})) 0
-}
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
@@ -164,7 +154,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
 
 for phase; do
     case $phase in
-    release | sanitize | thread | fuzz | callgrind | tidy | practice) ;;
+    release | sanitize | thread | fuzz | callgrind | tidy) ;;
     *) echo "no phase $phase"; exit 2 ;;
     esac
     began=$(date +%s) p=$passed f=$failed s=$skipped

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "workshop.hpp"
+#include "diagnosis/workshop.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
 
