@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "frf.hpp"
+#include "least_squares.hpp"
+#include "loop.hpp"
+
+namespace quadrant::analysis {
+
+/// Which lines of an FRF, and where to look.
+struct plant_fit_options {
+    frequency from, to;           ///< well below the first structural mode: eq. (2.2) has none
+    double least_coherence = 0.8; ///< lines below are left out
+    duration longest_delay = duration::from_value(5e-3); ///< of the search for a start
+};
+
+/// Fitted G(s) = B e^{-s Td}/(s (s + A)) with intervals of 95 %.
+template <signal_tag Command = signal::voltage> struct plant_fit {
+    template <class Quantity> struct estimate { Quantity value, low, high; };
+    estimate<frequency> pole;                              ///< A [1/s]
+    estimate<gain_of<signal::acceleration, Command>> gain; ///< B
+    estimate<duration> delay;                              ///< Td; of a sampled FRF with the hold's half period
+    std::size_t lines;                                     ///< used
+    double residual; ///< rms of |ln(model/measured)|, so about the relative error of a line
+    double
+        surprise; ///< sum of squares over what the lines' spread explains; far above 1: the model is too small
+    bool converged;
+
+    axis_model<Command> model() const { return {pole.value, gain.value, delay.value}; }
+};
+
+/// Fit of [Jamaludin2008] eq. (2.2) by nonlinear least squares: ln of model over measurement, real part (gain) and
+/// imaginary part (phase) of each line, weighed by its spread; so a line counts by how well it is known, not by its
+/// size. Start by a grid of A and Td, because the phase is known modulo a turn only; then Gauss-Newton with damping.
+/// Intervals: from the Jacobian; widened by `surprise` where that is above 1, since then the lines' own spread does
+/// not explain the misfit. They speak of noise, not of a mode that the model does not have.
+/// Throws with fewer than 8 lines, or when the response has the sign of a negative B. Where A lies far below `from` it
+/// is not determined: its interval then reaches below 0, and only that is said.
+template <signal_tag In = signal::voltage>
+plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& options) {
+    require_not_negative("fit_plant.from", options.from);
+    require(options.to > options.from, "fit_plant.to", options.to, "must be above fit_plant.from");
+    require_positive("fit_plant.longest_delay", options.longest_delay);
+    struct point {
+        frequency f;
+        complex s, value;
+        double weight; ///< 1/spread
+    };
+    std::vector<point> points;
+    double top = 0, slow = HUGE_VAL;
+    for (const auto& line : frf.lines) {
+        if (line.f < options.from || line.f > options.to || line.coherence < options.least_coherence ||
+            !(std::abs(line.value) > 0) || !std::isfinite(line.spread))
+            continue;
+        // A simulation without noise has no spread: then all lines alike.
+        points.push_back({line.f, laplace(line.f), line.value, 1 / std::max(line.spread, 1e-6)});
+        top = std::max(top, line.f.value()), slow = std::min(slow, line.f.value());
+    }
+    require(points.size() >= 8, "fit_plant.lines", double(points.size()),
+            "must be 8 or more between fit_plant.from and .to with enough coherence");
+
+    // ln(G / measured) = ln B - s Td - ln(s (s + A)) - ln measured
+    const auto off = [](const point& p, double a, double log_b, double delay) {
+        return std::log(std::exp(log_b - p.s * delay) /
+                        (p.s * (p.s + a) * p.value)); // imaginary part in (-pi, pi]
+    };
+    struct guess {
+        double cost = HUGE_VAL, a = 0, log_b = 0, delay = 0;
+    } best, reversed; // reversed: were B negative
+    const auto try_start = [&](double a, double delay) {
+        double log_b = 0, cost = 0, all = 0;
+        for (const point& p : points) {
+            log_b += p.weight * std::log(std::abs(p.s * (p.s + a) * p.value));
+            all += p.weight;
+        }
+        log_b /= all;
+        double other = 0;
+        for (const point& p : points) {
+            const complex e = off(p, a, log_b, delay);
+            cost += p.weight * std::norm(e);
+            const double turned = std::numbers::pi - std::abs(e.imag());
+            other += p.weight * (e.real() * e.real() + turned * turned);
+        }
+        if (cost < best.cost) best = {cost, a, log_b, delay};
+        if (other < reversed.cost) reversed = {other, a, log_b, delay};
+    };
+    const double step = 1 / (8 * top); // an eighth of a turn at the fastest line
+    const double fastest = 2 * std::numbers::pi * top;
+    const auto delays = std::size_t(std::ceil(options.longest_delay.value() / step)) + 1;
+    const auto poles = std::size_t(std::ceil(std::log(3 * fastest / slow) / std::log(1.6)));
+    for (std::size_t i = 0; i <= delays; ++i) {
+        try_start(0, double(i) * step);
+        for (std::size_t k = 0; k < poles; ++k) try_start(slow * std::pow(1.6, double(k)), double(i) * step);
+    }
+    const std::size_t n = points.size();
+    require(best.cost <= reversed.cost, "fit_plant.gain", -std::exp(reversed.log_b),
+            "must be above 0: turn the sign of the command or of the position");
+
+    double a = best.a, log_b = best.log_b, delay = best.delay, damping = 1e-3;
+    const auto squares = [&](double a_, double log_b_, double delay_) {
+        double sum = 0;
+        for (const point& p : points) sum += p.weight * p.weight * std::norm(off(p, a_, log_b_, delay_));
+        return sum;
+    };
+    // Unknowns of comparable size: A over the fastest line, ln B, phase of Td at the fastest line.
+    const double scale = fastest;
+    const auto equations = [&](double damped) {
+        least_squares out(3);
+        for (const point& p : points) {
+            const complex e = off(p, a, log_b, delay), by_a = -scale / (p.s + a), by_delay = -p.s / scale;
+            const double w = p.weight;
+            out.add({w * by_a.real(), w, w * by_delay.real()}, -w * e.real());
+            out.add({w * by_a.imag(), 0, w * by_delay.imag()}, -w * e.imag());
+        }
+        if (damped > 0)
+            for (std::size_t i = 0; i < 3; ++i) {
+                std::vector<double> row(3);
+                row[i] = damped;
+                out.add(row, 0);
+            }
+        return out.solve();
+    };
+    double mean_weight = 0;
+    for (const point& p : points) mean_weight += p.weight * p.weight;
+    mean_weight = std::sqrt(mean_weight);
+    double cost = squares(a, log_b, delay);
+    bool converged = false;
+    for (int round = 0; round < 100 && !converged; ++round) {
+        const auto x = equations(damping * mean_weight).x;
+        const double more = squares(a + scale * x[0], log_b + x[1], delay + x[2] / scale);
+        if (more <= cost) {
+            a += scale * x[0], log_b += x[1], delay += x[2] / scale;
+            converged = cost - more <= 1e-12 * cost;
+            cost = more;
+            damping *= 0.1;
+        } else {
+            converged = std::hypot(x[0], x[1], x[2]) < 1e-12; // at the bottom, to rounding
+            damping = std::max(1e-6, damping * 10);
+        }
+    }
+
+    double misfit = 0;
+    for (const point& p : points) misfit += std::norm(off(p, a, log_b, delay)) / double(n);
+    const double surprise = cost / double(2 * n - 3);
+    const auto spread = [&](double inverse) { return 1.96 * std::sqrt(inverse * std::max(1.0, surprise)); };
+    const auto shape = equations(0).inverse_diagonal;
+    const double da = scale * spread(shape[0]), db = spread(shape[1]), dt = spread(shape[2]) / scale;
+    using gain = gain_of<signal::acceleration, In>;
+    const auto at = [](double v) { return gain::from_value(v); };
+    return {{hertz(a), hertz(a - da), hertz(a + da)},
+            {at(std::exp(log_b)), at(std::exp(log_b - db)), at(std::exp(log_b + db))},
+            {duration::from_value(delay), duration::from_value(delay - dt), duration::from_value(delay + dt)},
+            n,
+            std::sqrt(misfit),
+            surprise,
+            converged};
+}
+
+} // namespace quadrant::analysis

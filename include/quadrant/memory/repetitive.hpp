@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
+namespace quadrant {
+
+/// Repetitive memory loop: learns, cycle after cycle, what to add to the position error so that an error that returns
+/// with the same cycle (a circle, a turning cutter) dies out.
+///   r = sum over i = 1 ... Order of w[i] z^{-i N} Q(z) (e + r),   y = L(z) r, added to e by the loop;   N = cycle / period
+/// Q low-pass, symmetric, read without phase; L reads `ahead` samples ahead: both look into the cycle before.
+/// Source: [Jamaludin2008] ch. 5 (repetitive control); weights of order 2 and above trade a cycle that is not quite
+/// known against errors that do not repeat. N need not be whole: cubic interpolation of Q (e + r), [Laakso1996].
+/// Ports: error in, what to add to it out, the same signal; y[k] does not depend on e[k].
+/// State: Order cycles of Q (e + r) and the taps of L and Q; `reset` leaves zeros and the cycle of the parameters;
+/// `settle(x)` the state of a constant x. With sum w Q(1) = 1 (integrates(), the usual case) no such state exists:
+/// `settle(x, y)`, where the next step gives y; settle(x) then takes the last output for y.
+/// `cycle(d)` changes N between two steps; the memory is read in the old and the new way and one is faded into the other
+/// during `fade`, so y never jumps. A change asked for during a fade starts after it; the last one asked for wins.
+/// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates, and
+/// limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity: analysis/repetitive_design.hpp.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "repetitive.<field> = ...: must ..." for period, cycle, fade, weights, learning, ahead, smoothing.
+/// Cost: LearningTaps + SmoothingTaps + 4 Order multiplications (8 Order in a fade), 8 (Order Capacity + both taps) bytes.
+/// A delay alone: `delay_line`.
+template <signal_tag Signal, std::size_t Capacity, std::size_t Order = 1, std::size_t LearningTaps = 90,
+          std::size_t SmoothingTaps = 61, class Real = double>
+requires(Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1) class repetitive {
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+    static constexpr std::size_t half = SmoothingTaps / 2;
+
+    struct parameters {
+        quantity<si::time, number> cycle; ///< what repeats; (ahead + half + 2) ... Capacity periods
+        std::array<number, Order> weights{
+            number(1)}; ///< w[1] first; their sum 1 lets nothing of the cycle through
+        std::array<number, LearningTaps> learning{number(1)}; ///< L, the tap `ahead` samples ahead first
+        std::size_t ahead = 0;                                ///< below LearningTaps
+        std::array<number, SmoothingTaps> smoothing = only_the_middle(); ///< Q, symmetric
+        duration fade{};                                                 ///< of a change of cycle; 0: one cycle
+
+        static constexpr std::array<number, SmoothingTaps> only_the_middle() {
+            std::array<number, SmoothingTaps> q{};
+            q[SmoothingTaps / 2] = number(1);
+            return q;
+        }
+    };
+    struct state {
+        std::array<value, SmoothingTaps> m{};           ///< ring of e + r
+        std::array<value, Order * Capacity + 3> p{};    ///< ring of Q (e + r), `half` samples late
+        std::array<value, LearningTaps> r{};            ///< ring of r, `ahead` samples early
+        std::size_t next_m = 0, next_p = 0, next_r = 0; ///< where the coming one goes
+        std::size_t fading = 0;                         ///< steps left of a change of cycle
+    };
+
+    repetitive(const parameters& p, duration period) : given_(p), period_(period) {
+        require_positive("repetitive.period", period);
+        require_not_negative("repetitive.fade", p.fade);
+        require(p.ahead < LearningTaps, "repetitive.ahead", double(p.ahead),
+                "must be below the taps of learning (" + detail::shortest(double(LearningTaps)) + ")");
+        const double least = double(p.ahead + half + 2), cycles = detail::plain(p.cycle) / period.value();
+        require(cycles >= least * (1 - rounding) && cycles <= double(Capacity) * (1 + rounding),
+                "repetitive.cycle", p.cycle,
+                "must lie between " + detail::shortest(least * period.value()) +
+                    " (look-ahead of learning and smoothing, and two periods) and " +
+                    detail::shortest(double(Capacity) * period.value()) + " (capacity)");
+        for (std::size_t i = 0; i < Order; ++i) {
+            require_finite("repetitive.weights", p.weights[i]);
+            weights_[i] = Real(p.weights[i]);
+        }
+        for (std::size_t i = 0; i < LearningTaps; ++i) {
+            require_finite("repetitive.learning", p.learning[i]);
+            learning_[i] = Real(p.learning[i]);
+        }
+        for (std::size_t i = 0; i < SmoothingTaps; ++i) {
+            const double one = detail::plain(p.smoothing[i]),
+                         other = detail::plain(p.smoothing[SmoothingTaps - 1 - i]);
+            require_finite("repetitive.smoothing", p.smoothing[i]);
+            require(std::abs(one - other) <= 1e-12 * (std::abs(one) + std::abs(other)), "repetitive.smoothing",
+                    p.smoothing[i], "must be symmetric (linear phase)");
+            smoothing_[i] = Real(p.smoothing[i]);
+        }
+        reset();
+    }
+
+    value operator()(argument e) noexcept {
+        value early = read(reader_);
+        if (state_.fading > 0)
+            early += Real(double(state_.fading) / double(fade_)) * (read(old_reader_) - early);
+        const std::size_t now_m = state_.next_m, now_p = state_.next_p, now_r = state_.next_r;
+        state_.r[now_r] = early;
+        const value m = e + state_.r[back(now_r, given_.ahead, LearningTaps)];
+        state_.m[now_m] = m; // in the place of one that nobody reads any more: written again after a bad sample
+        const value p = through(smoothing_, state_.m, now_m), y = through(learning_, state_.r, now_r);
+        if (!finite(early, m, p, y)) return out_.hold();
+        state_.p[now_p] = p;
+        state_.next_m = forward(now_m, SmoothingTaps);
+        state_.next_p = forward(now_p, size_p);
+        state_.next_r = forward(now_r, LearningTaps);
+        if (state_.fading > 0 && --state_.fading == 0 && pending_) start(wanted_);
+        return out_.keep(y);
+    }
+    void reset() noexcept {
+        limited_ = pending_ = false;
+        state_ = state();
+        periods_ = given_.cycle.value() / number(period_.value());
+        reader_ = old_reader_ = reader(periods_);
+        out_.reset();
+    }
+    void settle(argument x) noexcept {
+        if (integrates()) return settle(x, out_.last());
+        const Real g = sum(smoothing_) * sum(weights_);
+        const value r = g / (1 - g) * x;
+        fill(x + r, r, sum(learning_) * r);
+    }
+    void settle(argument x, value y) noexcept {
+        const Real gain = sum(learning_), g = sum(smoothing_) * sum(weights_);
+        const value r = y / gain;
+        if (!finite(x)) return out_.raise();
+        fill(r / g, r, y);
+    }
+
+    /// Of what repeats, from the next step on; see above.
+    void cycle(quantity<si::time, number> d) noexcept {
+        if (!finite(d)) return out_.raise();
+        const number least(double(given_.ahead + half + 2)), most{double(Capacity)};
+        number periods = d.value() / number(period_.value());
+        const double plain = detail::plain(periods);
+        limited_ =
+            plain < detail::plain(least) * (1 - rounding) || plain > detail::plain(most) * (1 + rounding);
+        if (plain < detail::plain(least)) periods = least;
+        if (plain > detail::plain(most)) periods = most;
+        wanted_ = periods;
+        pending_ = state_.fading > 0;
+        if (!pending_) start(periods);
+    }
+    quantity<si::time, number> cycle() const noexcept {
+        return periods_ * quantity<si::time, number>::from_value(number(period_.value()));
+    }
+
+    /// From e to y, at the cycle that is being faded to.
+    std::complex<double> response(frequency f) const {
+        const double angle = -2 * std::numbers::pi * f.value() * period_.value();
+        std::complex<double> memory = 0, q = 0, l = 0;
+        for (std::size_t i = 0; i < Order; ++i)
+            for (std::size_t j = 0; j < 4; ++j)
+                memory += detail::plain(reader_.weight[i][j]) *
+                          std::polar(1.0, angle * double(reader_.first[i] + j + 1 + given_.ahead));
+        for (std::size_t i = 0; i < SmoothingTaps; ++i)
+            q += detail::plain(smoothing_[i]) * std::polar(1.0, angle * double(i));
+        for (std::size_t i = 0; i < LearningTaps; ++i)
+            l += detail::plain(learning_[i]) * std::polar(1.0, angle * (double(i) - double(given_.ahead)));
+        return l * memory * q / (1.0 - memory * q);
+    }
+    bool integrates() const noexcept { ///< has a pole at z = 1
+        return std::abs(detail::plain(sum(smoothing_)) * detail::plain(sum(weights_)) - 1) <=
+               16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
+    }
+    bool fading() const noexcept { return state_.fading > 0; }
+    bool limited() const noexcept { return limited_; } ///< the last cycle(d) lay outside the range
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static constexpr double rounding = 1e-12; ///< of a cycle that was given as a multiple of the period
+    static constexpr std::size_t size_p = Order * Capacity + 2;
+
+    /// Which samples of p make r, and how much of each.
+    struct memory_reader {
+        std::array<std::size_t, Order> first{}; ///< age of the youngest of the four, the newest p being 0
+        std::array<std::array<Real, 4>, Order> weight{};
+    };
+    memory_reader reader(number periods) const noexcept {
+        const number least(double(given_.ahead + half + 2)), most{double(Capacity)};
+        if (detail::plain(periods) < detail::plain(least)) periods = least; // by rounding
+        if (detail::plain(periods) > detail::plain(most)) periods = most;
+        memory_reader out;
+        for (std::size_t i = 0; i < Order; ++i) {
+            const number delay = number(double(i + 1)) * periods;
+            const double whole = std::floor(detail::plain(delay));
+            const number u = delay - number(whole); // Lagrange at 1 + u on 0, 1, 2, 3
+            const std::array<number, 4> cubic = {-u * (1 - u) * (2 - u) / 6, (1 + u) * (1 - u) * (2 - u) / 2,
+                                                 (1 + u) * u * (2 - u) / 2, -(1 + u) * u * (1 - u) / 6};
+            out.first[i] = std::size_t(whole) - given_.ahead - half - 2;
+            for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(given_.weights[i] * cubic[j]);
+        }
+        return out;
+    }
+    value read(const memory_reader& from) const noexcept {
+        value sum{};
+        for (std::size_t i = 0; i < Order; ++i) {
+            std::size_t at = back(state_.next_p, from.first[i] + 1, size_p);
+            for (std::size_t j = 0; j < 4; ++j) {
+                sum += from.weight[i][j] * state_.p[at];
+                at = back(at, 1, size_p);
+            }
+        }
+        return sum;
+    }
+    void start(number periods) noexcept {
+        pending_ = false;
+        if (detail::plain(periods) == detail::plain(periods_)) return;
+        old_reader_ = reader_;
+        periods_ = periods;
+        reader_ = reader(periods);
+        const double steps =
+            detail::plain(given_.fade) > 0 ? given_.fade.value() / period_.value() : detail::plain(periods);
+        fade_ = state_.fading = std::size_t(std::ceil(steps));
+    }
+    void fill(value m, value r, value y) noexcept {
+        const value p = sum(smoothing_) * m;
+        if (!finite(m, p, r, y)) return out_.raise();
+        state_.m.fill(m), state_.p.fill(p), state_.r.fill(r);
+        state_.fading = 0;
+        if (pending_) start(wanted_);
+        state_.fading = 0; // nothing to fade: both cycles read the same
+        out_.reset(y);
+    }
+
+    static constexpr std::size_t back(std::size_t at, std::size_t by, std::size_t size) noexcept {
+        return at >= by ? at - by : at + size - by;
+    }
+    static constexpr std::size_t forward(std::size_t at, std::size_t size) noexcept {
+        return at + 1 == size ? 0 : at + 1;
+    }
+    /// Sum of c[j] x[newest - j] around the ring.
+    template <std::size_t Taps>
+    static value through(const std::array<Real, Taps>& c, const std::array<value, Taps>& x,
+                         std::size_t newest) noexcept {
+        value y{};
+        for (std::size_t j = 0; j <= newest; ++j) y += c[j] * x[newest - j];
+        for (std::size_t j = newest + 1; j < Taps; ++j) y += c[j] * x[newest + Taps - j];
+        return y;
+    }
+    template <std::size_t Taps> static Real sum(const std::array<Real, Taps>& c) noexcept {
+        Real all(0);
+        for (const Real& each : c) all += each;
+        return all;
+    }
+
+    parameters given_;
+    duration period_;
+    std::array<Real, Order> weights_{};
+    std::array<Real, LearningTaps> learning_{};
+    std::array<Real, SmoothingTaps> smoothing_{};
+    number periods_{0}, wanted_{0};
+    memory_reader reader_, old_reader_;
+    std::size_t fade_ = 1;
+    bool pending_ = false, limited_ = false;
+    state state_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant
