@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "predictor.hpp"
+#include "scoring.hpp"
 
 #include <Eigen/Dense>
 #include <limits>
@@ -22,18 +23,6 @@ struct parameter {
     double from_fit(double x) const { return logarithmic ? std::exp(x) : x; }
 };
 
-/// How innovations become a score. Blocks of 50 ms; two channels: the innovation itself, and its mean over 10 ms,
-/// which is blind to the encoder's rounding and sees slow forces. A block counts nu/2 log(mean square + floor^2):
-/// free of scale, so that pulses and quiet stretches both count, and bounded below by the floor. nu is the effective
-/// number of independent samples of a block, far below the number of rows because innovations are correlated.
-struct scoring {
-    std::size_t block = 100, mean = 20, skip = 100; ///< rows a block, rows a mean, rows not scored at the start
-    double floor = 0, floor_mean = 0;               ///< [m]
-    double nu = 3, nu_mean = 3;
-    std::vector<std::size_t> segment_of_block; ///< motion segment each block belongs to
-    std::size_t segments = 0;
-};
-
 /// Mean square of one block as a quadratic in the step of the parameters: ms + 2 g d + d' A d.
 struct block_quadratic {
     double ms = 0;
@@ -51,29 +40,6 @@ struct fit_result {
     std::vector<block_quadratic> quadratic{}, quadratic_mean{};
     double objective = std::numeric_limits<double>::infinity();
 };
-
-namespace detail {
-
-inline std::vector<double> block_ms(const std::vector<double>& e, std::size_t first, std::size_t block) {
-    std::vector<double> out;
-    for (std::size_t k = first; k + block <= e.size(); k += block) {
-        double sum = 0;
-        for (std::size_t i = k; i < k + block; ++i) sum += e[i] * e[i];
-        out.push_back(sum / static_cast<double>(block));
-    }
-    return out;
-}
-inline std::vector<double> means(const std::vector<double>& e, std::size_t first, std::size_t length) {
-    std::vector<double> out;
-    for (std::size_t k = first; k + length <= e.size(); k += length) {
-        double sum = 0;
-        for (std::size_t i = k; i < k + length; ++i) sum += e[i];
-        out.push_back(sum / static_cast<double>(length));
-    }
-    return out;
-}
-
-} // namespace detail
 
 /// Fits parameters of the plant by reweighted Gauss-Newton (Levenberg-Marquardt damping, bounds by projection).
 class fitter {

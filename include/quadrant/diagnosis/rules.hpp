@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace quadrant::diagnosis {
+
+/// What the selection asks of a cause, in one place. Scores are log-scores of held-out motion.
+struct rules {
+    double margin = 15;            ///< least held-out gain of one more effect; less is undecided
+    double relative_margin = 0.01; ///< least share of everything gained so far
+    double least_shrink = 0.05;    ///< least relative fall of the residual force on held-out motion
+    double temperature = 5;        ///< divides scores before they become probabilities: blocks are not independent
+    double structure = 5;          ///< log-score of blocks above their limit that still counts as the floor
+    std::size_t most_causes = 4, beam = 2;
+    std::size_t finalists = 4; ///< of each round are fitted to the end; the others showed little at a first look
+};
+
+using progress = std::function<void(const std::string&)>; ///< one short line of what is going on
+
+} // namespace quadrant::diagnosis
