@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/literals.hpp>
-#include <quadrant/memory/repetitive.hpp>
 #include <quadrant/quadrant.hpp>
 
 #include <array>
@@ -140,12 +139,51 @@ inline const std::tuple blocks{
           []<class R>(values<R>& p) {
               return stribeck<s::velocity, s::force, R>({p(122_N), p(177_N), p(2.2_mmps), p(850_N / 1_mps)}, T);
           }},
+    entry{"dahl", 0.125,
+          []<class R>(values<R>& p) {
+              return dahl<s::velocity, s::force, R>({p(122_N), p(3.1e6 * 1_N / 1_m), 1, p(850_N / 1_mps)}, T);
+          }},
+    entry{"dahl, exponent 2", 0.125,
+          []<class R>(values<R>& p) {
+              return dahl<s::velocity, s::force, R>({p(122_N), p(3.1e6 * 1_N / 1_m), 2, p(850_N / 1_mps)}, T);
+          }},
+    entry{"lugre", 0.125,
+          []<class R>(values<R>& p) {
+              return lugre<s::velocity, s::force, R>({{p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps), 2},
+                                                      p(3.1e6 * 1_N / 1_m),
+                                                      p(310_N / 1_mps),
+                                                      p(103_mmps)},
+                                                     T);
+          }},
+    entry{"maxwell_slip", 0.125,
+          []<class R>(values<R>& p) {
+              return maxwell_slip<2, s::velocity, s::force, R>(
+                  {.curve = {p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps)},
+                   .weights = {},
+                   .forces = {p(101_N), p.fixed(53_N)},
+                   .stiffness = {p(5.1e6 * 1_N / 1_m), p(1.3e6 * 1_N / 1_m)},
+                   .attraction = p(40000_N / 1_s)},
+                  T);
+          }},
     entry{"linear_motor", 8,
           []<class R>(values<R>& p) {
               return linear_motor<coulomb_viscous<s::velocity, s::force, R>, 8, R>(
                   {.mass = p(340_kg),
                    .force_constant = p(1450_N / 1_V),
                    .friction = {p(122_N), p(850_N / 1_mps)},
+                   .delay = p(0.41_ms)},
+                  T);
+          }},
+    entry{"linear_motor, maxwell_slip", 8,
+          []<class R>(values<R>& p) {
+              return linear_motor<maxwell_slip<1, s::velocity, s::force, R>, 8, R>(
+                  {.mass = p(340_kg),
+                   .force_constant = p(1450_N / 1_V),
+                   .friction = {.curve = {p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps)},
+                                .weights = {p.fixed(1.0)},
+                                .forces = {},
+                                .stiffness = {p(5.1e6 * 1_N / 1_m)},
+                                .attraction = p.fixed(40000_N / 1_s)},
                    .delay = p(0.41_ms)},
                   T);
           }},
@@ -161,6 +199,44 @@ inline const std::tuple blocks{
               return disturbance_observer<s::voltage, s::velocity, 3, 0, 3, 1, R>(
                   {p(200_Hz), nominal_plant<3, 1, number>{{p(600), p(3)}, {p.fixed(0), p.fixed(13700), p(345), p(1)}}},
                   T);
+          }},
+    entry{"kalman", 0.125,
+          []<class R>(values<R>& p) {
+              return kalman<s::voltage, R>({.mass = p(340_kg),
+                                            .force_constant = p.fixed(1450_N / 1_V),
+                                            .viscous = p(9714_N / 1_mps),
+                                            .encoder_noise = p(0.07_um),
+                                            .drift = p(20_N)},
+                                           T);
+          }},
+    entry{"harmonic_force_observer", 0.125,
+          []<class R>(values<R>&) {
+              const std::array tones{46_Hz, 69_Hz};
+              return harmonic_force_observer<s::voltage, 2, placed_poles<2>, R>(
+                  {{8.916_mps2 / 1_V, 20.0 / 1_s}, tones, placed_poles<2>::equal(200.0 / 1_s), 0.5_ms}, T);
+          }},
+    entry{"harmonic_force_observer, from noise", 0.125,
+          []<class R>(values<R>&) {
+              return harmonic_force_observer<s::voltage, 1, expected_noise<s::voltage>, R>(
+                  {{8.916_mps2 / 1_V, 20.0 / 1_s}, {46_Hz}, {0.07_um, 0.5_V}}, T);
+          }},
+    entry{"ferraris_force_estimator", 8,
+          []<class R>(values<R>& p) {
+              return ferraris_force_estimator<s::voltage, 2, 0, R>(
+                  {.mass = p(170_kg), .force_constant = p.fixed(1470_N / 1_V), .corner = p(90_Hz)}, T);
+          }},
+    entry{"ferraris_force_estimator, n = 3, m = 1", 8,
+          []<class R>(values<R>& p) {
+              return ferraris_force_estimator<s::voltage, 3, 1, R>(
+                  {.mass = p(170_kg), .force_constant = p.fixed(1470_N / 1_V), .corner = p(150_Hz)}, T);
+          }},
+    entry{"reduced_order_observer", 0.125,
+          []<class R>(values<R>& p) {
+              return reduced_order_observer<s::voltage, R>({.mass = p.fixed(170_kg),
+                                                            .force_constant = p.fixed(1470_N / 1_V),
+                                                            .viscous = p.fixed(3400_N / 1_mps),
+                                                            .corner = p(20_Hz)},
+                                                           T);
           }},
 };
 

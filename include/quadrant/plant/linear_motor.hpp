@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "../friction/coulomb_viscous.hpp"
+#include "../friction/presliding.hpp"
 #include "../friction/stick_slip.hpp"
 
 #include <array>
@@ -14,10 +15,12 @@ namespace quadrant {
 /// A linear-motor axis: amplifier limit and DAC, input delay, motor, moving mass on a friction box, encoder.
 ///   M dv/dt = kf u(t - delay) + external - friction(v), dx/dt = v; reading = encoder rounding of x
 /// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
-/// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp.
+/// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
+/// or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`): friction/presliding.hpp.
 /// Ports: command u[k] [V] in, encoder reading [m] at sample k+1 out; positive command, force and motion agree.
 ///   A second argument [N] is an external force held over the period.
-/// State: position, velocity, past commands. `reset`: at rest at zero; `settle(x)`: at rest at x, no command pending.
+/// State: position, velocity, past commands, what the friction remembers. `reset`: at rest at zero; `settle(x)`: at rest
+/// at x, friction relaxed, no command pending.
 /// Range: delay up to Capacity - 1 periods; substeps 1 ... 1000 (each advances the mass by one implicit step; the
 ///   held command is averaged inside the sub-step where it changes).
 /// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the state,
@@ -26,7 +29,8 @@ namespace quadrant {
 /// name.
 /// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. No other plant yet.
 template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double>
-requires friction_law<Friction, Real> &&(Capacity > 0) class linear_motor {
+requires(friction_law<Friction, Real> || friction_with_memory<Friction, Real>) &&
+    (Capacity > 0) class linear_motor {
 public:
     using input = signal::voltage;
     using output = signal::position;
@@ -71,20 +75,21 @@ public:
         const voltage newer = state_.past[whole_], older = state_.past[whole_ + 1];
         position x = state_.x;
         velocity v = state_.v;
+        [[maybe_unused]] const auto memory = remembered(); // goes back there after a fault
         const auto n = given_.substeps;
         for (std::size_t i = 0; i < n; ++i) {
             // Share of the sub-step in which the newer command already acts.
             const Real late = fraction_ * Real(static_cast<double>(n)) - Real(static_cast<double>(i));
             const Real share = late < Real(0) ? Real(1) : late >= Real(1) ? Real(0) : Real(1) - late;
             const voltage acting = newer * share + older * (Real(1) - share);
-            const velocity next =
-                stick_slip<Real>(friction_, mass_, v, force_constant_ * acting + external, h_);
+            const velocity next = advanced(v, force_constant_ * acting + external);
             x += (v + next) * (h_ * Real(0.5));
             v = next;
         }
         const position reading = rounded(x, encoder_step_); // not finite when x or v is not
         if (!finite(u, external, reading)) {
             state_.past[0] = state_.past[1];
+            if constexpr (friction_with_memory<Friction, Real>) friction_.become(memory);
             return out_.hold();
         }
         state_.x = x;
@@ -98,6 +103,7 @@ public:
         const position reading = rounded(x, encoder_step_);
         if (!finite(x, reading)) return out_.raise();
         state_ = state{.x = x};
+        if constexpr (friction_with_memory<Friction, Real>) friction_.reset();
         limited_ = false;
         out_.reset(reading);
     }
@@ -106,6 +112,7 @@ public:
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
+    const Friction& friction() const noexcept { return friction_; } ///< its memory: friction().now()
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
@@ -122,6 +129,21 @@ private:
         require(p.substeps >= 1 && p.substeps <= 1000, "linear_motor.substeps", static_cast<double>(p.substeps),
                 "must lie between 1 and 1000");
         return p;
+    }
+    auto remembered() const noexcept {
+        if constexpr (friction_with_memory<Friction, Real>)
+            return typename Friction::state(friction_.now());
+        else
+            return 0;
+    }
+    /// One sub-step; a friction that remembers moves with the axis.
+    velocity advanced(velocity v, force drive) noexcept {
+        if constexpr (friction_with_memory<Friction, Real>) {
+            const auto to = presliding<Real>(friction_, mass_, v, drive, h_);
+            friction_.become(to.friction);
+            return to.v;
+        } else
+            return stick_slip<Real>(friction_, mass_, v, drive, h_);
     }
     template <class Quantity> static Quantity rounded(Quantity x, Quantity step) noexcept {
         using std::round;

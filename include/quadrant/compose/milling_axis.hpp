@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../finite.hpp"
+#include "cascade.hpp"
+#include "maps.hpp"
+#include "taps.hpp"
+
+#include <array>
+#include <tuple>
+
+namespace quadrant {
+
+/// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either
+/// d(measured, wanted) with the loop through its own estimate solved (what it sees applied is wanted - estimate), or one
+/// input, which `absent` is.
+template <class D, class Command, class Real>
+concept observes_disturbance = maps<D, signal::position, Command, Real> ||
+    (requires(D d, quantity_of<signal::position, Real> measured, quantity_of<Command, Real> wanted) {
+        { d(measured, wanted) } -> std::same_as<quantity_of<Command, Real>>;
+        d.reset();
+    });
+
+/// One box per role of a `milling_axis`. Write `static_assert(milling_boxes<my_axis>)` under your struct.
+template <class B>
+concept milling_boxes = requires {
+    typename command_of<B>; // velocity_loop
+    requires maps<decltype(B::position_loop), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::reference_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::reference_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::measured_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::measured_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
+    requires maps<decltype(B::inertia), signal::acceleration, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::drag), signal::velocity, command_of<B>, real_of_boxes<B>>;
+    requires observes_disturbance<decltype(B::disturbance), command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::travel), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::friction), signal::velocity, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::amplifier), command_of<B>, command_of<B>, real_of_boxes<B>>;
+    requires maps<decltype(B::dac), command_of<B>, command_of<B>, real_of_boxes<B>>;
+};
+
+/// Every wire of the diagram, readable after every step.
+template <signal_tag Command, class Real> struct milling_wires {
+    quantity_of<signal::position, Real> reference, measured, position_error;
+    quantity_of<signal::velocity, Real> reference_velocity, measured_velocity, demand, velocity_error, travel;
+    quantity_of<Command, Real> feedback, inertia, drag, linear, disturbance, compensated, friction, wanted,
+        limited, command;
+
+    static constexpr auto taps() {
+        using wires = milling_wires;
+        return std::array{tap<signal::position, &wires::reference>("reference"),
+                          tap<signal::position, &wires::measured>("measured"),
+                          tap<signal::position, &wires::position_error>("position_error"),
+                          tap<signal::velocity, &wires::reference_velocity>("reference_velocity"),
+                          tap<signal::velocity, &wires::measured_velocity>("measured_velocity"),
+                          tap<signal::velocity, &wires::demand>("demand"),
+                          tap<signal::velocity, &wires::velocity_error>("velocity_error"),
+                          tap<signal::velocity, &wires::travel>("travel"),
+                          tap<Command, &wires::feedback>("feedback"),
+                          tap<Command, &wires::inertia>("inertia"),
+                          tap<Command, &wires::drag>("drag"),
+                          tap<Command, &wires::linear>("linear"),
+                          tap<Command, &wires::disturbance>("disturbance"),
+                          tap<Command, &wires::compensated>("compensated"),
+                          tap<Command, &wires::friction>("friction"),
+                          tap<Command, &wires::wanted>("wanted"),
+                          tap<Command, &wires::limited>("limited"),
+                          tap<Command, &wires::command>("command")};
+    }
+};
+
+/// The axis of the milling table: P on position, PI on velocity with the notch in the velocity feedback, the inverse of
+/// the plant and its friction fed forward, a disturbance observer. The second worked loop beside `cascade`, from the same
+/// boxes; for another diagram copy the body and redraw it.
+///   e = position_loop(r - y) + notch(Vest r) - notch(Vest y), u = PI(e) + (r'' + A r')/B - d(y, u) + friction(travel)
+/// Source: [Jamaludin2008] eq. (2.10, 2.22-2.34) for the cascade, (3.5-3.8) friction, (4.1-4.20) observer.
+/// Ports: reference (position, velocity, acceleration) and measured position in, command out (to act from this sample on).
+///   `ahead` is the reference at the moment when the command will act: the feedforward of plant and friction takes it.
+///   Without preview it is the reference itself.
+/// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction enters behind
+/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice.
+/// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
+/// allows), which the observer then carries, or the PI: the next sample at the same place gives u again.
+/// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
+/// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
+template <milling_boxes Boxes> struct milling_axis {
+    using real = real_of_boxes<Boxes>;
+    using position = quantity_of<signal::position, real>;
+    using velocity = quantity_of<signal::velocity, real>;
+    using acceleration = quantity_of<signal::acceleration, real>;
+    using command = quantity_of<command_of<Boxes>, real>;
+    using wires = milling_wires<command_of<Boxes>, real>;
+    static_assert(every_wire_has_a_tap(wires::taps()));
+
+    /// What the trajectory asks for at one moment.
+    struct motion {
+        milling_axis::position position{};
+        milling_axis::velocity velocity{};
+        milling_axis::acceleration acceleration{};
+    };
+
+    Boxes box;
+    wires wire{};
+    bool fault = false; ///< a sample was not finite; cleared by reset and settle
+
+    command operator()(const motion& reference, position measured) noexcept {
+        return (*this)(reference, reference, measured);
+    }
+    command operator()(const motion& reference, const motion& ahead, position measured) noexcept {
+        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured)) {
+            fault = true;
+            return wire.command;
+        }
+        wire.reference = reference.position;
+        wire.measured = measured;
+        wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
+        wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
+        wire.position_error = reference.position - measured;
+        wire.demand = box.position_loop(wire.position_error) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.feedback = box.velocity_loop(wire.velocity_error);
+        wire.inertia = box.inertia(ahead.acceleration);
+        wire.drag = box.drag(ahead.velocity);
+        wire.linear = wire.feedback + wire.inertia + wire.drag;
+        wire.disturbance = estimate(measured, wire.linear);
+        wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
+        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
+        wire.friction = box.friction(wire.travel);
+        wire.wanted = wire.compensated + wire.friction;
+        wire.limited = box.amplifier(wire.wanted);
+        wire.command = box.dac(wire.limited);
+        // What was cut off is charged to the PI and to the observer, whoever asked for too much.
+        if constexpr (requires { box.velocity_loop.applied(wire.feedback); })
+            box.velocity_loop.applied(wire.feedback + (wire.limited - wire.wanted));
+        if constexpr (requires { box.disturbance.applied(wire.compensated); })
+            box.disturbance.applied(wire.compensated + (wire.command - wire.wanted));
+        return wire.command;
+    }
+
+    void settle(position x, command hold = command()) noexcept {
+        if (!finite(x, hold)) {
+            fault = true;
+            return;
+        }
+        wire = {};
+        wire.reference = wire.measured = x;
+        wire.reference_velocity =
+            detail::settled(box.reference_notch, detail::settled(box.reference_velocity, x));
+        wire.measured_velocity = detail::settled(box.measured_notch, detail::settled(box.measured_velocity, x));
+        wire.demand = detail::settled(box.position_loop, position()) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.inertia = detail::settled(box.inertia, acceleration());
+        wire.drag = detail::settled(box.drag, velocity());
+        wire.travel = detail::settled(box.travel, x);
+        wire.friction = detail::settled(box.friction, wire.travel);
+        wire.compensated =
+            hold - wire.friction; // held by the observer where one can be told so, else by the PI
+        if constexpr (requires { box.disturbance.settle(x, hold); }) {
+            wire.disturbance = -wire.compensated;
+            box.disturbance.settle(x, wire.disturbance);
+        } else
+            wire.disturbance = detail::settled(box.disturbance, x);
+        wire.linear = wire.compensated + wire.disturbance;
+        wire.feedback = wire.linear - wire.inertia - wire.drag;
+        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
+        wire.wanted = wire.compensated + wire.friction;
+        wire.limited = detail::settled(box.amplifier, wire.wanted);
+        wire.command = detail::settled(box.dac, wire.limited);
+        fault = false;
+    }
+    void reset() noexcept {
+        std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));
+        wire = {};
+        fault = false;
+    }
+
+    bool limited() const noexcept { return wire.limited != wire.wanted; }
+    bool faulted() const noexcept {
+        return fault ||
+               std::apply([](const auto&... each) { return (detail::is_faulted(each) || ...); }, boxes(box));
+    }
+
+    static constexpr auto taps() { return wires::taps(); }
+
+private:
+    command estimate(position measured, command wanted) noexcept {
+        if constexpr (requires { box.disturbance(measured, wanted); })
+            return box.disturbance(measured, wanted);
+        else
+            return box.disturbance(measured);
+    }
+    static constexpr auto boxes(auto& b) noexcept {
+        return std::tie(b.position_loop, b.reference_velocity, b.reference_notch, b.measured_velocity,
+                        b.measured_notch, b.velocity_loop, b.inertia, b.drag, b.disturbance, b.travel,
+                        b.friction, b.amplifier, b.dac);
+    }
+};
+
+} // namespace quadrant

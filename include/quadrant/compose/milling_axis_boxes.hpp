@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../control/limiter.hpp"
+#include "../control/proportional.hpp"
+#include "../control/proportional_integral.hpp"
+#include "../control/quantizer.hpp"
+#include "../filter/backward_difference.hpp"
+#include "../filter/filtered_derivative.hpp"
+#include "../filter/notch.hpp"
+#include "absent.hpp"
+#include "milling_axis.hpp"
+
+namespace quadrant {
+
+/// The stock boxes of a `milling_axis`, from flat parameters as the thesis prints them:
+///   milling_axis<milling_axis_boxes<maxwell_slip<4, signal::velocity, signal::voltage>>> x{.box = {parameters, 500_us}};
+/// Friction: any law from velocity to the command (`stribeck`, `dahl`, `lugre`, `maxwell_slip`), or `absent`. Disturbance:
+/// `disturbance_observer`, or `absent`. The plant is B / (s (s + A)), command to position: `plant_gain` B, `plant_pole` A.
+/// For another set of boxes write a struct with the same member names; see `milling_boxes`.
+template <class Friction = absent<signal::velocity, signal::voltage>,
+          class Disturbance = absent<signal::position, signal::voltage>, class Real = double,
+          signal_tag Command = signal::voltage>
+struct milling_axis_boxes {
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        gain_of<signal::velocity, signal::position, number> position_gain; ///< kv
+        gain_of<Command, signal::velocity, number> velocity_gain;          ///< kp
+        gain_rate_of<Command, signal::velocity, number> velocity_integral; ///< ki
+        quantity<si::frequency, number> estimator_corner; ///< of Vest, on reference and measurement
+        typename quadrant::notch<signal::velocity, Real>::parameters notch; ///< behind both
+        gain_of<signal::acceleration, Command, number> plant_gain;          ///< B, > 0
+        quantity<si::frequency, number> plant_pole{};                       ///< A, in 1/s; >= 0
+        typename Friction::parameters friction{};
+        typename Disturbance::parameters disturbance{};
+        quantity_of<Command, number> limit;      ///< of command and integral, > 0; may be infinite
+        quantity_of<Command, number> dac_step{}; ///< 0 = no rounding
+    };
+
+    milling_axis_boxes(const parameters& p, duration period)
+        : position_loop({p.position_gain}, period), reference_velocity({p.estimator_corner}, period),
+          reference_notch(p.notch, period), measured_velocity({p.estimator_corner}, period),
+          measured_notch(p.notch, period),
+          velocity_loop({p.velocity_gain, p.velocity_integral, p.limit}, period),
+          inertia({number(1) / checked(p)}, period), drag({p.plant_pole / p.plant_gain}, period),
+          disturbance(p.disturbance, period), travel({}, period), friction(p.friction, period),
+          amplifier({-p.limit, p.limit}, period), dac({p.dac_step}, period) {}
+
+    proportional<signal::position, signal::velocity, Real> position_loop;
+    filtered_derivative<signal::position, signal::velocity, Real> reference_velocity;
+    quadrant::notch<signal::velocity, Real> reference_notch;
+    filtered_derivative<signal::position, signal::velocity, Real> measured_velocity;
+    quadrant::notch<signal::velocity, Real> measured_notch;
+    proportional_integral<signal::velocity, Command, integral_clamp, Real> velocity_loop;
+    proportional<signal::acceleration, Command, Real> inertia;
+    proportional<signal::velocity, Command, Real> drag;
+    Disturbance disturbance;
+    backward_difference<signal::position, signal::velocity, Real> travel;
+    Friction friction;
+    limiter<Command, Real> amplifier;
+    quantizer<Command, Real> dac;
+
+private:
+    static auto checked(const parameters& p) {
+        require_positive("milling_axis_boxes.plant_gain", p.plant_gain);
+        require_not_negative("milling_axis_boxes.plant_pole", p.plant_pole);
+        return p.plant_gain;
+    }
+};
+static_assert(milling_boxes<milling_axis_boxes<>>);
+
+} // namespace quadrant

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "presliding.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace quadrant {
+
+/// Friction of N springs side by side, each of which sticks until its share of the level and then slips (Generalized
+/// Maxwell-slip): small loops close, and after them the force is back on the curve of the large one.
+///   sticks: dF_i/dt = stiffness_i v, until F_i sign(v) = w_i s(v)
+///   slips:  dF_i/dt = sign(v) attraction (w_i - |F_i|/s(v)), until v is zero or reverses
+///   out = sum F_i + viscous v, s(v) = Fc + (Fs - Fc) exp(-|v/vs|^delta), one curve for all elements
+/// Source: [AlBender2005]; [Jamaludin2008] eq. (3.6-3.8). Solved exactly for a velocity that stands for the step, stick
+/// before slip: docs/derivations/maxwell_slip.md.
+/// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a plant
+/// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
+/// State: per element its force, in the unit of the output, and whether it slips. `reset` leaves all relaxed and sticking;
+/// `settle(v)` as if v had been applied for ever (relaxed for v = 0).
+/// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as tables print
+/// them, divided by their sum, which must not be above Fs. The other stays zero.
+/// Range: 0 < coulomb <= static_level and the rest of `stribeck`; each share and stiffness > 0, attraction > 0. Stable at
+/// any step.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "maxwell_slip.<field> = ...: must ..." for curve.coulomb, weights, forces, stiffness, attraction, and what
+/// `stribeck` throws for the curve and the period.
+/// Cost: 2 exponentials and about 4 multiplications an element; 16 bytes an element. One bristle, smooth: `lugre`.
+template <std::size_t N, signal_tag In = signal::velocity, signal_tag Out = signal::force, class Real = double>
+requires(N > 0) class maxwell_slip {
+public:
+    using input = In;
+    using output = Out;
+    using argument = quantity_of<In, Real>;
+    using value = quantity_of<Out, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+    using time = quantity<si::time, Real>;
+
+    struct parameters {
+        typename stribeck<In, Out, Real>::parameters curve{};     ///< s(v), and the viscous part; coulomb > 0
+        std::array<number, N> weights{};                          ///< sum 1; or
+        std::array<quantity_of<Out, number>, N> forces{};         ///< sum <= Fs
+        std::array<gain_rate_of<Out, In, number>, N> stiffness{}; ///< of each element; > 0
+        quantity<unit_quotient<typename Out::unit, si::time>, number> attraction{}; ///< C; > 0
+    };
+    struct element {
+        value force{};
+        bool slips = false; ///< the way its force points
+    };
+    struct state {
+        std::array<element, N> elements{};
+    };
+    using outcome = friction_outcome<In, Out, state, Real>;
+
+    maxwell_slip(const parameters& p, duration period)
+        : given_(p), curve_(p.curve, period), weights_(normalised(p)), attraction_(in_real<Real>(p.attraction)),
+          period_(time::from_value(Real(period.value()))) {
+        require_positive("maxwell_slip.curve.coulomb", p.curve.coulomb);
+        for (std::size_t i = 0; i < N; ++i) {
+            require_positive("maxwell_slip.stiffness", p.stiffness[i]);
+            stiffness_[i] = in_real<Real>(p.stiffness[i]);
+        }
+        require_positive("maxwell_slip.attraction", p.attraction);
+    }
+
+    value operator()(argument v) noexcept {
+        const outcome to = after(v, period_);
+        if (!finite(v, to.force)) return out_.hold();
+        state_ = to.next;
+        return out_.keep(to.force);
+    }
+    void reset() noexcept {
+        state_ = {};
+        out_.reset();
+    }
+    void settle(argument v) noexcept {
+        state to;
+        value y = curve_.viscous() * v;
+        const value level = v > argument() ? curve_.slip(v) : v < argument() ? -curve_.slip(v) : value();
+        for (std::size_t i = 0; i < N; ++i) {
+            to.elements[i] = {weights_[i] * level, v != argument()};
+            y += to.elements[i].force;
+        }
+        if (!finite(v, y)) return out_.raise();
+        state_ = to;
+        out_.reset(y);
+    }
+
+    /// The force after moving at v for h; changes nothing.
+    outcome after(argument v, time h) const noexcept {
+        using std::exp;
+        const bool forward = v >= argument(), moves = v != argument();
+        const argument speed = forward ? v : -v;
+        const value level = curve_.slip(v);
+        const auto fall = detail::slip_slope(curve_, v); // of the level by the speed, <= 0
+        const Real relaxes(attraction_ * h / level), kept = exp(-relaxes);
+        outcome to{.force = curve_.viscous() * v, .slope = curve_.viscous(), .next = {}};
+        for (std::size_t i = 0; i < N; ++i) {
+            const element& now = state_.elements[i];
+            const value along = forward ? now.force : -now.force; // positive: bent the way the axis goes
+            const value share = weights_[i] * level;
+            const gain_of<Out, In, Real> stiff = stiffness_[i] * h;
+            element& next = to.next.elements[i];
+            if (moves && now.slips && along > value()) { // slips on
+                const value off = along - share;
+                next = {share + off * kept, true};
+                to.slope += fall * (weights_[i] * (Real(1) - kept) + Real(off / level) * kept * relaxes);
+            } else if (const value reached = along + stiff * speed; !moves || reached < share) { // sticks
+                next = {reached, false};
+                to.slope += stiff;
+            } else { // breaks away, with what it holds where the level has fallen below that
+                const value off = along > share ? value(along - share) : value();
+                next = {share + off * kept, true};
+                to.slope += off > value() ? gain_of<Out, In, Real>(fall * (weights_[i] * (Real(1) - kept) +
+                                                                           Real(off / level) * kept * relaxes))
+                                          : gain_of<Out, In, Real>(fall * weights_[i]);
+            }
+            if (!forward) next.force = -next.force;
+            to.force += next.force;
+        }
+        return to;
+    }
+    void become(const state& next) noexcept { state_ = next; }
+
+    /// Shares of the level as they are used, sum 1.
+    const std::array<Real, N>& weights() const noexcept { return weights_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static std::array<Real, N> normalised(const parameters& p) {
+        number weights(0), forces(0);
+        bool by_force = true; // no weight given
+        for (std::size_t i = 0; i < N; ++i) {
+            weights += p.weights[i];
+            forces += p.forces[i].value();
+            by_force = by_force && detail::plain(p.weights[i]) == 0;
+        }
+        for (std::size_t i = 0; i < N; ++i) {
+            if (by_force)
+                require_positive("maxwell_slip.forces", p.forces[i]);
+            else {
+                require_positive("maxwell_slip.weights", p.weights[i]);
+                require(p.forces[i].value() == number(0), "maxwell_slip.forces", p.forces[i],
+                        "must be zero where weights are given");
+            }
+        }
+        if (by_force)
+            require(forces <= p.curve.static_level.value(), "maxwell_slip.forces (sum)", forces,
+                    "must not be above static_level (" + detail::shortest(detail::plain(p.curve.static_level)) +
+                        ")");
+        else
+            require(std::abs(detail::plain(weights) - 1) <= 1e-9, "maxwell_slip.weights (sum)", weights,
+                    "must be 1; shares given as forces go into forces");
+        std::array<Real, N> w;
+        for (std::size_t i = 0; i < N; ++i)
+            w[i] = Real(by_force ? number(p.forces[i].value() / forces) : number(p.weights[i] / weights));
+        return w;
+    }
+
+    parameters given_;
+    stribeck<In, Out, Real> curve_;
+    std::array<Real, N> weights_;
+    quantity<unit_quotient<typename Out::unit, si::time>, Real> attraction_;
+    time period_;
+    std::array<gain_rate_of<Out, In, Real>, N> stiffness_{};
+    state state_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant

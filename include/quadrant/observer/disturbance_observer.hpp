@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../filter/discretize.hpp"
+#include "../finite.hpp"
+#include "nominal_plant.hpp"
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
+namespace quadrant {
+
+namespace detail {
+
+template <std::size_t A, std::size_t B, class Number>
+constexpr std::array<Number, A + B - 1> product(const std::array<Number, A>& a,
+                                                const std::array<Number, B>& b) {
+    std::array<Number, A + B - 1> c{};
+    for (std::size_t i = 0; i < A; ++i)
+        for (std::size_t j = 0; j < B; ++j) c[i + j] += a[i] * b[j];
+    return c;
+}
+
+/// (s + wc)^n by rising powers: its first m + 1 coefficients are the numerator of Q, eq. (4.7).
+template <std::size_t Order, class Number> std::array<Number, Order + 1> binomial(const Number& wc) {
+    std::array<Number, Order + 1> p{};
+    p[0] = 1;
+    for (std::size_t k = 0; k < Order; ++k)
+        for (std::size_t i = k + 2; i-- > 0;) p[i] = wc * p[i] + (i > 0 ? p[i - 1] : Number(0));
+    return p;
+}
+
+/// k^-Size' sum_i c_i s^i with s = k (1-w)/(1+w), w = z^-1, times (1+w)^Order: the bilinear form of one polynomial of a
+/// common fraction. `differences` factors (1-w) are left out: c_0 ... are then zero and the caller feeds differences.
+template <std::size_t Order, std::size_t Size, class Number>
+std::array<Number, Order + 1> bilinear_polynomial(const std::array<Number, Size>& c, double k,
+                                                  std::size_t differences) {
+    static_assert(Size <= Order + 1);
+    std::array<Number, Order + 1> sum{};
+    for (std::size_t i = differences; i < Size; ++i) {
+        std::array<Number, Order + 1> p{};
+        p[0] = 1;
+        for (std::size_t j = differences; j < Order; ++j) multiply(p, j < i ? -1.0 : 1.0);
+        const double power = std::pow(k, double(i) - double(Order));
+        for (std::size_t j = 0; j <= Order; ++j) sum[j] += c[i] * power * p[j];
+    }
+    return sum;
+}
+
+/// All roots of 1 + a[1] z^-1 + ... inside the unit circle, by Schur and Cohn's step-down.
+template <std::size_t Size, class Number> bool roots_inside_circle(std::array<Number, Size> a) {
+    for (std::size_t n = Size - 1; n > 0; --n) {
+        const double k = plain(a[n]) / plain(a[0]);
+        if (!(std::abs(k) < 1)) return false;
+        const auto old = a;
+        for (std::size_t i = 0; i < n; ++i) a[i] = old[i] - k * old[n - i];
+    }
+    return true;
+}
+
+} // namespace detail
+
+/// The low-pass of a disturbance observer: n equal poles at wc = 2 pi corner, the first m + 1 terms of the denominator above,
+/// so that 1 - Q has m + 1 zeros at s = 0 (m = 0 forgets a constant disturbance, m = 1 a ramp). [Jamaludin2008] (4.6), (4.7).
+template <std::size_t Order, std::size_t NumeratorOrder, class Number>
+continuous<Order, Number> q_filter(const quantity<si::frequency, Number>& corner) {
+    static_assert(NumeratorOrder < Order, "Q must be a low-pass: its numerator needs a lower order");
+    continuous<Order, Number> q{.denominator =
+                                    detail::binomial<Order>(Number(2 * std::numbers::pi * corner.value()))};
+    for (std::size_t i = 0; i <= NumeratorOrder; ++i) q.numerator[i] = q.denominator[i];
+    return q;
+}
+
+/// Q is a low-pass and Q/Gn does not differentiate: m < n and n - m >= relative degree.
+template <std::size_t Order, std::size_t NumeratorOrder, std::size_t RelativeDegree>
+concept q_is_not_below_the_relative_degree = (NumeratorOrder < Order) &&
+                                             (Order - NumeratorOrder >= RelativeDegree);
+
+/// What pushes the axis beside the command, as a command: subtract it and the axis behaves as its nominal plant.
+///   d = Q (Gn^-1 z - u),   u = what is applied;   Q(s) = sum_{i=0..m} q_i s^i / (s + wc)^n,   wc = 2 pi corner
+/// Q and Q/Gn are bilinear with one denominator and share their state. Both pass straight through, so that d depends on the u
+/// that depends on d: the step solves u = wanted - d exactly instead of taking last cycle's u (docs/derivations).
+///   wire.disturbance = box.observer(measured, wire.wanted);        // solved together with the next line
+///   wire.command     = wire.wanted - wire.disturbance;
+///   wire.applied     = box.amplifier(wire.command + wire.friction);
+///   box.observer.applied(wire.applied - wire.friction);            // or friction is compensated twice
+/// Clipping by a limiter in between is part of the solution. The last line may be left out where nothing clips.
+/// Source: [Jamaludin2008] eq. (4.1) to (4.20).
+/// Ports: measured z; wanted command in, disturbance out, both in the unit of the command; a push in the direction of a
+/// positive command is positive.
+/// State: n + zeros of the plant numbers in the unit of the command, last z, last u; `reset`: at rest at zero, nothing pushes;
+/// `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest at z while -d is applied against d (a following step with
+/// wanted = 0 gives d). A plant that does not integrate needs the wanted command z/Gn(0) to stay there.
+/// Range: 0 < corner < half the sampling rate; n - m not below the relative degree of the plant, else it does not compile;
+/// zeros of the plant left of the axis. |Q| is -3 dB below the corner (n = 2, m = 0: at 0.644 of it). Gn carries no delay;
+/// an inverse-model feedforward must use the same Gn. In float up to n = 3.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted(); an `applied` that follows changes nothing.
+/// Throws "disturbance_observer.<field> = ...: must ..." for period, corner, plant.numerator, plant.denominator.
+/// Cost: 3 (n + zeros) + 3 multiplications. From an acceleration: `ferraris_force_estimator`; noisy encoder: `kalman`.
+template <signal_tag Command, signal_tag Measured = signal::position, std::size_t Order = 2,
+          std::size_t NumeratorOrder = 0, std::size_t PlantOrder = 2, std::size_t PlantZeros = 0,
+          class Real = double>
+requires q_is_not_below_the_relative_degree<Order, NumeratorOrder, PlantOrder - PlantZeros>
+class disturbance_observer {
+public:
+    using input = Measured;
+    using output = Command;
+    using argument = quantity_of<Measured, Real>;
+    using value = quantity_of<Command, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity<si::frequency, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
+        nominal_plant<PlantOrder, PlantZeros, number> plant{}; ///< or an `axis_model`
+    };
+    static constexpr std::size_t order = Order + PlantZeros; ///< of the common denominator
+    struct state {
+        std::array<value, order> s{};
+        argument measured{};
+        value command{}; ///< that was taken for applied
+    };
+
+    disturbance_observer(const parameters& p, duration period) : given_(checked(p, period)), period_(period) {
+        const auto q = q_filter<Order, NumeratorOrder>(p.corner);
+        integrates_ = detail::plain(p.plant.denominator[0]) == 0;
+        const double k = 2 / period.value();
+        std::array<number, NumeratorOrder + 1> top{};
+        for (std::size_t i = 0; i <= NumeratorOrder; ++i) top[i] = q.numerator[i];
+        const auto under =
+            detail::bilinear_polynomial<order>(detail::product(q.denominator, p.plant.numerator), k, 0);
+        const auto over = detail::bilinear_polynomial<order>(detail::product(top, p.plant.numerator), k, 0);
+        const auto inverse = detail::bilinear_polynomial<order>(detail::product(top, p.plant.denominator), k,
+                                                                integrates_ ? 1 : 0);
+        require(detail::roots_inside_circle(under), "disturbance_observer.plant.numerator",
+                p.plant.numerator[0], "has a zero on or right of the imaginary axis: 1/Gn would be unstable");
+        for (std::size_t i = 0; i <= order; ++i) {
+            from_measured_[i] = gain_of<Command, Measured, Real>::from_value(Real(inverse[i] / under[0]));
+            from_command_[i] = Real(over[i] / under[0]);
+            require_finite("disturbance_observer.plant.denominator", from_measured_[i]);
+            if (i > 0) feedback_[i - 1] = Real(under[i] / under[0]);
+        }
+        solved_ = Real(1) / (Real(1) - from_command_[0]);
+        standstill_ = integrates_ ? gain_of<Command, Measured, Real>()
+                                  : gain_of<Command, Measured, Real>::from_value(
+                                        Real(p.plant.denominator[0] / p.plant.numerator[0]));
+    }
+
+    /// The disturbance, on the understanding that wanted - disturbance is applied.
+    value operator()(argument measured, value wanted = value()) noexcept {
+        const argument x = integrates_ ? argument(measured - state_.measured) : measured;
+        const value free = from_measured_[0] * x + state_.s[0]; // d = free - q0 u and u = wanted - d
+        const value d = solved_ * (free - from_command_[0] * wanted), u = wanted - d;
+        std::array<value, order> next;
+        bool good = finite(measured, d, u);
+        for (std::size_t i = 0; i < order; ++i) {
+            next[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
+            if (i + 1 < order) next[i] += state_.s[i + 1];
+            good = good && finite(next[i]);
+        }
+        stepped_ = good;
+        if (!good) return out_.hold();
+        state_ = {next, measured, u};
+        return out_.keep(d);
+    }
+    /// What was really applied of the last command, without what was added after it (friction feedforward).
+    void applied(value u) noexcept {
+        if (!stepped_) return; // no sample was taken
+        const value more = u - state_.command, d = out_.last() - from_command_[0] * more;
+        std::array<value, order> s = state_.s;
+        bool good = finite(u, d);
+        for (std::size_t i = 0; i < order; ++i) {
+            s[i] += (feedback_[i] * from_command_[0] - from_command_[i + 1]) * more;
+            good = good && finite(s[i]);
+        }
+        if (!good) return out_.raise();
+        state_.s = s;
+        state_.command = u;
+        out_.keep(d);
+    }
+    void reset() noexcept { settle(argument()); }
+    void settle(argument measured) noexcept { settle(measured, value()); }
+    void settle(argument measured, value d) noexcept {
+        const argument x = integrates_ ? argument() : measured;
+        const value u = standstill_ * measured - d;
+        std::array<value, order> s;
+        bool good = finite(measured, d);
+        for (std::size_t i = order; i-- > 0;) {
+            s[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
+            if (i + 1 < order) s[i] += s[i + 1];
+            if (i == 0) s[i] = d - from_measured_[0] * x + from_command_[0] * u;
+            good = good && finite(s[i]);
+        }
+        if (!good) return out_.raise();
+        state_ = {s, measured, u};
+        stepped_ = false;
+        out_.reset(d);
+    }
+
+    /// From the measured signal to the disturbance with wanted = 0, the loop through the command closed: (Q/Gn) / (1 - Q).
+    std::complex<double> response(frequency f) const { return inverse(f) / (1.0 - q(f)); }
+    /// Q as it runs.
+    std::complex<double> q(frequency f) const {
+        const auto back = shift(f);
+        return sum(from_command_, back) / under(back);
+    }
+    /// Q/Gn as it runs.
+    std::complex<double> inverse(frequency f) const {
+        const auto back = shift(f);
+        return sum(from_measured_, back) / under(back) * (integrates_ ? 1.0 - back : 1.0);
+    }
+    /// Gn(j w), continuous.
+    std::complex<double> nominal(frequency f) const {
+        const std::complex<double> s(0, 2 * std::numbers::pi * f.value());
+        return sum(given_.plant.numerator, s) / sum(given_.plant.denominator, s);
+    }
+    value disturbance() const noexcept { return out_.last(); } ///< with what was applied, if that has been told
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static const parameters& checked(const parameters& p, duration period) {
+        require_positive("disturbance_observer.period", period);
+        require_below_nyquist("disturbance_observer.corner", p.corner, period);
+        for (const auto& c : p.plant.numerator) require_finite("disturbance_observer.plant.numerator", c);
+        for (const auto& c : p.plant.denominator) require_finite("disturbance_observer.plant.denominator", c);
+        require(detail::plain(p.plant.numerator.back()) != 0, "disturbance_observer.plant.numerator",
+                p.plant.numerator.back(), "highest coefficient must not be zero");
+        require(detail::plain(p.plant.denominator.back()) != 0, "disturbance_observer.plant.denominator",
+                p.plant.denominator.back(), "highest coefficient must not be zero");
+        return p;
+    }
+    std::complex<double> shift(frequency f) const {
+        return std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
+    }
+    template <class Coefficients>
+    static std::complex<double> sum(const Coefficients& c, std::complex<double> x) {
+        std::complex<double> y = 0;
+        for (std::size_t i = c.size(); i-- > 0;) y = y * x + detail::plain(c[i]);
+        return y;
+    }
+    std::complex<double> under(std::complex<double> back) const { return 1.0 + back * sum(feedback_, back); }
+
+    parameters given_;
+    duration period_;
+    bool integrates_ =
+        true; ///< the plant does: z enters by its differences, so that a constant gives exactly zero
+    std::array<gain_of<Command, Measured, Real>, order + 1> from_measured_{}; ///< numerator of Q/Gn
+    std::array<Real, order + 1> from_command_{};    ///< numerator of Q; [0] passes straight through
+    std::array<Real, order> feedback_{};            ///< denominator from z^-1 on
+    gain_of<Command, Measured, Real> standstill_{}; ///< 1 / Gn(0)
+    Real solved_{1};
+    state state_;
+    bool stepped_ = false;
+    held_output<value> out_;
+};
+
+/// How far an observer is from what its unmodelled part allows: |Q| <= 1/|Delta|, Delta = (G - Gn)/Gn, [Jamaludin2008] (4.19).
+struct robust_stability {
+    double worst = 0; ///< largest |Q Delta|; sufficient for stability: below 1
+    frequency at{};   ///< where
+    bool holds() const noexcept { return worst < 1; }
+};
+
+/// Over `points` frequencies, evenly spaced in their logarithm; `plant(frequency)` gives the measured FRF (or a model with its
+/// delay) as std::complex<double>, in the units of the nominal plant.
+template <class Observer, class Frf>
+robust_stability robustness(const Observer& observer, Frf&& plant, frequency from, frequency to,
+                            std::size_t points = 1000) {
+    require_positive("robustness.from", from);
+    require(std::isfinite(to.value()) && to > from, "robustness.to", to, "must be finite and above from");
+    require(points >= 2, "robustness.points", double(points), "must be at least 2");
+    robust_stability result;
+    for (std::size_t i = 0; i < points; ++i) {
+        const frequency f = from * std::pow(to.value() / from.value(), double(i) / double(points - 1));
+        const std::complex<double> nominal = observer.nominal(f), delta = (plant(f) - nominal) / nominal;
+        const double size = std::abs(observer.q(f) * delta);
+        require_finite("robustness.plant", size);
+        if (size > result.worst) result = {size, f};
+    }
+    return result;
+}
+
+} // namespace quadrant
