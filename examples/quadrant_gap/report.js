@@ -50,6 +50,7 @@ function draw_time(figure) {
     const graph = new Dygraph(plot, rows, {
         ...theme(c.names), labels: ['time', ...c.names], xlabel: c.x, ylabel: c.y, axisLabelWidth: 50,
         strokeWidth: 1.2, series: {logged: {strokeWidth: c.names.length > 1 ? 4 : 1.2}}, xLabelHeight: 18, yLabelWidth: 18, highlightCircleSize: 3, showRangeSelector: first, rangeSelectorHeight: 34,
+        underlayCallback: canvas => { canvas.lineJoin = 'round'; }, // a mitred zigzag shows spikes that the data have not
         legend: 'always', labelsDiv: figure.querySelector('.legend'),
         legendFormatter: data => legend(c.names, data.x === undefined ? null : data.series.map(s => s.y === undefined ? '' : digits(s.y)))
             + (data.x === undefined ? '' : ` <span>at ${digits(data.x)} s</span>`),
