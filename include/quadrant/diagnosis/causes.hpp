@@ -44,9 +44,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     std::erase(others, own);
     const candidate without = c.models.with(others);
     std::vector<rival> out{{.model = c.best(), .name = own}};
-    for (auto& model : c.models.with_each(without))
+    for (const auto& model : c.models.with_each(without))
         for (const effect* e : model.effects)
-            if (!search::has(without, e) && e != own) out.push_back({.model = std::move(model), .name = e});
+            if (!search::has(without, e) && e != own) out.push_back({.model = model, .name = e});
     weigh(out, c);
 
     const double energy = square(rms(c.models.held_out_residual(c.best())));

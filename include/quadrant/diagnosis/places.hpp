@@ -165,7 +165,8 @@ inline void spectrum(const std::vector<double>& x, double period, double up_to_H
     const auto window = std::min(x.size(), static_cast<std::size_t>(1 / period));
     if (window < 8) return;
     const double weight = 3.0 / 8.0; // mean square of the Hann window
-    for (double f = 1; f <= up_to_Hz; f += 1) {
+    for (int hertz = 1; hertz <= up_to_Hz; ++hertz) {
+        const double f = hertz;
         double power = 0, count = 0;
         for (std::size_t first = 0; first + window <= x.size(); first += window / 2) {
             double re = 0, im = 0, c = 1, s = 0;

@@ -99,7 +99,7 @@ struct plant_model {
                 plant_.force_constant * command + plant_.constant_force + plant_.cogging.force(s.x);
             const double push = plant_.mass * s.v + h_ * drive; // momentum before friction
             const side& d = side_[(s.v != 0 ? s.v : push) > 0 ? 1 : 0];
-            double v;
+            double v = 0;
             if (d.breakaway <= 0) {
                 v = push * d.inverse_slip;
             } else {

@@ -98,8 +98,8 @@ inline constexpr effect cogging{
                                        .high = std::min(longest, 1.1 / f),
                                        .logarithmic = true,
                                        .step = 1e-4}};
-            for (auto h : {detail::cosine<0>(size), detail::sine<0>(size), detail::cosine<1>(size),
-                           detail::sine<1>(size), detail::cosine<2>(size), detail::sine<2>(size)})
+            for (const auto& h : {detail::cosine<0>(size), detail::sine<0>(size), detail::cosine<1>(size),
+                                  detail::sine<1>(size), detail::cosine<2>(size), detail::sine<2>(size)})
                 ps.push_back(h);
             out.push_back(ps);
         }
