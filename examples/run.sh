@@ -10,7 +10,7 @@ data=$root/examples/data
 mkdir -p "$build"
 
 sh "$root/examples/install.sh" g++ cmake ninja-build libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libjs-dygraphs
+    libcli11-dev libssl-dev libjs-dygraphs
 
 build_it() {
     cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DQUADRANT_BUILD_TESTS=OFF \

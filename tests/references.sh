@@ -6,6 +6,6 @@ missing=0
 for key in $(grep -rhoE '\[[A-Z][A-Za-z]+(19|20)[0-9]{2}\]' include docs examples tests benchmarks | sort -u); do
     grep -qF "**$key**" docs/references.md || { echo "docs/references.md does not have $key"; missing=1; }
 done
-grep -rnE '(TODO|FIXME|XXX)' include examples tests benchmarks --include='*.[ch]pp' --include='*.h' --include='*.js' |
+grep -rnE '\b(TODO|FIXME|XXX)\b' include examples tests benchmarks --include='*.[ch]pp' --include='*.h' --include='*.js' |
     grep -vE 'TODO\(#[0-9]+\)' && { echo 'these name no issue: TODO(#12): ...'; missing=1; }
 exit $missing

@@ -127,6 +127,8 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         mkdir -p "$found"
         { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
         { printf '\001' && cat examples/data/machine.json; } >"$found/machine"
+        { printf '\003' && cat examples/import/twincat_scope.map.json; } >"$found/map"
+        { printf '\004' && sed 's/^Name\t.*/Name\tr\ty\tu/' examples/import/twincat_scope.csv | head -n 60; } >"$found/foreign"
         if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
             -artifact_prefix="$found/" "$found" >"$logs/$name.txt" 2>&1; then
             printf '%s: %s\n' "$name" "$(grep number_of_executed_units "$logs/$name.txt")"
@@ -149,8 +151,8 @@ tidy() { # clang-tidy over every header
 }
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
-    chromium-driver python3 python3-selenium python3-jsonschema || exit 1
+    libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
+    chromium-driver python3 python3-selenium python3-jsonschema gnuplot-nox || exit 1
 
 for phase; do
     case $phase in

@@ -121,6 +121,19 @@ TEST_CASE("repetitive_design: the designed block in a sampled loop takes a repea
     CHECK(first > 1);
     CHECK(end < 0.01);
 }
+TEST_CASE("repetitive_design: a stated margin is kept or refused") {
+    const auto q = smoothing_filter<61>(200_Hz, T);
+    const auto l = learning_filter<90>(closed, q, 30, T);
+    using block = repetitive<signal::position, 100, 2>;
+    const std::array<double, 2> w{2, -1};
+    const auto with = [&](double margin) {
+        return repetitive_parameters<block>(closed, w, l, q, 42.93_ms, up_to_nyquist(T), margin);
+    };
+    const double worst = 3 * mismatch(closed, l, q, up_to_nyquist(T)).value; // sum |w| = 3
+    CHECK_NOTHROW(with(1 - worst - 1e-6));
+    CHECK_THROWS_AS(with(1 - worst + 1e-6), invalid_parameter);
+    CHECK_THROWS_AS(with(1), invalid_parameter);
+}
 TEST_CASE("repetitive_design: refuses a loop that does not converge, and bad questions") {
     const auto q = smoothing_filter<61>(200_Hz, T);
     fir<90> none{{}, 30, T}; // L = 0

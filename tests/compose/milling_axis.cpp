@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/analysis/loop.hpp>
+#include <quadrant/analysis/repetitive_design.hpp>
 #include <quadrant/compose/milling_axis_boxes.hpp>
 #include <quadrant/dual.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/literals.hpp>
+#include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 using namespace quadrant;
 using namespace quadrant::literals;
@@ -21,8 +26,9 @@ using namespace quadrant::literals;
 namespace {
 const auto Ts = 500_us;
 using friction = stribeck<signal::velocity, signal::voltage>;
-template <class Friction = friction, class Disturbance = absent<signal::position, signal::voltage>>
-using boxes = milling_axis_boxes<Friction, Disturbance>;
+template <class Friction = friction, class Disturbance = absent<signal::position, signal::voltage>,
+          class Memory = absent<signal::position, signal::position>>
+using boxes = milling_axis_boxes<Friction, Disturbance, Memory>;
 using axis = milling_axis<boxes<>>;
 
 /// The x axis of [Jamaludin2008].
@@ -36,6 +42,7 @@ template <class Boxes = boxes<>> typename Boxes::parameters x_axis() {
                                  .plant_pole = 28.57_Hz,
                                  .friction = {},
                                  .disturbance = {},
+                                 .memory = {},
                                  .limit = 10_V,
                                  .dac_step = {}};
     if constexpr (std::same_as<decltype(p.friction), friction::parameters>)
@@ -90,6 +97,35 @@ struct half_observer {
     void reset() { seen = {}; }
     quantity<si::electric_potential> seen{};
 };
+
+/// The last error once more: what a memory with a cycle of one sample would give.
+struct echo {
+    using parameters = std::tuple<>;
+    echo(const parameters&, duration) {}
+    quantity<si::length> operator()(quantity<si::length> e) { return std::exchange(last, e); }
+    void reset() { last = {}; }
+    void settle(quantity<si::length> e) { last = e; }
+    quantity<si::length> last{};
+};
+
+using quiet = absent<signal::velocity, signal::voltage>;
+using memory = repetitive<signal::position, 100, 2>;
+using learning = milling_axis<boxes<quiet, absent<signal::position, signal::voltage>, memory>>;
+/// The x axis with a memory for a cycle of 85 periods, its filters made from the thesis' model.
+decltype(learning::box) with_memory() {
+    auto p = x_axis<decltype(learning::box)>();
+    const analysis::p_pi_loop loop{analysis::axis_model<>{p.plant_pole, p.plant_gain, 0.65_ms},
+                                   analysis::pi_model<>{p.velocity_gain, p.velocity_integral},
+                                   analysis::in_series{analysis::derivative_model{p.estimator_corner},
+                                                       analysis::notch_model{330_Hz, 0.0606}},
+                                   p.position_gain};
+    const auto t = [&](frequency f) { return loop.tracking(f); };
+    const auto q = analysis::smoothing_filter<61>(200_Hz, Ts);
+    const auto whole = analysis::up_to_nyquist(Ts);
+    const auto l = analysis::learning_filter<90>(t, q, 30, Ts, whole);
+    p.memory = analysis::repetitive_parameters<memory>(t, std::array<double, 2>{2, -1}, l, q, 85.0 * Ts, whole);
+    return {p, Ts};
+}
 } // namespace
 
 TEST_CASE("milling_axis: the thesis' loop in bare doubles, to 1e-9 V, in the linear range") {
@@ -197,6 +233,67 @@ TEST_CASE("milling_axis: with the observer in its slot: settled under a load wit
     CHECK(without > 4e-6);
     CHECK(with < 0.7 * without);
 }
+TEST_CASE("milling_axis: what the memory gives is added to the position error, before the position loop and "
+          "nowhere else") {
+    using echoing = milling_axis<boxes<friction, absent<signal::position, signal::voltage>, echo>>;
+    echoing a{.box = {x_axis<decltype(echoing::box)>(), Ts}};
+    axis without{.box = {x_axis(), Ts}};
+    quantity<si::length> before{};
+    for (int k = 0; k < 200; ++k) {
+        a(motion<echoing>(k), metres(place(k)));
+        without(motion(k), metres(place(k)));
+        CHECK(a.wire.position_error == without.wire.position_error);
+        CHECK(a.wire.learned == before);
+        CHECK((a.wire.demand - without.wire.demand).value() ==
+              doctest::Approx(150 * before.value()).epsilon(1e-9).scale(1e-6));
+        CHECK(a.wire.drag + a.wire.friction == without.wire.drag + without.wire.friction);
+        before = a.wire.position_error;
+    }
+    a.settle(12_mm);
+    CHECK(a.box.memory.last == 0_m);
+}
+TEST_CASE("milling_axis: a memory that learns nothing changes no bit") {
+    using forgetful = repetitive<signal::position, 100, 1, 1, 1>;
+    using with = milling_axis<boxes<friction, absent<signal::position, signal::voltage>, forgetful>>;
+    auto p = x_axis<decltype(with::box)>();
+    p.memory = {.cycle = 85.0 * Ts, .weights = {0}};
+    with a{.box = {p, Ts}};
+    axis without{.box = {x_axis(), Ts}};
+    for (int k = 0; k < 2000; ++k)
+        CHECK(a(motion<with>(k), metres(place(k))) == without(motion(k), metres(place(k))));
+}
+TEST_CASE(
+    "milling_axis: a force that repeats every 85 samples: with the memory a fiftieth of the error is left "
+    "after 30 cycles") {
+    linear_motor<> machine{
+        {.mass = 320.4_kg, .force_constant = 1450_N / 1_V, .friction = {{}, 9153_N / 1_mps}, .delay = 0.4_ms},
+        Ts};
+    learning a{.box = with_memory()};
+    quantity<si::length> reading{};
+    double first = 0, last = 0;
+    for (int k = 0; k < 30 * 85; ++k) {
+        const double w = 2 * std::numbers::pi * k / 85;
+        reading = machine(a({}, reading), (100 * std::sin(w) + 60 * std::cos(3 * w)) * 1_N);
+        auto& most = k < 85 ? first : last;
+        if (k < 85 || k >= 29 * 85) most = std::max(most, std::abs(reading.value()));
+    }
+    CHECK(first > 5e-6);
+    CHECK(last < 0.02 * first);
+    CHECK_FALSE(a.faulted());
+
+    auto twin = a; // settled in the middle of it: nothing learnt is left, and the load is held without a bump
+    a.settle(reading, 0.3_V);
+    for (int k = 0; k < 200; ++k) {
+        CHECK(a({reading, {}, {}}, reading).value() == doctest::Approx(0.3).epsilon(1e-12));
+        CHECK(a.wire.learned == 0_m);
+    }
+    twin({}, reading); // the copy still knows
+    CHECK(std::abs(twin.wire.learned.value()) > 1e-6);
+    twin.reset();
+    twin({}, 0_m);
+    CHECK(twin.wire.learned == 0_m);
+    CHECK(twin.wire.command == 0_V);
+}
 TEST_CASE("milling_axis: reset leaves it as new, copies are independent") {
     axis a{.box = {x_axis(), Ts}}, fresh{.box = {x_axis(), Ts}};
     for (int k = 0; k < 500; ++k) a(motion(k), metres(place(k)));
@@ -234,10 +331,13 @@ TEST_CASE(
     static_assert(milling_boxes<boxes<friction, half_observer>>);
     static_assert(
         milling_boxes<milling_axis_boxes<absent<s, signal::force>, absent<signal::position, signal::force>,
-                                         float, signal::force>> == false); // absent in double
-    static_assert(milling_boxes<
-                  milling_axis_boxes<absent<s, signal::force, float>,
-                                     absent<signal::position, signal::force, float>, float, signal::force>>);
+                                         absent<signal::position, signal::position>, float, signal::force>> ==
+        false); // absent in double
+    static_assert(
+        milling_boxes<
+            milling_axis_boxes<absent<s, signal::force, float>, absent<signal::position, signal::force, float>,
+                               absent<signal::position, signal::position, float>, float, signal::force>>);
+    static_assert(milling_boxes<decltype(learning::box)>);
     struct wrong : boxes<> {
         lugre<s, signal::force> friction;
     };

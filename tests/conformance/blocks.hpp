@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "motion_blocks.hpp"
+
 #include <quadrant/literals.hpp>
 #include <quadrant/quadrant.hpp>
 
@@ -165,6 +167,51 @@ inline const std::tuple blocks{
                    .attraction = p(40000_N / 1_s)},
                   T);
           }},
+    entry{"preview", 0.125, []<class R>(values<R>& p) { return previewed<3, R>({p(0.85_ms)}, T); }},
+    entry{"inverse_model", 0.125,
+          []<class R>(values<R>& p) {
+              return inverted<s::voltage, R>({p(4.526_mps2 / 1_V), p(28.57_Hz)}, T);
+          }},
+    entry{"sampled_inverse_model", 0.125,
+          []<class R>(values<R>& p) {
+              using number = parameter_real<R>;
+              return sampled_inverse_model<s::voltage, 2, s::position, R>(
+                  axis_model<s::voltage, number>{p(4.526_mps2 / 1_V), p(28.57_Hz)}, T);
+          }},
+    entry{"sampled_inverse_model, order 4", 0.125,
+          []<class R>(values<R>& p) {
+              return sampled_inverse_model<s::voltage, 4, s::position, R>(
+                  {{p(600)}, {p(7), p(13700), p(345), p(0.3), p(1e-4)}}, T);
+          }},
+    entry{"friction_feedforward", 0.125,
+          []<class R>(values<R>& p) {
+              return friction_feedforward<stribeck<s::velocity, s::force, R>, s::voltage, R>(
+                  {{p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps)}, p(1450_N / 1_V), p(31_mmps), p(0.9), at_rest::off}, T);
+          }},
+    entry{"friction_feedforward, held", 0.125,
+          []<class R>(values<R>& p) {
+              return friction_feedforward<coulomb_viscous<s::velocity, s::force, R>, s::voltage, R>(
+                  {{p(122_N), p(850_N / 1_mps)}, p(1450_N / 1_V), p(151_mmps), p(0.9), at_rest::held}, T);
+          }},
+    entry{"backlash_compensation", 0.125,
+          []<class R>(values<R>& p) {
+              return backlash_compensation<s::position, R>({p(5.03_mm), p(3.01 * 1_mps), p.fixed(3_mm)}, T);
+          }},
+    entry{"cogging_harmonics", 0.125,
+          []<class R>(values<R>& p) {
+              return cogging_harmonics<2, s::force, s::position, R>(
+                  {p(31.3_mm), {{{1, p(20_N), p(0.7)}, {5, p(20_N), p(-0.7)}}}}, T);
+          }},
+    entry{"cogging_table", 0.125,
+          []<class R>(values<R>& p) {
+              return cogging_table<5, s::force, 3, s::position, R>(
+                  {p(71.3_mm), {p.fixed(0_N), p(20_N), p(-7_N), p(13_N), p(-9_N)}}, T);
+          }},
+    entry{"cogging_table, lines", 0.125,
+          []<class R>(values<R>& p) {
+              return cogging_table<4, s::force, 1, s::position, R>(
+                  {p(71.3_mm), {p.fixed(0_N), p(20_N), p(-7_N), p(13_N)}}, T);
+          }},
     entry{"linear_motor", 8,
           []<class R>(values<R>& p) {
               return linear_motor<coulomb_viscous<s::velocity, s::force, R>, 8, R>(
@@ -187,6 +234,40 @@ inline const std::tuple blocks{
                    .delay = p(0.41_ms)},
                   T);
           }},
+    entry{
+        "table_axis", 8,
+        []<class R>(values<R>& p) {
+            using load = axis_load<cogging_force<1, R>, force_ripple<s::force, 1, R>, flexible_modes<1, R>, R>;
+            using motor = linear_motor<coulomb_viscous<s::velocity, s::force, R>, 8, R, load>;
+            using boxes = table_axis_boxes<motor, cyclic_error<1, R>>;
+            const typename load::parameters loaded{.cogging = {p.fixed(30_mm), {p(401_N)}, {p.fixed(0.0)}},
+                                                   .ripple = {p.fixed(30_mm), {p.fixed(0.1)}, {p(0.7)}},
+                                                   .modes = {p.fixed(34_kg), {{{p(47_Hz), p(0.05), p(0.2)}}}}};
+            return table_axis<boxes>{.box = {{.motor = {.mass = p.fixed(34_kg),
+                                                        .force_constant = p(1450_N / 1_V),
+                                                        .friction = {p.fixed(12_N), p(850_N / 1_mps)},
+                                                        .delay = p.fixed(0.41_ms),
+                                                        .load = loaded},
+                                              .scale = {p.fixed(20_mm), {p(0.4_mm)}, {p.fixed(0.0)}}},
+                                             T}};
+        }},
+    entry{"cogging_force", 0.125,
+          []<class R>(values<R>& p) {
+              return cogging_force<2, R>({p(31_mm), {p(8_N), p(3_N)}, {p.fixed(0.0), p.fixed(0.0)}}, T);
+          }},
+    entry{"force_ripple", 64,
+          []<class R>(values<R>& p) {
+              return force_ripple<s::force, 2, R>({p.fixed(31_mm), {p(0.1), p(0.03)}, {p(0.3), p(1.0)}}, T);
+          }},
+    entry{"flexible_modes", 64,
+          []<class R>(values<R>& p) {
+              return flexible_modes<2, R>(
+                  {p(340_kg), {{{p(47_Hz), p(0.2), p(0.21)}, {p(330_Hz), p(0.05), p(-0.3)}}}}, T);
+          }},
+    entry{"cyclic_error", 0.125,
+          []<class R>(values<R>& p) {
+              return cyclic_error<2, R>({p(31_mm), {p(0.4_mm), p(0.3_mm)}, {p.fixed(0.0), p.fixed(0.0)}}, T);
+          }},
     entry{"disturbance_observer", 0.125,
           []<class R>(values<R>& p) {
               using number = parameter_real<R>;
@@ -197,7 +278,8 @@ inline const std::tuple blocks{
           []<class R>(values<R>& p) {
               using number = parameter_real<R>;
               return disturbance_observer<s::voltage, s::velocity, 3, 0, 3, 1, R>(
-                  {p(200_Hz), nominal_plant<3, 1, number>{{p(600), p(3)}, {p.fixed(0), p.fixed(13700), p(345), p(1)}}},
+                  {p(200_Hz),
+                   nominal_plant<3, 1, number>{{p(600), p(3)}, {p.fixed(0), p.fixed(13700), p(345), p(1)}}},
                   T);
           }},
     entry{"kalman", 0.125,
@@ -240,10 +322,43 @@ inline const std::tuple blocks{
           }},
 };
 
+/// What needs no input, once: sources.cpp holds its cases.
+inline const std::tuple sources{
+    entry{"cutting_force", 0,
+          []<class R>(values<R>& p) {
+              return cutting_force<3, R>({.fundamental = 23.294_Hz,
+                                          .scale = p(0.37_N),
+                                          .harmonics = {{p(101), p(-52), p(13)}, {p(23), p.fixed(0), p(31)}},
+                                          .entry = 20_ms},
+                                         T);
+          }},
+    entry{"milling_force", 0,
+          []<class R>(values<R>& p) {
+              return milling_force<4, R>({.spindle = 12.51_Hz,
+                                          .diameter = 16_mm,
+                                          .feed_per_tooth = p(0.1_mm),
+                                          .axial_depth = p(4.1_mm),
+                                          .radial_depth = 2_mm,
+                                          .tangential = p(8.1e8 * 1_N / (1_m * 1_m)),
+                                          .radial = p(1.7e8 * 1_N / (1_m * 1_m)),
+                                          .edge_tangential = p(2.8e4 * 1_N / 1_m),
+                                          .edge_radial = p(3.1e4 * 1_N / 1_m),
+                                          .runout = p(17_um),
+                                          .runout_angle = 0.7},
+                                         T);
+          }},
+};
+template <class F> void for_each_source(F&& f) {
+    std::apply([&](const auto&... each) { (f(each), ...); }, sources);
+}
+
 /// Calls f(entry) for every block.
 template <class F> void for_each_block(F&& f) {
     std::apply([&](const auto&... each) { (f(each), ...); }, blocks);
 }
+
+/// How often this program has allocated.
+std::size_t allocated();
 
 template <class Block, class Real> using input_of = quantity_of<typename Block::input, Real>;
 template <class Block>

@@ -23,6 +23,7 @@ std::size_t allocations = 0;
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace conformance;
+std::size_t conformance::allocated() { return allocations; }
 
 namespace {
 template <class Real>

@@ -3,7 +3,7 @@
 // encoder of 0.25 um, sub-steps of 10 us, friction feedforward from the mean velocity of the last period, glitch = mean over the
 // reversals of the largest error after each. Without the encoder GMS at 10 mm/s leaves 0.08 and 0.07 um: what is published
 // there is the encoder's count.
-#include "thesis_glitch.hpp"
+#include "quadrant_reproduce/friction_run.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "estimate.hpp"
 #include "frf.hpp"
-#include "least_squares.hpp"
 #include "loop.hpp"
+#include "minimise.hpp"
 
 namespace quadrant::analysis {
 
@@ -15,7 +16,6 @@ struct plant_fit_options {
 
 /// Fitted G(s) = B e^{-s Td}/(s (s + A)) with intervals of 95 %.
 template <signal_tag Command = signal::voltage> struct plant_fit {
-    template <class Quantity> struct estimate { Quantity value, low, high; };
     estimate<frequency> pole;                              ///< A [1/s]
     estimate<gain_of<signal::acceleration, Command>> gain; ///< B
     estimate<duration> delay;                              ///< Td; of a sampled FRF with the hold's half period
@@ -30,7 +30,7 @@ template <signal_tag Command = signal::voltage> struct plant_fit {
 
 /// Fit of [Jamaludin2008] eq. (2.2) by nonlinear least squares: ln of model over measurement, real part (gain) and
 /// imaginary part (phase) of each line, weighed by its spread; so a line counts by how well it is known, not by its
-/// size. Start by a grid of A and Td, because the phase is known modulo a turn only; then Gauss-Newton with damping.
+/// size. Start by a grid of A and Td, because the phase is known modulo a turn only; then `minimise`.
 /// Intervals: from the Jacobian; widened by `surprise` where that is above 1, since then the lines' own spread does
 /// not explain the misfit. They speak of noise, not of a mode that the model does not have.
 /// Throws with fewer than 8 lines, or when the response has the sign of a negative B. Where A lies far below `from` it
@@ -95,55 +95,25 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
     require(best.cost <= reversed.cost, "fit_plant.gain", -std::exp(reversed.log_b),
             "must be above 0: turn the sign of the command or of the position");
 
-    double a = best.a, log_b = best.log_b, delay = best.delay, damping = 1e-3;
-    const auto squares = [&](double a_, double log_b_, double delay_) {
-        double sum = 0;
-        for (const point& p : points) sum += p.weight * p.weight * std::norm(off(p, a_, log_b_, delay_));
-        return sum;
-    };
     // Unknowns of comparable size: A over the fastest line, ln B, phase of Td at the fastest line.
     const double scale = fastest;
-    const auto equations = [&](double damped) {
-        least_squares out(3);
+    const auto residuals = [&](const std::vector<double>& x) {
+        std::vector<double> out;
         for (const point& p : points) {
-            const complex e = off(p, a, log_b, delay), by_a = -scale / (p.s + a), by_delay = -p.s / scale;
-            const double w = p.weight;
-            out.add({w * by_a.real(), w, w * by_delay.real()}, -w * e.real());
-            out.add({w * by_a.imag(), 0, w * by_delay.imag()}, -w * e.imag());
+            const complex e = p.weight * off(p, scale * x[0], x[1], x[2] / scale);
+            out.push_back(e.real()), out.push_back(e.imag());
         }
-        if (damped > 0)
-            for (std::size_t i = 0; i < 3; ++i) {
-                std::vector<double> row(3);
-                row[i] = damped;
-                out.add(row, 0);
-            }
-        return out.solve();
+        return out;
     };
-    double mean_weight = 0;
-    for (const point& p : points) mean_weight += p.weight * p.weight;
-    mean_weight = std::sqrt(mean_weight);
-    double cost = squares(a, log_b, delay);
-    bool converged = false;
-    for (int round = 0; round < 100 && !converged; ++round) {
-        const auto x = equations(damping * mean_weight).x;
-        const double more = squares(a + scale * x[0], log_b + x[1], delay + x[2] / scale);
-        if (more <= cost) {
-            a += scale * x[0], log_b += x[1], delay += x[2] / scale;
-            converged = cost - more <= 1e-12 * cost;
-            cost = more;
-            damping *= 0.1;
-        } else {
-            converged = std::hypot(x[0], x[1], x[2]) < 1e-12; // at the bottom, to rounding
-            damping = std::max(1e-6, damping * 10);
-        }
-    }
+    const minimum fit = minimise(residuals, {best.a / scale, best.log_b, best.delay * scale});
+    const double a = scale * fit.x[0], log_b = fit.x[1], delay = fit.x[2] / scale;
 
     double misfit = 0;
     for (const point& p : points) misfit += std::norm(off(p, a, log_b, delay)) / double(n);
-    const double surprise = cost / double(2 * n - 3);
+    const double surprise = fit.cost / double(2 * n - 3);
     const auto spread = [&](double inverse) { return 1.96 * std::sqrt(inverse * std::max(1.0, surprise)); };
-    const auto shape = equations(0).inverse_diagonal;
-    const double da = scale * spread(shape[0]), db = spread(shape[1]), dt = spread(shape[2]) / scale;
+    const double da = scale * spread(fit.variance[0]), db = spread(fit.variance[1]),
+                 dt = spread(fit.variance[2]) / scale;
     using gain = gain_of<signal::acceleration, In>;
     const auto at = [](double v) { return gain::from_value(v); };
     return {{hertz(a), hertz(a - da), hertz(a + da)},
@@ -152,7 +122,7 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
             n,
             std::sqrt(misfit),
             surprise,
-            converged};
+            fit.converged};
 }
 
 } // namespace quadrant::analysis

@@ -219,15 +219,18 @@ repetitive_performance performance(const Loop& t, const Learning& l, const Smoot
     return out;
 }
 
-/// Parameters of a `repetitive` block from its filters; refuses a loop that does not converge for every cycle.
+/// Parameters of a `repetitive` block from its filters; refuses a loop that does not converge for every cycle, or has less
+/// margin than stated: largest |Q W (1 - L T)| not below 1 - margin.
 template <class Block, frequency_response Loop, std::size_t Order, std::size_t Learning, std::size_t Smoothing>
 typename Block::parameters repetitive_parameters(const Loop& t, const std::array<double, Order>& weights,
                                                  const fir<Learning>& l, const fir<Smoothing>& q,
-                                                 duration cycle, const span& over) {
+                                                 duration cycle, const span& over, double margin = 0) {
     detail::require_span(over, l.period);
+    require(margin >= 0 && margin < 1, "repetitive_parameters.margin", margin, "must lie between 0 and 1");
     const largest worst = stability(t, l, q, weights, over);
-    require(worst.value < 1, "repetitive: largest |Q W (1 - L T)|", worst.value,
-            "must be below 1 (at " + quadrant::detail::shortest(worst.at.value()) +
+    require(worst.value < 1 - margin, "repetitive: largest |Q W (1 - L T)|", worst.value,
+            "must be below " + quadrant::detail::shortest(1 - margin) + " (at " +
+                quadrant::detail::shortest(worst.at.value()) +
                 " Hz): lower the corner of Q or give L more taps");
     return {.cycle = cycle, .weights = weights, .learning = l.taps, .ahead = l.ahead, .smoothing = q.taps};
 }

@@ -24,6 +24,7 @@ concept observes_disturbance = maps<D, signal::position, Command, Real> ||
 template <class B>
 concept milling_boxes = requires {
     typename command_of<B>; // velocity_loop
+    requires maps<decltype(B::memory), signal::position, signal::position, real_of_boxes<B>>;
     requires maps<decltype(B::position_loop), signal::position, signal::velocity, real_of_boxes<B>>;
     requires maps<decltype(B::reference_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
     requires maps<decltype(B::reference_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
@@ -41,7 +42,7 @@ concept milling_boxes = requires {
 
 /// Every wire of the diagram, readable after every step.
 template <signal_tag Command, class Real> struct milling_wires {
-    quantity_of<signal::position, Real> reference, measured, position_error;
+    quantity_of<signal::position, Real> reference, measured, position_error, learned;
     quantity_of<signal::velocity, Real> reference_velocity, measured_velocity, demand, velocity_error, travel;
     quantity_of<Command, Real> feedback, inertia, drag, linear, disturbance, compensated, friction, wanted,
         limited, command;
@@ -51,6 +52,7 @@ template <signal_tag Command, class Real> struct milling_wires {
         return std::array{tap<signal::position, &wires::reference>("reference"),
                           tap<signal::position, &wires::measured>("measured"),
                           tap<signal::position, &wires::position_error>("position_error"),
+                          tap<signal::position, &wires::learned>("learned"),
                           tap<signal::velocity, &wires::reference_velocity>("reference_velocity"),
                           tap<signal::velocity, &wires::measured_velocity>("measured_velocity"),
                           tap<signal::velocity, &wires::demand>("demand"),
@@ -70,17 +72,19 @@ template <signal_tag Command, class Real> struct milling_wires {
 };
 
 /// The axis of the milling table: P on position, PI on velocity with the notch in the velocity feedback, the inverse of
-/// the plant and its friction fed forward, a disturbance observer. The second worked loop beside `cascade`, from the same
-/// boxes; for another diagram copy the body and redraw it.
-///   e = position_loop(r - y) + notch(Vest r) - notch(Vest y), u = PI(e) + (r'' + A r')/B - d(y, u) + friction(travel)
-/// Source: [Jamaludin2008] eq. (2.10, 2.22-2.34) for the cascade, (3.5-3.8) friction, (4.1-4.20) observer.
+/// the plant and its friction fed forward, a disturbance observer, a memory of what the error was a cycle ago. The second
+/// worked loop beside `cascade`, from the same boxes; for another diagram copy the body and redraw it.
+///   e = r - y,   v = position_loop(e + memory(e)) + notch(Vest r) - notch(Vest y)
+///   u = PI(v) + (r'' + A r')/B - d(y, u) + friction(travel)
+/// Source: [Jamaludin2008] eq. (2.10, 2.22-2.34) for the cascade, (3.5-3.8) friction, (4.1-4.20) observer, ch. 5 memory.
 /// Ports: reference (position, velocity, acceleration) and measured position in, command out (to act from this sample on).
 ///   `ahead` is the reference at the moment when the command will act: the feedforward of plant and friction takes it.
 ///   Without preview it is the reference itself.
 /// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction enters behind
-/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice.
+/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A memory box gives what is
+/// added to the position error.
 /// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
-/// allows), which the observer then carries, or the PI: the next sample at the same place gives u again.
+/// allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the same place gives u again.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
 template <milling_boxes Boxes> struct milling_axis {
@@ -116,7 +120,8 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
         wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
         wire.position_error = reference.position - measured;
-        wire.demand = box.position_loop(wire.position_error) + wire.reference_velocity;
+        wire.learned = box.memory(wire.position_error);
+        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.feedback = box.velocity_loop(wire.velocity_error);
         wire.inertia = box.inertia(ahead.acceleration);
@@ -147,7 +152,12 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.reference_velocity =
             detail::settled(box.reference_notch, detail::settled(box.reference_velocity, x));
         wire.measured_velocity = detail::settled(box.measured_notch, detail::settled(box.measured_velocity, x));
-        wire.demand = detail::settled(box.position_loop, position()) + wire.reference_velocity;
+        // Nothing learnt; one that integrates has to be told that it gives nothing.
+        if constexpr (requires { box.memory.settle(position(), position()); })
+            box.memory.settle(position(), position());
+        else
+            wire.learned = detail::settled(box.memory, position());
+        wire.demand = detail::settled(box.position_loop, wire.learned) + wire.reference_velocity;
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.inertia = detail::settled(box.inertia, acceleration());
         wire.drag = detail::settled(box.drag, velocity());
@@ -190,7 +200,7 @@ private:
             return box.disturbance(measured);
     }
     static constexpr auto boxes(auto& b) noexcept {
-        return std::tie(b.position_loop, b.reference_velocity, b.reference_notch, b.measured_velocity,
+        return std::tie(b.memory, b.position_loop, b.reference_velocity, b.reference_notch, b.measured_velocity,
                         b.measured_notch, b.velocity_loop, b.inertia, b.drag, b.disturbance, b.travel,
                         b.friction, b.amplifier, b.dac);
     }

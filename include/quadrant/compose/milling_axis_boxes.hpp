@@ -15,10 +15,12 @@ namespace quadrant {
 /// The stock boxes of a `milling_axis`, from flat parameters as the thesis prints them:
 ///   milling_axis<milling_axis_boxes<maxwell_slip<4, signal::velocity, signal::voltage>>> x{.box = {parameters, 500_us}};
 /// Friction: any law from velocity to the command (`stribeck`, `dahl`, `lugre`, `maxwell_slip`), or `absent`. Disturbance:
-/// `disturbance_observer`, or `absent`. The plant is B / (s (s + A)), command to position: `plant_gain` B, `plant_pole` A.
+/// `disturbance_observer`, or `absent`. Memory: `repetitive<signal::position, ...>`, or `absent`. The plant is
+/// B / (s (s + A)), command to position: `plant_gain` B, `plant_pole` A.
 /// For another set of boxes write a struct with the same member names; see `milling_boxes`.
 template <class Friction = absent<signal::velocity, signal::voltage>,
-          class Disturbance = absent<signal::position, signal::voltage>, class Real = double,
+          class Disturbance = absent<signal::position, signal::voltage>,
+          class Memory = absent<signal::position, signal::position>, class Real = double,
           signal_tag Command = signal::voltage>
 struct milling_axis_boxes {
     using number = parameter_real<Real>; ///< of parameters
@@ -33,19 +35,21 @@ struct milling_axis_boxes {
         quantity<si::frequency, number> plant_pole{};                       ///< A, in 1/s; >= 0
         typename Friction::parameters friction{};
         typename Disturbance::parameters disturbance{};
+        typename Memory::parameters memory{};
         quantity_of<Command, number> limit;      ///< of command and integral, > 0; may be infinite
         quantity_of<Command, number> dac_step{}; ///< 0 = no rounding
     };
 
     milling_axis_boxes(const parameters& p, duration period)
-        : position_loop({p.position_gain}, period), reference_velocity({p.estimator_corner}, period),
-          reference_notch(p.notch, period), measured_velocity({p.estimator_corner}, period),
-          measured_notch(p.notch, period),
+        : memory(p.memory, period), position_loop({p.position_gain}, period),
+          reference_velocity({p.estimator_corner}, period), reference_notch(p.notch, period),
+          measured_velocity({p.estimator_corner}, period), measured_notch(p.notch, period),
           velocity_loop({p.velocity_gain, p.velocity_integral, p.limit}, period),
           inertia({number(1) / checked(p)}, period), drag({p.plant_pole / p.plant_gain}, period),
           disturbance(p.disturbance, period), travel({}, period), friction(p.friction, period),
           amplifier({-p.limit, p.limit}, period), dac({p.dac_step}, period) {}
 
+    Memory memory;
     proportional<signal::position, signal::velocity, Real> position_loop;
     filtered_derivative<signal::position, signal::velocity, Real> reference_velocity;
     quadrant::notch<signal::velocity, Real> reference_notch;

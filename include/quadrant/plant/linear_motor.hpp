@@ -5,6 +5,7 @@
 #include "../friction/coulomb_viscous.hpp"
 #include "../friction/presliding.hpp"
 #include "../friction/stick_slip.hpp"
+#include "motor_load.hpp"
 
 #include <array>
 #include <cmath>
@@ -17,6 +18,8 @@ namespace quadrant {
 /// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
 /// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
 /// or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`): friction/presliding.hpp.
+/// Load: what a motor force meets on its way to the mass, as cogging and ripple in `axis_load`; asked at x + v h/2 of each
+/// sub-step h. Default none.
 /// Ports: command u[k] [V] in, encoder reading [m] at sample k+1 out; positive command, force and motion agree.
 ///   A second argument [N] is an external force held over the period.
 /// State: position, velocity, past commands, what the friction remembers. `reset`: at rest at zero; `settle(x)`: at rest
@@ -25,12 +28,15 @@ namespace quadrant {
 ///   held command is averaged inside the sub-step where it changes).
 /// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the state,
 /// raises faulted(). Commands beyond the limit are clipped, limited() tells.
-/// Throws "linear_motor.<field> = ...: must ..." for every field and the period; the friction box throws in its own
+/// Throws "linear_motor.<field> = ...: must ..." for every field and the period; friction box and load throw in their own
 /// name.
-/// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. No other plant yet.
-template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double>
-requires(friction_law<Friction, Real> || friction_with_memory<Friction, Real>) &&
+/// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. With scale and encoder as boxes: `table_axis`.
+template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double,
+          class Load = no_load>
+requires(friction_law<Friction, Real> || friction_with_memory<Friction, Real>) && motor_load<Load, Real> &&
     (Capacity > 0) class linear_motor {
+    static constexpr bool loaded = !std::same_as<Load, no_load>;
+
 public:
     using input = signal::voltage;
     using output = signal::position;
@@ -51,6 +57,7 @@ public:
         quantity_of<signal::voltage, number> dac_step{};      ///< 0: none
         quantity_of<signal::position, number> encoder_step{}; ///< 0: none
         std::size_t substeps = 10;                            ///< per servo period; 1 ... 1000
+        typename Load::parameters load{};
     };
     struct state {
         position x{};
@@ -62,7 +69,8 @@ public:
         : given_(checked(p, period)), friction_(p.friction, period), mass_(in_real<Real>(p.mass)),
           force_constant_(in_real<Real>(p.force_constant)), limit_(in_real<Real>(p.limit)),
           dac_step_(in_real<Real>(p.dac_step)), encoder_step_(in_real<Real>(p.encoder_step)),
-          h_(quantity<si::time, Real>::from_value(Real(period.value() / static_cast<double>(p.substeps)))) {
+          h_(quantity<si::time, Real>::from_value(Real(period.value() / static_cast<double>(p.substeps)))),
+          load_(p.load, period / static_cast<double>(p.substeps)) {
         const number periods = p.delay.value() / number(period.value());
         whole_ = static_cast<std::size_t>(detail::plain(periods));
         fraction_ = Real(periods - number(static_cast<double>(whole_)));
@@ -76,20 +84,23 @@ public:
         position x = state_.x;
         velocity v = state_.v;
         [[maybe_unused]] const auto memory = remembered(); // goes back there after a fault
+        [[maybe_unused]] const Load load = load_;
         const auto n = given_.substeps;
         for (std::size_t i = 0; i < n; ++i) {
             // Share of the sub-step in which the newer command already acts.
             const Real late = fraction_ * Real(static_cast<double>(n)) - Real(static_cast<double>(i));
             const Real share = late < Real(0) ? Real(1) : late >= Real(1) ? Real(0) : Real(1) - late;
             const voltage acting = newer * share + older * (Real(1) - share);
-            const velocity next = advanced(v, force_constant_ * acting + external);
+            const velocity next =
+                advanced(v, driven(x + v * (h_ * Real(0.5)), force_constant_ * acting, external));
             x += (v + next) * (h_ * Real(0.5));
             v = next;
         }
         const position reading = rounded(x, encoder_step_); // not finite when x or v is not
-        if (!finite(u, external, reading)) {
+        if (!finite(u, external, reading) || load_faulted()) {
             state_.past[0] = state_.past[1];
             if constexpr (friction_with_memory<Friction, Real>) friction_.become(memory);
+            if constexpr (loaded) load_ = load;
             return out_.hold();
         }
         state_.x = x;
@@ -104,6 +115,7 @@ public:
         if (!finite(x, reading)) return out_.raise();
         state_ = state{.x = x};
         if constexpr (friction_with_memory<Friction, Real>) friction_.reset();
+        if constexpr (loaded) load_.reset();
         limited_ = false;
         out_.reset(reading);
     }
@@ -113,6 +125,7 @@ public:
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
     const Friction& friction() const noexcept { return friction_; } ///< its memory: friction().now()
+    const Load& load() const noexcept { return load_; }
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
@@ -145,6 +158,18 @@ private:
         } else
             return stick_slip<Real>(friction_, mass_, v, drive, h_);
     }
+    force driven([[maybe_unused]] position x, force motor, force external) noexcept {
+        if constexpr (loaded)
+            return load_(x, motor, external);
+        else
+            return motor + external;
+    }
+    bool load_faulted() const noexcept {
+        if constexpr (requires { load_.faulted(); })
+            return load_.faulted();
+        else
+            return false;
+    }
     template <class Quantity> static Quantity rounded(Quantity x, Quantity step) noexcept {
         using std::round;
         if (!(step > Quantity())) return x;
@@ -158,6 +183,7 @@ private:
     voltage limit_, dac_step_;
     position encoder_step_;
     quantity<si::time, Real> h_;
+    [[no_unique_address]] Load load_;
     std::size_t whole_ = 0;
     Real fraction_{};
     state state_;

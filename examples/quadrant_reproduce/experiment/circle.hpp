@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../friction_run.hpp"
+#include "../row.hpp"
+
+#include <quadrant/analysis/circular_test.hpp>
+
+namespace quadrant_reproduce {
+
+/// Both axes along a circle of 30 mm at 100 mm/s: half a turn to get going, one and a half turns at speed; the middle turn is
+/// judged. Radii are those of the axes, not of their encoders.
+template <class Compensation, class Observer>
+outcome circle_case(const std::string& id, const std::string& name, std::optional<double> measured) {
+    using namespace quadrant;
+    using namespace quadrant::literals;
+    const double radius = 0.03, w = 0.1 / radius, T = thesis::period.value(), started = thesis::pi_ / w;
+    const thesis::reading how{.substeps = 50};
+    thesis::friction_axis<Compensation, Observer> x(thesis::x, how), y(thesis::y, how);
+    using motion = typename decltype(x)::motion;
+    analysis::circular_path path{{}, {}, thesis::period};
+    bool diverged = false;
+    const auto samples = static_cast<int>((started + 1.25 * 2 * thesis::pi_ / w) / T);
+    for (int k = 0; k < samples && !diverged; ++k) {
+        // The angle gains speed as sin^2 does, so that its acceleration starts and ends at zero.
+        const double t = k * T, c = thesis::pi_ / started;
+        const bool starts = t < started;
+        const double angle = starts ? w * (t / 2 - std::sin(c * t) / (2 * c)) : w * (t - started / 2),
+                     rate = starts ? w * (1 - std::cos(c * t)) / 2 : w,
+                     gain = starts ? w * c * std::sin(c * t) / 2 : 0;
+        const double cs = std::cos(angle), sn = std::sin(angle);
+        // From (0, 0), where both axes stand; the centre is at (-radius, 0).
+        const motion to_x{radius * (cs - 1) * 1_m, -radius * sn * rate * 1_mps,
+                          radius * (-cs * rate * rate - sn * gain) * 1_mps2};
+        const motion to_y{radius * sn * 1_m, radius * cs * rate * 1_mps,
+                          radius * (-sn * rate * rate + cs * gain) * 1_mps2};
+        path.x.push_back(x.position() * 1_m);
+        path.y.push_back(y.position() * 1_m);
+        diverged =
+            x.stopped() || y.stopped() ||
+            !(std::hypot(to_x.position.value() - x.position(), to_y.position.value() - y.position()) < 1e-3);
+        x.step(to_x, to_x);
+        y.step(to_y, to_y);
+    }
+    outcome out;
+    if (diverged) {
+        for (const char* quantity : {"radial_max", "radial_rms"})
+            out.rows.push_back({id, quantity, "um", {}, {}, {}, {}, thesis::diverged_note});
+        return out;
+    }
+    const auto found =
+        analysis::circular_test(path, {.nominal = {.x = -radius * 1_m, .y = 0_m, .radius = radius * 1_m}});
+    const double most = std::max(found.radial_max.value(), -found.radial_min.value());
+    // Measured: Table 4.11 [Jamaludin2008].
+    out.rows = {{id, "radial_max", "um", 1e6 * most, {}, measured, {}, ""},
+                {id, "radial_rms", "um", 1e6 * found.radial_rms.value(), {}, {}, {}, ""}};
+    line polar{.name = name, .x = found.angle, .y = {}};
+    for (const auto& d : found.deviation) polar.y.push_back(1e6 * d.value());
+    const bool observed = !std::is_same_v<Observer, thesis::no_observer>;
+    out.pictures = {
+        {std::string("Radial deviation ") + (observed ? "with the observer" : "without observer"),
+         "Polar plot in um about the nominal circle; x reverses at 0 and 180 degrees, y at 90 and 270.",
+         {panel{.x_label = "",
+                .y_label = "um",
+                .lines = {std::move(polar)},
+                .polar = true,
+                .polar_zero = observed ? 20.0 : 40.0}}}};
+    return out;
+}
+
+inline experiment circle() {
+    using namespace thesis;
+    const std::string id = "thesis.circle.";
+    return {
+        "A circle of 30 mm at 100 mm/s",
+        "[Jamaludin2008] Table 4.11",
+        "Largest and rms deviation from the nominal radius over one turn, after a smooth start. The thesis "
+        "measured this on its machine; "
+        "it prints no simulation of it.",
+        0.10,
+        {{id + "none", [=] { return circle_case<none, no_observer>(id + "none", "none", 25); }},
+         {id + "static", [=] { return circle_case<static_curve, no_observer>(id + "static", "static", 7); }},
+         {id + "gms", [=] { return circle_case<gms_model, no_observer>(id + "gms", "GMS", 6); }},
+         {id + "dob", [=] { return circle_case<none, observer>(id + "dob", "observer alone", 7); }},
+         {id + "dob_static",
+          [=] { return circle_case<static_curve, observer>(id + "dob_static", "and static", 5); }},
+         {id + "dob_gms", [=] { return circle_case<gms_model, observer>(id + "dob_gms", "and GMS", 3); }}}};
+}
+
+} // namespace quadrant_reproduce

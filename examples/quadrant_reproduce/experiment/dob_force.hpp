@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../friction_run.hpp"
+#include "../row.hpp"
+
+#include <quadrant/friction/coulomb_viscous.hpp>
+
+#include <cmath>
+#include <complex>
+
+namespace quadrant_reproduce {
+
+/// Amplitude [um] of the error that a sinusoidal push of 1 V leaves on the resting, linear axis; nothing when it diverges.
+template <class Observer>
+std::optional<double> error_under_push(const thesis::axis& a, typename Observer::box::parameters observer,
+                                       double hertz) {
+    using namespace quadrant;
+    using namespace quadrant::literals;
+    using loop_type = milling_axis<milling_axis_boxes<thesis::none::box, typename Observer::box>>;
+    using motor_type = linear_motor<coulomb_viscous<>>;
+    loop_type loop{.box = {{.position_gain = thesis::position_gain,
+                            .velocity_gain = a.kp,
+                            .velocity_integral = a.ki,
+                            .estimator_corner = thesis::estimator_corner,
+                            .notch = thesis::notch_of(a),
+                            .plant_gain = a.B,
+                            .plant_pole = a.A,
+                            .disturbance = observer,
+                            .limit = 10_V},
+                           thesis::period}};
+    const quantity<si::mass> mass = a.kf / a.B;
+    motor_type motor({.mass = mass,
+                      .force_constant = a.kf,
+                      .friction = {.viscous = a.A * mass},
+                      .delay = a.delay - 0.5 * thesis::period}, // the hold is the rest of Td
+                     thesis::period);
+    const typename loop_type::motion rest{};
+    quantity<si::length> measured{};
+    std::complex<double> sum = 0;
+    const int second = 2000, settles = 2 * second;
+    for (int k = 0; k < settles + second; ++k) {
+        const double angle = 2 * thesis::pi_ * hertz * k * thesis::period.value();
+        if (k >= settles) sum += motor.now().x.value() * std::polar(2.0 / second, -angle);
+        measured = motor(loop(rest, measured), a.kf * (std::sin(angle) * 1_V));
+        if (motor.faulted() || loop.faulted() || loop.limited() || !(std::abs(measured.value()) < 0.01))
+            return std::nullopt;
+    }
+    return 1e6 * std::abs(sum);
+}
+
+inline outcome dob_force_case(const thesis::axis& a) {
+    outcome out;
+    const std::string id = std::string("thesis.dob_force.") + a.name;
+    for (const int hertz : {1, 58, 100}) {
+        const std::string quantity = "error_" + std::to_string(hertz) + "Hz_";
+        const auto add = [&](const char* what, std::optional<double> error) {
+            out.rows.push_back(
+                {id, quantity + what, "um", error, {}, {}, {}, error ? "" : thesis::diverged_note});
+        };
+        add("off", error_under_push<thesis::no_observer>(a, {}, hertz));
+        add("on", error_under_push<thesis::observer>(
+                      a, {a.corner, quadrant::axis_model<quadrant::signal::voltage>{a.B, a.A}}, hertz));
+    }
+    line off{.name = "without observer", .x = {}, .y = {}}, on{.name = "with observer", .x = {}, .y = {}};
+    for (const int hertz :
+         {1, 2, 3, 5, 7, 10, 14, 20, 25, 30, 35, 40, 45, 50, 58, 66, 75, 85, 100, 115, 130, 150, 200, 300}) {
+        const auto draw = [&](line& into, std::optional<double> error) {
+            into.x.push_back(hertz);
+            into.y.push_back(error.value_or(NAN));
+        };
+        draw(off, error_under_push<thesis::no_observer>(a, {}, hertz));
+        draw(on, error_under_push<thesis::observer>(
+                     a, {a.corner, quadrant::axis_model<quadrant::signal::voltage>{a.B, a.A}}, hertz));
+    }
+    out.pictures = {{std::string("Axis ") + a.name + ": error under a push of 1 V",
+                     "Where the lines cross the observer stops helping; above it makes worse.",
+                     {panel{.x_label = "frequency [Hz]",
+                            .y_label = "error amplitude [um]",
+                            .lines = {off, on},
+                            .log_x = true,
+                            .log_y = true}}}};
+    return out;
+}
+
+inline experiment dob_force() {
+    return {"A sinusoidal force against the observer",
+            "[Jamaludin2008] eqs. (4.1-4.20)",
+            "The resting axis on its linear model is pushed as by 1 V at the motor; simulated sample by sample "
+            "at 2 kHz with the "
+            "delay and the hold. The thesis prints no figure for this.",
+            0.02,
+            {{"thesis.dob_force.x", [] { return dob_force_case(thesis::x); }},
+             {"thesis.dob_force.y", [] { return dob_force_case(thesis::y); }}}};
+}
+
+} // namespace quadrant_reproduce

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "friction.hpp"
+
+namespace quadrant_reproduce {
+
+/// The friction experiment again, with the disturbance observer.
+inline experiment friction_dob() {
+    using namespace thesis;
+    // Measured: Table 4.10 [Jamaludin2008].
+    const std::string id = "thesis.friction_dob.";
+    return {
+        "Friction at reversals, with the disturbance observer",
+        "[Jamaludin2008] eqs. (4.1-4.20), Table 4.10",
+        "The same runs with the observer of 60 Hz (x) and 90 Hz (y) on B/(s(s+A')). Friction feedforward "
+        "enters behind "
+        "the observer's tap. At 10 mm/s the static curve makes it worse: its step at the reversal comes at "
+        "once, the "
+        "friction's over 50 um of way.",
+        0.10,
+        {{id + "x.none",
+          [=] {
+              return friction_case<none, observer>(x, id + "x.none", "observer alone", {{}, 7, {}, {}}, 2.5);
+          }},
+         {id + "x.static",
+          [=] {
+              return friction_case<static_curve, observer>(x, id + "x.static", "and static", {{}, 3, {}, {}},
+                                                           2.5);
+          }},
+         {id + "x.gms",
+          [=] {
+              return friction_case<gms_model, observer>(x, id + "x.gms", "and GMS", {{}, 2.5, {}, {}}, 4);
+          }},
+         {id + "y.none",
+          [=] {
+              return friction_case<none, observer>(y, id + "y.none", "observer alone", {{}, 11, {}, {}}, 2.5);
+          }},
+         {id + "y.static",
+          [=] {
+              return friction_case<static_curve, observer>(y, id + "y.static", "and static", {{}, 5, {}, {}},
+                                                           2.5);
+          }},
+         {id + "y.gms", [=] {
+              return friction_case<gms_model, observer>(y, id + "y.gms", "and GMS", {{}, 3, {}, {}}, 4);
+          }}}};
+}
+
+} // namespace quadrant_reproduce

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "divergence_guard.hpp"
+#include "friction_run.hpp"
+
+#include <quadrant/analysis/loop_dob.hpp>
+#include <quadrant/analysis/repetitive_design.hpp>
+#include <quadrant/friction/lugre.hpp>
+#include <quadrant/memory/repetitive.hpp>
+#include <quadrant/process/milling_harmonics.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string_view>
+#include <vector>
+
+/// Both axes along a circle while the cutter turns: [Jamaludin2008] ch. 5, Tables 5.4 and 5.6, configurations (i) to (iii).
+/// The experiments cutting and robustness share it; as a loop to read, see examples/05_milling_table.cpp.
+namespace thesis {
+
+using order_2 = std::array<double, 2>;
+inline constexpr order_2 flattest{2, -1}, first_order{1, 0};
+inline const double exact_cycle = 1 / (milling_harmonics::fundamental * period); ///< in periods, 85.859
+
+/// A cut: the thesis' own unless said otherwise. Controllers are always those of the tables.
+struct cut {
+    double radius = 0.03, feed = 0.1;    ///< m, m/s: the circle of Table 5.4, by our reading
+    double force = 1.38;                 ///< times milling_harmonics::scale
+    axis friction_x = x, friction_y = y; ///< of the machine
+    double mass = 1;                     ///< of the machine, over the one that the controller believes
+    double spindle = 1;                  ///< over 23.294 Hz
+    double cycle = 85;                   ///< of the memory, in periods; the thesis has whole ones
+    order_2 weights = flattest;
+    double smoothing = 200; ///< corner of Q, Hz
+    double learning = 1;    ///< factor on L
+    double noise = 0;       ///< of each encoder, um rms, white
+    std::size_t substeps = 10;
+    double turns = 4; ///< the first one is not counted
+};
+
+/// The complementary sensitivity that L has to invert: the cascade around a plant that its observer makes nominal.
+inline auto tracking_of(const axis& machine, const axis& believed) {
+    const analysis::axis_model<> g{machine.A_gms, machine.B, machine.delay},
+        nominal{believed.A_gms, believed.B, 0_s};
+    const analysis::q_model<> q{believed.corner};
+    return [loop = analysis::p_pi_dob_loop{loop_around(g, believed), q, analysis::inverse_model{q, nominal}}](
+               frequency f) { return loop.tracking(f); };
+}
+/// Q of 61 taps; L of 90 taps, 30 ahead, made with 200 Hz: that takes longer than a run.
+inline auto smoothing_of(const cut& c) { return analysis::smoothing_filter<61>(c.smoothing * 1_Hz, period); }
+inline const analysis::fir<90>& learning_of(const axis& a) {
+    const auto make = [](const axis& each) {
+        return analysis::learning_filter<90>(tracking_of(each, each), smoothing_of({}), 30, period,
+                                             analysis::up_to_nyquist(period));
+    };
+    static const auto of_x = make(x), of_y = make(y);
+    return a.name == std::string_view(x.name) ? of_x : of_y;
+}
+
+struct no_memory {
+    using box = absent<signal::position, signal::position>;
+    static box::parameters of(const axis&, const cut&) { return {}; }
+};
+struct memory {
+    using box = repetitive<signal::position, 100, 2>;
+    static box::parameters of(const axis& a, const cut& c) {
+        const auto& l = learning_of(a);
+        box::parameters p{c.cycle * period, c.weights, l.taps, l.ahead, smoothing_of(c).taps};
+        for (double& tap : p.learning) tap *= c.learning;
+        return p;
+    }
+};
+
+/// The machine's friction: Generalized Maxwell-slip, from the table that the cut names.
+struct gms_plant {
+    using box = maxwell_slip<4>;
+    static box::parameters of(const axis& a) {
+        return gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0));
+    }
+};
+/// Another law, and another machine: one bristle that breaks away over some 4 um, levels 10 % higher.
+struct lugre_plant {
+    using box = lugre<>;
+    static box::parameters of(const axis& a) {
+        return {{1.1 * a.curve.coulomb, 1.1 * a.curve.static_level, a.curve.stribeck_velocity, 950_N / 1_mps},
+                newtons_per_um(50),
+                2000_N / 1_mps,
+                5_mmps};
+    }
+};
+
+template <class Friction, class Observer, class Memory> struct configuration {
+    using boxes = milling_axis_boxes<typename Friction::box, typename Observer::box, typename Memory::box>;
+    static typename boxes::parameters controller(const axis& a, const cut& c) {
+        return {.position_gain = position_gain,
+                .velocity_gain = a.kp,
+                .velocity_integral = a.ki,
+                .estimator_corner = estimator_corner,
+                .notch = notch_of(a),
+                .plant_gain = a.B,
+                .plant_pole = a.A_gms,
+                .friction = Friction::of(a),
+                .disturbance = Observer::of(a),
+                .memory = Memory::of(a, c),
+                .limit = 10_V};
+    }
+};
+using uncompensated = configuration<none, no_observer, no_memory>; ///< (i)
+using compensated = configuration<gms_model, observer, no_memory>; ///< (ii)
+using learning = configuration<gms_model, observer, memory>;       ///< (iii)
+
+/// One axis of the table: loop, motor, the cutter's force on it, an encoder that may be noisy.
+template <class Configuration, class PlantFriction> class axis_in_cut {
+public:
+    using loop = milling_axis<typename Configuration::boxes>;
+    using motor = linear_motor<typename PlantFriction::box>;
+
+    axis_in_cut(const axis& a, const axis& friction, const harmonic_table<15>& harmonics, const cut& c)
+        : loop_{.box = {Configuration::controller(a, c), period}}, motor_(machine(a, friction, c), period),
+          cutter_({c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, harmonics},
+                  period),
+          noise_(1e-6 * c.noise), random_(std::uint64_t(a.name[0])) {}
+
+    void settle(quantity<si::length> at) {
+        motor_.settle(at);
+        loop_.settle(at);
+        reading_ = at;
+    }
+    void step(const typename loop::motion& r) {
+        reading_ = motor_(loop_(r, reading_), cutter_());
+        if (noise_ > 0) reading_ = 250_nm * std::round((motor_.now().x + noise_ * gauss() * 1_m) / 250_nm);
+    }
+    double position() const { return motor_.now().x.value(); } ///< of the axis, not of its encoder [m]
+    bool stopped() const { return motor_.faulted() || loop_.faulted() || loop_.limited(); }
+
+private:
+    static auto machine(const axis& a, const axis& friction, const cut& c) {
+        const quantity<si::mass> believed = a.kf / a.B;
+        typename motor::parameters p{.mass = c.mass * believed,
+                                     .force_constant = a.kf,
+                                     .friction = PlantFriction::of(friction),
+                                     .delay = 0.4_ms,
+                                     .encoder_step = 250_nm,
+                                     .substeps = c.substeps};
+        if (c.noise > 0) p.encoder_step = {};           // rounded behind the noise
+        p.friction.curve.viscous += a.A_gms * believed; // A' beside sigma
+        return p;
+    }
+    /// Box and Muller: the standard library's own differ from one another.
+    double gauss() {
+        const auto uniform = [&] { return (double(random_() >> 11) + 0.5) / 9007199254740992.0; };
+        const double radius = std::sqrt(-2 * std::log(uniform()));
+        return radius * std::cos(2 * pi_ * uniform());
+    }
+
+    loop loop_;
+    motor motor_;
+    cutting_force<15> cutter_;
+    quantity<si::length> reading_{};
+    double noise_; ///< m rms
+    std::mt19937_64 random_;
+};
+
+struct circle_result {
+    double rms = 0, largest = 0; ///< of the radial error, um; nothing when it diverged
+    bool diverged = false; ///< beyond 0.1 mm, growing from turn to turn, clipped, or a box at fault: no result
+    double stopped = 0;    ///< s; when that was seen
+    std::vector<double> angle{}, radial{}; ///< deg, um; of every sample that counts
+};
+
+/// Drives the circle, counter-clockwise from (radius, 0) and from rest. The error is that of the axes, not of the encoders.
+template <class Configuration, class PlantFriction = gms_plant> circle_result mill(const cut& c = {}) {
+    axis_in_cut<Configuration, PlantFriction> in_x(x, c.friction_x, milling_harmonics::x, c),
+        in_y(y, c.friction_y, milling_harmonics::y, c);
+    using motion = typename decltype(in_x)::loop::motion;
+    const double w = c.feed / c.radius, T = period.value(), start = 0.05; // s, of the run-in
+    const auto turn = static_cast<std::size_t>(2 * pi_ / w / T);
+    divergence_guard runs_away(100, turn);
+    circle_result found;
+    in_x.settle(c.radius * 1_m);
+    const auto samples = static_cast<std::size_t>(c.turns * static_cast<double>(turn));
+    for (std::size_t k = 0; k < samples; ++k) {
+        const double t = static_cast<double>(k) * T, fade = std::exp(-t / start);
+        const double angle = w * (t - start * (1 - fade)), speed = w * (1 - fade), gain = w / start * fade;
+        const double cosine = std::cos(angle), sine = std::sin(angle);
+        const auto along = [&](double p, double v, double a) {
+            return motion{c.radius * p * 1_m, c.radius * v * 1_mps, c.radius * a * 1_mps2};
+        };
+        const double error = 1e6 * (std::hypot(in_x.position(), in_y.position()) - c.radius);
+        if (runs_away(error) || in_x.stopped() || in_y.stopped()) return {.diverged = true, .stopped = t};
+        if (k >= turn) {
+            found.rms += error * error;
+            found.largest = std::max(found.largest, std::abs(error));
+            found.angle.push_back(std::fmod(angle * 180 / pi_, 360));
+            found.radial.push_back(error);
+        }
+        in_x.step(along(cosine, -sine * speed, -sine * gain - cosine * speed * speed));
+        in_y.step(along(sine, cosine * speed, cosine * gain - sine * speed * speed));
+    }
+    found.rms = std::sqrt(found.rms / static_cast<double>(found.radial.size()));
+    return found;
+}
+
+} // namespace thesis

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../friction/stribeck.hpp"
+#include "friction_map.hpp"
+
+#include <optional>
+
+namespace quadrant::analysis {
+
+/// Friction over the way from rest, springs relaxed.
+struct virgin_curve {
+    struct point {
+        displacement way; ///< > 0
+        quantity_of<signal::force> force;
+        double systematic; ///< standard error that all branches share: encoder count, level [N]
+        std::size_t run;   ///< index, by amplitude
+    };
+    std::vector<point> points; ///< way rising
+    std::vector<std::vector<double>>
+        branches;       ///< [branch][point]: force [N]; not a number where it was another run
+    displacement count; ///< of the encoder, the least that it moved
+
+    /// Standard error of the mean at a point, from branch to branch, and its degrees of freedom.
+    std::pair<double, double> spread(std::size_t at) const {
+        double n = 0, mean = 0, squares = 0;
+        for (const auto& branch : branches)
+            if (const double f = branch[at]; std::isfinite(f)) {
+                const double off = f - mean;
+                mean += off / ++n;
+                squares += off * (f - mean);
+            }
+        return {std::sqrt(squares / (n * (n - 1))), n - 1};
+    }
+};
+
+struct virgin_options {
+    quantity<si::mass> mass{};                          ///< its inertia is taken off; 0: not
+    gain_of<signal::force, signal::velocity> viscous{}; ///< and all viscous friction
+    std::optional<stribeck<>::parameters> level{};      ///< s(v) of the friction map: brings the curve to Fs
+    std::size_t points = 60;                            ///< of the curve; 10 ... 400
+};
+
+namespace detail {
+struct slow_branches {
+    double amplitude;                            ///< half the travel [m]
+    std::vector<std::vector<double>> way, force; ///< [branch][sample] from the reversal on, halved
+    std::vector<std::vector<double>> speed;
+};
+/// A run cut at its reversals; smoothed over a 400th of a cycle.
+template <signal_tag Command>
+slow_branches cut_at_reversals(const axis_log<Command>& run, double period, double kf, double mass,
+                               double viscous, double count) {
+    const std::size_t n = run.position.size();
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double x = run.position[i].value();
+        require(std::isfinite(x) && std::isfinite(run.command[i].value()), "axis_log.sample", double(i),
+                "must be finite");
+        low = std::min(low, x), high = std::max(high, x);
+    }
+    const auto turning = [&](const std::vector<double>& x, double play) { // where it turns by more than play
+        std::vector<std::size_t> out;
+        std::size_t top = 0, bottom = 0;
+        int way = 0;
+        for (std::size_t i = 1; i < x.size(); ++i) {
+            if (x[i] > x[top]) top = i;
+            if (x[i] < x[bottom]) bottom = i;
+            if (way >= 0 && x[i] < x[top] - play) {
+                if (way > 0) out.push_back(top);
+                way = -1, bottom = i;
+            } else if (way <= 0 && x[i] > x[bottom] + play) {
+                if (way < 0) out.push_back(bottom);
+                way = 1, top = i;
+            }
+        }
+        return out;
+    };
+    std::vector<double> x(n), u(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = run.position[i].value(), u[i] = run.command[i].value();
+    const double play = 0.5 * (high - low);
+    const auto coarse = turning(x, play);
+    slow_branches out{0.5 * (high - low), {}, {}, {}};
+    if (coarse.size() < 2) return out;
+    const std::size_t cycle = 2 * (coarse.back() - coarse.front()) / (coarse.size() - 1);
+    // At a reversal so long that the axis moves a twentieth of a count in it; on the branches short, for the knots.
+    const double share = std::sqrt(0.1 * std::max(count, 1e-4 * play) / play) / (2 * std::numbers::pi);
+    const auto half = std::max<std::size_t>(1, std::size_t(std::min(share, 1 / 60.0) * double(cycle)));
+    const auto brief = std::max<std::size_t>(1, std::min(half, cycle / 800));
+    const auto smooth = [&](const std::vector<double>& raw, std::size_t reach) {
+        std::vector<double> sum(n + 1), mean(n);
+        for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + raw[i];
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t from = i < reach ? 0 : i - reach, to = std::min(n, i + reach + 1);
+            mean[i] = (sum[to] - sum[from]) / double(to - from);
+        }
+        return mean;
+    };
+    const std::vector<double> slow = smooth(x, half);
+    const std::size_t edge = 4 * half; // of the record: nothing there
+    std::vector<double> resisting(n), speed(n);
+    for (std::size_t i = edge; i + edge < n; ++i) {
+        const double time = double(2 * half) * period;
+        speed[i] = (slow[i + 2 * half] - slow[i - 2 * half]) / (2 * time);
+        const double acceleration = (slow[i + 2 * half] - 2 * slow[i] + slow[i - 2 * half]) / (time * time);
+        resisting[i] = kf * u[i] - mass * acceleration - viscous * speed[i];
+    }
+    const std::vector<double> steady = smooth(resisting, half), force = smooth(resisting, brief);
+    x = smooth(x, brief);
+    auto turns = turning(slow, play);
+    // At the extreme the encoder stands; there the axis reverses where the friction is largest.
+    for (auto& each : turns) {
+        const double way = slow[each] > 0.5 * (low + high) ? 1 : -1;
+        std::size_t from = each, to = each;
+        while (from > edge && std::abs(slow[from - 1] - slow[each]) <= 0.1 * count) --from;
+        while (to + 1 + edge < n && std::abs(slow[to + 1] - slow[each]) <= 0.1 * count) ++to;
+        for (std::size_t i = from; i <= to; ++i)
+            if (way * steady[i] > way * steady[each]) each = i;
+    }
+    for (std::size_t b = 1; b + 1 < turns.size(); ++b) { // the first closes the loop
+        const std::size_t start = turns[b];
+        const double way = slow[turns[b + 1]] > slow[start] ? 1 : -1;
+        std::vector<double> d, f, v;
+        double furthest = -1;
+        for (std::size_t i = start; i <= turns[b + 1]; ++i) {
+            const double gone = 0.5 * way * (x[i] - slow[start]);
+            if (gone <= furthest) continue;
+            furthest = gone;
+            d.push_back(gone), f.push_back(0.5 * way * (force[i] - steady[start]));
+            v.push_back(std::abs(speed[i]));
+        }
+        out.way.push_back(d), out.force.push_back(f), out.speed.push_back(v);
+    }
+    return out;
+}
+inline double interpolated(const std::vector<double>& x, const std::vector<double>& y, double at) {
+    const auto above = std::lower_bound(x.begin(), x.end(), at);
+    if (above == x.begin()) return y.front();
+    if (above == x.end()) return y.back();
+    const auto i = std::size_t(above - x.begin());
+    return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
+}
+} // namespace detail
+
+/// Virgin curve from runs along a slow sinusoid in a closed loop, 0.1 Hz with 15 um and with 450 um on the milling table:
+/// by Masing's rule a branch that starts at a reversal from F0 is the virgin curve twice as large,
+///   F_virgin(d/2) = (F0 - F(d))/2,   F = kf u - mass a - viscous v,
+/// as long as what friction remembers is the last reversal. Each place takes the run of the smallest amplitude that
+/// reaches it: the slowest. Source: [Jamaludin2008] eq. (3.9); docs/derivations/maxwell_slip.md for the rule.
+/// `level`: a branch runs at some speed, where what slips has fallen to s(v) < Fs. What slips is where the tangent of the curve
+/// meets zero way (exact for springs that stick and slip); that part is brought to Fs, and half of the correction counts as
+/// error. Without `level` the curve is that of the speed of the run.
+/// Errors: from branch to branch; and what all share: half an encoder count at the reversal, the correction of level, the
+/// difference of two runs where both reach. A command that acts late by 1 ms is late by less than 0.3 um in these runs,
+/// at their slow ends by nothing.
+/// Throws for runs with fewer than 3 branches (2.5 cycles with the run in), and for what is not finite.
+template <signal_tag Command = signal::voltage>
+virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, duration period,
+                               gain_of<signal::force, Command> force_constant,
+                               const virgin_options& options = {}) {
+    require_positive("find_virgin_curve.period", period);
+    require_positive("find_virgin_curve.force_constant", force_constant);
+    require_not_negative("virgin_options.mass", options.mass);
+    require_not_negative("virgin_options.viscous", options.viscous);
+    require(options.points >= 10 && options.points <= 400, "virgin_options.points", double(options.points),
+            "must lie between 10 and 400");
+    require(!runs.empty() && 5 * runs.size() <= options.points, "find_virgin_curve.runs", double(runs.size()),
+            "must be one or more, and no more than a fifth of virgin_options.points");
+    std::vector<detail::slow_branches> cut;
+    double count = HUGE_VAL;
+    for (const auto& run : runs) {
+        require(run.position.size() == run.command.size(), "axis_log.position", double(run.position.size()),
+                "must hold as many samples as command");
+        const double here = detail::count_of(run.position);
+        cut.push_back(detail::cut_at_reversals(run, period.value(), force_constant.value(),
+                                               options.mass.value(), options.viscous.value(), here));
+        require(cut.back().way.size() >= 3, "find_virgin_curve.branches", double(cut.back().way.size()),
+                "must be 3 or more after the run in: record another cycle");
+        count = std::min(count, here);
+    }
+    std::sort(cut.begin(), cut.end(), [](const auto& a, const auto& b) { return a.amplitude < b.amplitude; });
+    virgin_curve out{{}, {}, displacement::from_value(count)};
+    // Places: evenly in their logarithm, as many for each run; to 0.9 of its amplitude, where a branch ends.
+    std::vector<double> ways;
+    std::vector<std::size_t> source;
+    double from = std::max(0.5 * count, 0.01 * cut.front().amplitude);
+    for (std::size_t r = 0; r < cut.size(); ++r) {
+        const double to = 0.9 * cut[r].amplitude;
+        const std::size_t share = options.points / cut.size();
+        for (std::size_t i = r == 0 ? 0 : 1; to > from && i <= share; ++i)
+            ways.push_back(from * std::pow(to / from, double(i) / double(share))), source.push_back(r);
+        from = std::max(from, to);
+    }
+    const std::size_t n = ways.size();
+    const auto mean_of = [&](std::size_t r, const std::vector<std::vector<double>>& values, double way) {
+        double sum = 0;
+        for (std::size_t b = 0; b < values.size(); ++b)
+            sum += detail::interpolated(cut[r].way[b], values[b], way) / double(values.size());
+        return sum;
+    };
+    const auto slope = [&](std::size_t r, double way) { // over a fifth either way, two counts at least
+        const double reach = std::max(0.2 * way, 2 * count), start = std::max(0.0, way - reach);
+        return (mean_of(r, cut[r].force, way + reach) - mean_of(r, cut[r].force, start)) /
+               (way + reach - start);
+    };
+    const auto lifted = [&](std::size_t r, double way) { // to Fs, by what factor
+        const double force = mean_of(r, cut[r].force, way);
+        if (!options.level || !(force > 0)) return 1.0;
+        const stribeck<> curve(*options.level, period);
+        const double at_rest = curve.breakaway().value();
+        const double here =
+            curve.slip(quantity_of<signal::velocity>::from_value(mean_of(r, cut[r].speed, way))).value();
+        const double slips = std::clamp(force - slope(r, way) * way, 0.0, force);
+        return 1 + slips * (2 * at_rest / (at_rest + here) - 1) / force;
+    };
+    double disagree = 0, compared = 0; // of neighbouring runs, in the last octave that both reach
+    for (std::size_t r = 0; r + 1 < cut.size(); ++r)
+        for (double share = 0.45; share < 0.9; share += 0.05, ++compared) {
+            const double way = share * cut[r].amplitude;
+            disagree += mean_of(r, cut[r].force, way) * lifted(r, way) /
+                            (mean_of(r + 1, cut[r + 1].force, way) * lifted(r + 1, way)) -
+                        1;
+        }
+    if (compared > 0) disagree = std::abs(disagree / compared);
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t r = source[i];
+        const double factor = lifted(r, ways[i]), force = factor * mean_of(r, cut[r].force, ways[i]);
+        const double steepest = std::max(slope(r, ways[i]), slope(r, std::max(0.0, ways[i] - 2 * count)));
+        const double place = steepest * count / (2 * std::sqrt(12.0)); // uniform over a count of the whole way
+        out.points.push_back({displacement::from_value(ways[i]), quantity_of<signal::force>::from_value(force),
+                              std::hypot(place, 0.5 * (1 - 1 / factor) * force, disagree * force), r});
+    }
+    for (std::size_t r = 0; r < cut.size(); ++r)
+        for (std::size_t b = 0; b < cut[r].way.size(); ++b) {
+            std::vector<double> forces(n, NAN);
+            for (std::size_t i = 0; i < n; ++i)
+                if (source[i] == r)
+                    forces[i] =
+                        lifted(r, ways[i]) * detail::interpolated(cut[r].way[b], cut[r].force[b], ways[i]);
+            out.branches.push_back(forces);
+        }
+    return out;
+}
+
+} // namespace quadrant::analysis

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../signal.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+
+namespace quadrant {
+
+/// A quantity that repeats along the travel: sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i).
+template <signal_tag Signal, std::size_t Harmonics, class Real = double>
+requires(Harmonics > 0) struct periodic {
+    quantity_of<signal::position, Real> period;              ///< of the first harmonic; > 0
+    std::array<quantity_of<Signal, Real>, Harmonics> size{}; ///< finite
+    std::array<Real, Harmonics> phase{};                     ///< [rad]
+};
+
+namespace detail {
+/// The sum above, its phases worked in: one sine and one cosine a call. Source of the parameters' convention:
+/// gap/FORMAT.md.
+template <signal_tag Signal, std::size_t Harmonics, class Real> class periodic_sum {
+public:
+    template <class Number>
+    periodic_sum(const std::string& block, const periodic<Signal, Harmonics, Number>& p)
+        : period_(in_real<Real>(p.period)) {
+        using std::cos, std::sin;
+        require_positive((block + ".period").c_str(), p.period);
+        for (std::size_t i = 0; i < Harmonics; ++i) {
+            require_finite((block + ".size").c_str(), p.size[i]);
+            require_finite((block + ".phase").c_str(), p.phase[i]);
+            sine_[i] = in_real<Real>(p.size[i] * Number(cos(p.phase[i])));
+            cosine_[i] = in_real<Real>(p.size[i] * Number(sin(p.phase[i])));
+        }
+    }
+    quantity_of<Signal, Real> operator()(quantity_of<signal::position, Real> x) const noexcept {
+        using std::cos, std::sin;
+        const Real turns = x / period_;
+        const Real part = turns - Real(std::floor(plain(turns))); // near zero even far away
+        const Real angle = part * Real(2 * std::numbers::pi), c1 = cos(angle), s1 = sin(angle);
+        Real c = c1, s = s1;
+        quantity_of<Signal, Real> sum{};
+        for (std::size_t i = 0; i < Harmonics; ++i) {
+            sum += sine_[i] * s + cosine_[i] * c;
+            const Real next = c * c1 - s * s1; // angle addition
+            s = s * c1 + c * s1;
+            c = next;
+        }
+        return sum;
+    }
+
+private:
+    quantity_of<signal::position, Real> period_;
+    std::array<quantity_of<Signal, Real>, Harmonics> sine_{}, cosine_{};
+};
+} // namespace detail
+
+} // namespace quadrant

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSL-1.0
+// The command of y is sent to x and that of x to y.
+// MUST SAY: use of deleted function | invokes a deleted function
+// MUST SAY: axis::y
+#include "quadrant/compose/xy_table.hpp"
+using namespace quadrant;
+
+using table = xy_table<table_axis_boxes<>, table_axis_boxes<>>;
+using volts = quantity_of<signal::voltage>;
+table::positions step(table& t, along<axis::x, volts> ux, along<axis::y, volts> uy) {
+#ifdef MEND
+    const table::commands u{.x = ux, .y = uy};
+#else
+    const table::commands u{.x = uy, .y = ux};
+#endif
+    return t(u);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSL-1.0
+// Two plain voltages: which is whose?
+// MUST SAY: along<quadrant::axis::x | along<axis::x
+// MUST SAY: could not convert | no viable conversion | chosen constructor is explicit
+#include "quadrant/compose/xy_table.hpp"
+using namespace quadrant;
+
+using table = xy_table<table_axis_boxes<>, table_axis_boxes<>>;
+using volts = quantity_of<signal::voltage>;
+table::positions step(table& t, volts ux, volts uy) {
+#ifdef MEND
+    const table::commands u{.x = on_x(ux), .y = on_y(uy)};
+#else
+    const table::commands u{ux, uy};
+#endif
+    return t(u);
+}

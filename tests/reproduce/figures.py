@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSL-1.0
+"""The rows of quadrant-reproduce --json: complete, of the right form, and as near to the reference as issue 3 asks.
+
+figures.py ROWS.json
+"""
+import json
+import math
+import sys
+
+KEYS = ["id", "quantity", "unit", "simulated", "published_simulated", "published_measured", "reference_computation", "note"]
+LOOP = ["velocity_gain_margin", "velocity_phase_margin", "velocity_bandwidth", "position_gain_margin", "position_phase_margin",
+        "position_bandwidth"]
+MODEL = LOOP + ["tracking_ratio_10Hz", "min_dynamic_stiffness", "velocity_corner", "position_corner"]
+PUSH = [f"error_{hz}Hz_{how}" for hz in (1, 58, 100) for how in ("off", "on")]
+GLITCH = ["quadrant_glitch_100", "quadrant_glitch_10"]
+
+# As shared/reference/thesis.md lists them under "Experiments".
+ASKED = {"thesis.repetitive": ["gamma_p", "gamma_np"]}
+for axis in "xy":
+    ASKED[f"thesis.loop.{axis}"] = MODEL
+    ASKED[f"thesis.loop_modes.{axis}"] = MODEL
+    ASKED[f"thesis.loop_dob.{axis}"] = LOOP
+    ASKED[f"thesis.dob_force.{axis}"] = PUSH
+    ASKED[f"thesis.identify.{axis}"] = ["Fc", "Fs"] + [f"virgin_{um}um" for um in (1, 5, 15, 30)]
+    for how in ("none", "static", "gms"):
+        ASKED[f"thesis.friction.{axis}.{how}"] = ASKED[f"thesis.friction_dob.{axis}.{how}"] = GLITCH
+for how in ("none", "static", "gms", "dob", "dob_static", "dob_gms"):
+    ASKED[f"thesis.circle.{how}"] = ["radial_max", "radial_rms"]
+for configuration in ("i", "ii", "iii"):
+    ASKED[f"thesis.cutting.{configuration}"] = ["radial_rms"]
+
+# Figures of the reference that the program must hold beside its own: a change of these is no repair.
+REFERENCE = {
+    ("thesis.loop.x", "position_gain_margin"): 15.6, ("thesis.loop.y", "position_bandwidth"): 29.3,
+    ("thesis.loop.x", "min_dynamic_stiffness"): 13.4, ("thesis.loop_dob.x", "position_bandwidth"): 33.7,
+    ("thesis.loop_dob.y", "position_gain_margin"): 12.9,
+    ("thesis.friction.x.none", "quadrant_glitch_100"): 21.8, ("thesis.friction.y.none", "quadrant_glitch_100"): 30.4,
+    ("thesis.friction.x.static", "quadrant_glitch_100"): 5.0, ("thesis.friction.y.static", "quadrant_glitch_100"): 10.6,
+    ("thesis.friction.x.gms", "quadrant_glitch_100"): 0.94, ("thesis.friction.y.gms", "quadrant_glitch_100"): 1.3,
+    ("thesis.friction.x.none", "quadrant_glitch_10"): 16.8, ("thesis.friction.y.none", "quadrant_glitch_10"): 20.9,
+    ("thesis.friction.x.static", "quadrant_glitch_10"): 9.7, ("thesis.friction.y.static", "quadrant_glitch_10"): 20.4,
+    ("thesis.friction.x.gms", "quadrant_glitch_10"): 0.17, ("thesis.friction.y.gms", "quadrant_glitch_10"): 0.41,
+    ("thesis.cutting.i", "radial_rms"): 11.4, ("thesis.cutting.ii", "radial_rms"): 4.4,
+    ("thesis.repetitive", "gamma_p"): 0.0628, ("thesis.repetitive", "gamma_np"): 6.02,
+}
+
+
+def tolerance(identifier):
+    return 0.02 if identifier.startswith(("thesis.loop", "thesis.repetitive")) else 0.10
+
+
+def faults(rows):
+    found = {}
+    for row in rows:
+        name = f"{row.get('id')} {row.get('quantity')}"
+        if list(row) != KEYS:
+            yield f"{name}: keys {list(row)}"
+            continue
+        if (row["id"], row["quantity"]) in found:
+            yield f"{name}: twice"
+        found[row["id"], row["quantity"]] = row
+        for key in KEYS[3:7]:
+            value = row[key]
+            if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value)):
+                yield f"{name}: {key} = {value}"
+        if row["note"] is not None and (not isinstance(row["note"], str) or not row["note"]):
+            yield f"{name}: a note that is empty is null"
+        if row["simulated"] is None and row["note"] is None:
+            yield f"{name}: no figure, and no note that says why"
+        reference = row["reference_computation"]
+        if reference is not None:
+            off = math.inf if row["simulated"] is None else abs(row["simulated"] / reference - 1)
+            print(f"{name}: {row['simulated']} beside {reference}: {100 * off:.2f} %")
+            if off > tolerance(row["id"]):
+                yield f"{name}: {row['simulated']} lies {100 * off:.1f} % from the reference {reference}"
+    for identifier, quantities in ASKED.items():
+        for quantity in quantities:
+            if (identifier, quantity) not in found:
+                yield f"{identifier} {quantity}: no row"
+            elif found[identifier, quantity]["simulated"] is None:
+                yield f"{identifier} {quantity}: no figure"
+    for key, reference in REFERENCE.items():
+        if key in found and found[key]["reference_computation"] != reference:
+            yield f"{' '.join(key)}: the reference is {reference}, not {found[key]['reference_computation']}"
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        rows = json.load(file)
+    wrong = list(faults(rows))
+    for each in wrong:
+        print(f"FAILED: {each}")
+    print(f"{len(rows)} rows, {len(wrong)} faults")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSL-1.0
+"""docs/reproduction.md against a run: the same words, and every figure within 0.5 % (distances within 0.6 of a per cent).
+
+same_text.py COMMITTED.md WRITTEN.md
+"""
+import re
+import sys
+
+NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?(?: %)?)")
+
+
+def differs(a, b):
+    if a == b:
+        return False
+    if not (NUMBER.fullmatch(a) and NUMBER.fullmatch(b)) or a.endswith("%") != b.endswith("%"):
+        return True
+    if a.endswith("%"):
+        return abs(float(a[:-2]) - float(b[:-2])) > 0.6
+    return abs(float(a) - float(b)) > 0.005 * abs(float(a))
+
+
+def main():
+    committed, written = ([NUMBER.split(line) for line in open(path, encoding="utf-8")] for path in sys.argv[1:3])
+    wrong = [(k, "".join(a), "".join(b)) for k, (a, b) in enumerate(zip(committed, written), 1)
+             if len(a) != len(b) or any(map(differs, a, b))]
+    for k, a, b in wrong[:20]:
+        print(f"FAILED: line {k}\n  committed {a}  written   {b}", end="")
+    if len(committed) != len(written):
+        print(f"FAILED: {len(committed)} lines committed, {len(written)} written")
+    if wrong or len(committed) != len(written):
+        sys.exit("write it again: quadrant-reproduce --markdown docs/reproduction.md")
+    print(f"{len(written)} lines agree")
+
+
+if __name__ == "__main__":
+    main()
