@@ -78,8 +78,8 @@ TEST_CASE("predictor: a right model leaves nothing, a missing force leaves d / (
     plant_model real(d);
     real.constant_force = force;
     std::vector<double> position, command;
-    plant_model::state s;
-    const plant_model::stepper older(real, 0.0003), newer(real, period - 0.0003);
+    plant_state s;
+    const stepper older(real, 0.0003), newer(real, period - 0.0003);
     for (std::size_t k = 0; k < 6000; ++k) {
         position.push_back(s.x);
         command.push_back(std::sin(0.01 * static_cast<double>(k)));
@@ -114,8 +114,8 @@ TEST_CASE("plant model: moves as the library's linear motor does, and sticks") {
                       .viscous = q::gain_of<q::signal::force, q::signal::velocity>::from_value(300)},
          .substeps = 20},
         q::duration::from_value(0.0005)};
-    const plant_model::stepper step(model, 0.0005 / 20);
-    plant_model::state s;
+    const stepper step(model, 0.0005 / 20);
+    plant_state s;
     for (int k = 0; k < 4000; ++k) {
         const double u = 0.2 * std::sin(0.004 * k);
         motor(q::quantity<q::si::electric_potential>::from_value(u));
@@ -181,8 +181,8 @@ TEST_CASE("closed loop: the simulation of the right machine follows its log with
     plant.force_constant_N_per_V = real.force_constant;
     plant.viscous_N_s_per_m = real.viscous;
     plant.coulomb_N = real.coulomb;
-    const auto out = simulate_closed_loop(*file.axes[0].controller, file.axes[0], plant_model(plant),
-                                          workshop::period, log.reference, log.position, log.command);
+    const auto out =
+        simulate_closed_loop(*file.axes[0].controller, file.axes[0], plant_model(plant), workshop::period, log);
     double sum = 0;
     for (std::size_t k = 0; k < out.position.size(); ++k) sum += std::pow(out.position[k] - log.position[k], 2);
     CHECK(std::sqrt(sum / static_cast<double>(out.position.size())) < 3 * workshop::count);

@@ -78,7 +78,7 @@ TEST_CASE("read_machine: the format's example comes out as it stands") {
     CHECK(x.tolerance.of("mass") == 0.02);
     CHECK(x.tolerance.of("viscous") == 0.1);
     CHECK(x.tolerance.of("delay") == 0.05);
-    CHECK(x.encoder_resolution_m == 2.5e-7);
+    CHECK(x.encoder.resolution_m == 2.5e-7);
     CHECK(x.actuator.limit_V == 10);
     CHECK(x.actuator.dac_bits == 16);
     CHECK(x.actuator.dac_range_V == 20);
@@ -331,15 +331,44 @@ TEST_CASE(
           "machine.json: axes.x.controller.velocity_feedforward: must be a number");
 }
 
-TEST_CASE("read_machine: an effect that this version cannot simulate is never passed over") {
-    CHECK(refused_value(plant + "/spring_N_per_m", "10") ==
-          "machine.json: axes.x.plant.spring_N_per_m: this version cannot simulate position_spring");
-    for (const auto& key : detail::unmodelled_keys) {
-        const std::string object =
-            key.object == "axis" ? "/axes/x/" : "/axes/x/" + std::string(key.object) + '/';
-        CHECK(refused_value(object + std::string(key.name), "1")
-                  .ends_with(fmt::format("{}: this version cannot simulate {}", key.name, key.effect)));
-    }
+TEST_CASE("read_machine: what belongs together is given together") {
+    const auto said = [](const std::string& path, const char* value) { return refused_value(path, value); };
+    const std::string here = "machine.json: axes.x.plant.";
+    CHECK(said(plant + "/friction_drift", "0.2") == here + "friction_drift: needs friction_drift_time_s");
+    CHECK(said(plant + "/mode_mass_kg", "20") == here + "mode_mass_kg: needs mode_frequency_Hz");
+    CHECK(said(plant + "/ripple_period_m", "0.02") == here + "ripple_period_m: needs ripple");
+    CHECK(said(plant + "/gms_weights", "[1]") == here + "gms_weights: needs gms_stiffness_N_per_m");
+    CHECK(said(plant + "/friction_position_amplitude", "0.2") ==
+          here + "friction_position_amplitude: needs friction_position_period_m");
+    CHECK(said("/axes/x/encoder/cyclic_m", "1e-7") ==
+          "machine.json: axes.x.encoder.cyclic_m: needs cyclic_period_m");
+    CHECK(said("/axes/x/process", R"({"fundamental_Hz": 20})") ==
+          "machine.json: axes.x.process.fundamental_Hz: needs force_N");
+    CHECK(said("/axes/x/process", R"({"fundamental_Hz": 20, "force_N": [1], "phase_rad": [1, 2]})") ==
+          "machine.json: axes.x.process.phase_rad: must have one entry for each of force_N");
+}
+
+TEST_CASE("read_machine: every effect that a file describes is in the plant that is simulated") {
+    const auto simulated = [](const std::string& path, const char* value) {
+        return plant_model(read_machine(with(path, value), "m").axes[0]);
+    };
+    CHECK(simulated(plant + "/backlash_m", "1e-5").backlash == 1e-5);
+    CHECK(simulated(plant + "/spring_N_per_m", "300").spring == 300);
+    CHECK(simulated(plant + "/coupling", "-0.02").coupling == -0.02);
+    CHECK(simulated("/axes/x/actuator/lag_s", "0.001").lag == 0.001);
+    CHECK(simulated("/axes/x/actuator/drive_limit_V", "4").drive_limit == 4);
+    CHECK(simulated("/axes/x/actuator/dead_zone_V", "0.01").dead_zone == 0.01);
+    CHECK(simulated("/axes/x/actuator/loss_probability", "0.1").loss == 0.1);
+    const auto process =
+        simulated("/axes/x/process", R"({"fundamental_Hz": 20, "force_N": [3, 4], "mean_N": 5})");
+    CHECK(process.cutting.at(0.0125) ==
+          doctest::Approx(3)); // a quarter of the first harmonic, half of the second
+    CHECK(process.cutting_mean == 5);
+    const auto contact = simulated(plant + "/presliding_length_m", "1e-5").friction.contact;
+    CHECK(contact.elements == 4);
+    CHECK(contact.share(1e-5) == doctest::Approx(1 - std::exp(-1.0)));
+    for (double z : {2e-6, 5e-6, 2e-5, 4e-5}) // four straight pieces stay near the exponential
+        CHECK(std::abs(contact.share(z) - (1 - std::exp(-z / 1e-5))) < 0.07);
 }
 
 TEST_CASE("read_machine: excluded effects are the format's names") {
@@ -366,23 +395,21 @@ TEST_CASE("read_machine: the schema in docs names the keys that the reader knows
         for (const auto& [key, value] : object["properties"].items()) out.insert(key);
         return out;
     };
-    const auto in_reader = [](const std::string& object, const auto& numbers, detail::key_names others) {
+    const auto in_reader = [](const auto& numbers, detail::key_names others) {
         std::set<std::string> out(others.begin(), others.end());
         for (const auto& key : numbers) out.insert(std::string(key.name));
-        for (const auto& key : detail::unmodelled_keys)
-            if (key.object == object) out.insert(std::string(key.name));
         return out;
     };
     const std::span<const detail::tolerance_key> none;
-    CHECK(in_schema("") == in_reader("", none, detail::machine_file_keys));
-    CHECK(in_schema("axis") == in_reader("axis", none, detail::axis_keys));
-    CHECK(in_schema("plant") == in_reader("plant", detail::plant_keys, detail::plant_other_keys));
-    CHECK(in_schema("tolerance") == in_reader("tolerance", detail::tolerance_keys, {}));
-    CHECK(in_schema("encoder") == in_reader("encoder", detail::encoder_keys, {}));
-    CHECK(in_schema("actuator") == in_reader("actuator", detail::actuator_keys, detail::actuator_other_keys));
+    CHECK(in_schema("") == in_reader(none, detail::machine_file_keys));
+    CHECK(in_schema("axis") == in_reader(none, detail::axis_keys));
+    CHECK(in_schema("plant") == in_reader(detail::plant_keys, detail::plant_other_keys));
+    CHECK(in_schema("tolerance") == in_reader(detail::tolerance_keys, {}));
+    CHECK(in_schema("encoder") == in_reader(detail::encoder_keys, {}));
+    CHECK(in_schema("actuator") == in_reader(detail::actuator_keys, detail::actuator_other_keys));
     CHECK(in_schema("cascade_p_pi") ==
-          in_reader("controller", detail::controller_keys_of_file, detail::controller_other_keys));
-    CHECK(in_schema("notch") == in_reader("notch", detail::notch_keys, {}));
+          in_reader(detail::controller_keys_of_file, detail::controller_other_keys));
+    CHECK(in_schema("notch") == in_reader(detail::notch_keys, {}));
     std::vector<std::string> effects;
     for (const auto& effect : effect_names) effects.emplace_back(effect.name);
     CHECK(schema["$defs"]["effect"]["enum"] == effects);

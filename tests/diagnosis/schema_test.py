@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
-usage: schema_test.py [--practice DIR] [DIAGNOSIS.json ...]
+usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
@@ -9,6 +9,7 @@ import copy
 import csv
 import json
 import pathlib
+import re
 import sys
 
 import jsonschema
@@ -23,9 +24,22 @@ def load(path):
 
 
 def validator(name):
-    schema = load(root / "docs" / "schema" / f"{name}.schema.json")
+    folder = root / "docs" / "schema"
+    schema = load(folder / f"{name}.schema.json")
     jsonschema.Draft202012Validator.check_schema(schema)
-    return jsonschema.Draft202012Validator(schema)
+    # A reference to another schema of the folder is a file beside it.
+    resolver = jsonschema.RefResolver((folder / "here").as_uri(), schema)
+    return jsonschema.Draft202012Validator(schema, resolver=resolver)
+
+
+def keys_of_the_reader():
+    """Box of the machine file -> keys that read/machine_keys.hpp knows."""
+    text = (root / "include/quadrant/diagnosis/read/machine_keys.hpp").read_text(encoding="utf-8")
+    tables = {"plant": ("plant_keys", "plant_other_keys"), "encoder": ("encoder_keys",), "process": ("process_keys", "process_other_keys"),
+              "actuator": ("actuator_keys", "actuator_other_keys"), "notch": ("notch_keys",), "axis": ("axis_keys",),
+              "cascade_p_pi": ("controller_keys_of_file", "controller_other_keys"), "tolerance": ("tolerance_keys",)}
+    return {box: {key for table in names for key in re.findall(r'"(\w+)"', re.search(rf"\b{table}\{{(.*?)\n?\}};", text, re.S)[1])}
+            for box, names in tables.items()}
 
 
 def header(path):
@@ -63,15 +77,23 @@ def changed(value, path, to):
 
 arguments = argparse.ArgumentParser()
 arguments.add_argument("--practice", type=pathlib.Path)
+arguments.add_argument("--simulation", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
-machine, log, diagnosis = validator("machine"), validator("log"), validator("diagnosis")
+machine, log, diagnosis, simulation, import_map = map(validator, ("machine", "log", "diagnosis", "simulation", "import"))
+
+for box, keys in keys_of_the_reader().items():
+    checked += 1
+    if difference := keys ^ machine.schema["$defs"][box]["properties"].keys():
+        faults.append(f"machine.schema.json and the reader differ in the keys of {box}: {sorted(difference)}")
 
 for folder in (root / "examples", root / "tests"):
     for path in sorted(folder.rglob("*.json")):
         content = load(path)
         if isinstance(content, dict) and content.get("schema") == "quadrant.machine/1":
             accept(machine, content, path)
+        if isinstance(content, dict) and content.get("schema") == "quadrant.import/1":
+            accept(import_map, content, path)
     for path in sorted(folder.rglob("*.csv")):
         if "t_s" in header(path):
             accept(log, header(path), path)
@@ -86,6 +108,8 @@ else:
 
 for path in given.diagnoses:
     accept(diagnosis, load(path), path)
+for path in given.simulation:
+    accept(simulation, load(path), path)
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 
@@ -113,6 +137,24 @@ for path, to in [
         (x + ["controller", "velocity_filter_Hz"], ...), (x + ["controller", "velocity_feedforward"], "1"),
         (x + ["controller", "gain"], 1), (x + ["controller", "notch", "damping"], ...)]:
     refuse(machine, changed(good_machine, path, to), f"machine with {'.'.join(path)} = {to}")
+
+every_effect = copy.deepcopy(good_machine)
+every_effect["axes"]["x"]["plant"] |= {
+    "coulomb_N": 1, "gms_weights": [0.25, 0.75], "gms_stiffness_N_per_m": [1e6, 1e7], "presliding_damping_s": 0.001,
+    "friction_position_amplitude": -0.2, "friction_position_period_m": 0.1, "friction_position_phase_rad": 1,
+    "friction_drift": 1.5, "friction_drift_time_s": 3, "mode_mass_kg": 0.1, "mode_frequency_Hz": 70, "mode_damping": 0.02,
+    "backlash_m": 1e-6, "spring_N_per_m": -5, "coupling": -0.1, "ripple": 0.02, "ripple_period_m": 0.024, "ripple_phase_rad": 0}
+every_effect["axes"]["x"]["encoder"] = {"resolution_m": 1e-7, "cyclic_m": 1e-7, "cyclic_period_m": 0.0004, "cyclic_phase_rad": 1}
+every_effect["axes"]["x"]["process"] = {"fundamental_Hz": 20, "force_N": [3, 1], "phase_rad": [0, 1], "mean_N": -2}
+every_effect["axes"]["x"]["actuator"] |= {"lag_s": 0.001, "drive_limit_V": 4, "dead_zone_V": 0.01, "loss_probability": 0.1}
+accept(machine, every_effect, "a machine with every effect")
+for path, to in [
+        (["plant", "gms_weights"], ...), (["plant", "gms_weights"], [0.1] * 5), (["plant", "gms_weights"], []),
+        (["plant", "friction_position_amplitude"], 1), (["plant", "friction_drift"], -1), (["plant", "mode_frequency_Hz"], ...),
+        (["plant", "ripple_period_m"], ...), (["plant", "coupling"], 1), (["encoder", "cyclic_period_m"], ...),
+        (["process", "force_N"], ...), (["process", "phase_rad"], 1), (["actuator", "lag_s"], 2),
+        (["actuator", "loss_probability"], 1)]:
+    refuse(machine, changed(every_effect, x + path, to), f"machine with {'.'.join(path)} = {to}")
 
 accept(log, ["x_cmd_V", "t_s", "note", "x_ref_m", "x_pos_m", "x_force_N"], "a log of this test")
 for names in (["x_ref_m", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_ref_m", "x_pos_m", "a"],
@@ -143,6 +185,23 @@ for path, to in [
         (["causes", 0, "parameters", "cogging_period_m", "value"], [0.03]), (["remaining", "structure"], ...),
         (["next_experiment"], ...), (["colour"], 1)]:
     refuse(diagnosis, changed(good_diagnosis, path, to), f"diagnosis with {path} = {to}")
+
+good_simulation = {"schema": "quadrant.simulation/1", "notes": [], "axes": {"x": {
+    "closed_loop": True, "command_unit": "V", "gap": gap, "where": [{"view": "velocity", "finding": "", "share": 0.5}]}}}
+accept(simulation, good_simulation, "the simulation of this test")
+for path, to in [(["axes"], {}), (["axes", "x", "gap"], ...), (["axes", "x", "command_unit"], "mV"), (["schema"], "1"),
+                 (["axes", "x", "where", 0, "share"], 2), (["axes", "x", "gap", "force_rms_N"], -1)]:
+    refuse(simulation, changed(good_simulation, path, to), f"simulation with {path} = {to}")
+
+units = set(re.findall(r'unit_name\{"(\w+)"', (root / "include/quadrant/diagnosis/import/units.hpp").read_text()))
+checked += 1
+if units != set(import_map.schema["$defs"]["source"]["properties"]["unit"]["enum"]):
+    faults.append("import.schema.json and import/units.hpp name other units")
+good_map = load(root / "examples" / "import" / "twincat_scope.map.json")
+for path, to in [(["time"], ...), (["axes"], {}), (["axes", "y", "command"], ...), (["separator"], "|"), (["header"], 0),
+                 (["axes", "y", "command", "scale"], 0), (["axes", "y", "command", "unit"], "furlong"),
+                 (["time"], {"period_s": 0}), (["colour"], 1)]:
+    refuse(import_map, changed(good_map, path, to), f"map with {path} = {to}")
 
 for fault in faults:
     print(fault, file=sys.stderr)

@@ -23,9 +23,18 @@ struct machine {
     double coulomb = 60, excess = 0, stribeck_velocity = 0.004;
     double viscous_asymmetry = 0, constant_force = 0;
     double cogging = 0, cogging_second = 0, cogging_period = 0.03;
-    double lag = 0;      ///< first-order current loop [s]
-    double spring = 0;   ///< [N/m]
-    double backlash = 0; ///< play between motor and encoder [m]
+    double lag = 0;                                                 ///< first-order current loop [s]
+    double spring = 0;                                              ///< [N/m]
+    double backlash = 0;                                            ///< play between motor and encoder [m]
+    double dead_zone = 0, drive_limit = 100, loss = 0;              ///< [V], [V], probability
+    double ripple = 0, ripple_period = 0.024;                       ///< of the force constant
+    double friction_along = 0, friction_along_period = 0.07;        ///< of the Coulomb level
+    double friction_drift = 0, friction_drift_time = 3;             ///< of the Coulomb level
+    double mode_mass = 0, mode_frequency = 70, mode_damping = 0.03; ///< second mass; not part of `mass` here
+    double cyclic = 0, cyclic_period = 0.0004;                      ///< of the encoder [m]
+    double cutting = 0, cutting_frequency = 23.3;                   ///< [N], its second harmonic half as large
+    double coupling = 0;                                            ///< of `other_acceleration`
+    std::function<double(double)> other_acceleration = [](double) { return 0.0; };
     double bristle = 2e-7;
     double noise = 8e-8; ///< of the encoder, white [m]
     controller control;
@@ -83,13 +92,16 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
     std::normal_distribution<double> noise(0, m.noise);
     const int fine = 20;
     const double h = period / fine;
-    double x = 0, v = 0, z = 0, lagged = 0, load = 0;
+    double x = 0, v = 0, z = 0, lagged = 0, load = 0, second = 0, second_v = 0;
     double estimate = 0, y1 = 0, integral = 0, r1 = 0, v1 = 0;
     std::vector<double> commands;
     for (std::size_t k = 0; k < static_cast<std::size_t>(seconds / period); ++k) {
         const double r = std::round(motion(static_cast<double>(k) * period) * 1e12) / 1e12;
-        const double y =
-            std::round(((m.backlash > 0 ? load : x) + (k > 0 ? noise(random) : 0)) / count) * count;
+        const double seen = m.backlash > 0 ? load : x;
+        const double y = std::round((seen + m.cyclic * std::sin(2 * std::numbers::pi * seen / m.cyclic_period) +
+                                     (k > 0 ? noise(random) : 0)) /
+                                    count) *
+                         count;
         const double w = 2 * std::numbers::pi * m.control.filter_Hz;
         estimate = ((2 - w * period) * estimate + 2 * w * (y - y1)) / (2 + w * period);
         y1 = y;
@@ -104,17 +116,25 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
                                                     : vr < 0 ? -1
                                                              : 0);
         u = std::round(std::clamp(u, -limit, limit) / dac) * dac;
-        commands.push_back(u);
+        const bool lost = m.loss > 0 && k > 0 && std::uniform_real_distribution<double>(0, 1)(random) < m.loss;
+        commands.push_back(lost ? commands.back() : u);
         log.reference.push_back(r);
         log.position.push_back(y);
         log.command.push_back(u);
         for (int i = 0; i < fine; ++i) {
             const double t = (static_cast<double>(k * fine) + i) * h - m.delay;
-            const double acting =
-                t < 0 ? 0 : commands[std::min(k, static_cast<std::size_t>(t / period + 1e-9))];
+            const double told = t < 0 ? 0 : commands[std::min(k, static_cast<std::size_t>(t / period + 1e-9))];
+            const double over =
+                told > 0 ? std::max(0.0, told - m.dead_zone) : std::min(0.0, told + m.dead_zone);
+            const double acting = std::clamp(over, -m.drive_limit, m.drive_limit);
             lagged = m.lag > 0 ? acting + (lagged - acting) * std::exp(-h / m.lag) : acting;
             const double side = v > 0 ? 1 : v < 0 ? -1 : 0;
-            const double level = m.coulomb + m.excess * std::exp(-std::abs(v) / m.stribeck_velocity);
+            const double now = static_cast<double>(k) * period;
+            const double level =
+                m.coulomb *
+                    (1 + m.friction_along * std::sin(2 * std::numbers::pi * x / m.friction_along_period)) *
+                    (1 + m.friction_drift * (1 - std::exp(-now / m.friction_drift_time))) +
+                m.excess * std::exp(-std::abs(v) / m.stribeck_velocity);
             double friction = m.viscous * (1 + m.viscous_asymmetry * side) * v;
             if (m.coulomb + m.excess > 0) { // LuGre, the bristle's exact exponential step
                 const double stiffness = level / m.bristle, before = z;
@@ -122,8 +142,21 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
                 friction += stiffness * z + 0.7 * std::sqrt(stiffness * m.mass) * (z - before) / h;
             }
             const double angle = 2 * std::numbers::pi * x / m.cogging_period;
-            const double force = m.force_constant * lagged - friction + m.constant_force - m.spring * x +
-                                 m.cogging * std::sin(angle + 0.7) + m.cogging_second * std::sin(2 * angle);
+            double force = m.force_constant *
+                               (1 + m.ripple * std::sin(2 * std::numbers::pi * x / m.ripple_period)) * lagged -
+                           friction + m.constant_force - m.spring * x + m.cogging * std::sin(angle + 0.7) +
+                           m.cogging_second * std::sin(2 * angle) +
+                           m.mass * m.coupling * m.other_acceleration(now);
+            const double turn = 2 * std::numbers::pi * m.cutting_frequency * now;
+            force += m.cutting * (std::sin(turn + 0.4) + 0.5 * std::sin(2 * turn));
+            if (m.mode_mass > 0) {
+                const double w0 = 2 * std::numbers::pi * m.mode_frequency;
+                const double pull =
+                    m.mode_mass * (w0 * w0 * (second - x) + 2 * m.mode_damping * w0 * (second_v - v));
+                force += pull;
+                second_v -= h * pull / m.mode_mass;
+                second += h * second_v;
+            }
             const double before_v = v;
             v += h * force / m.mass;
             x += h * (before_v + v) / 2; // the velocity alone would lead by half a step
@@ -147,7 +180,7 @@ inline quadrant::diagnosis::machine_description described(const machine& m) {
     if (m.coulomb > 0) a.plant.coulomb_N = m.coulomb * 1.03;
     a.tolerance.given = {
         {"mass", 0.02}, {"force_constant", 0.01}, {"viscous", 0.1}, {"coulomb", 0.05}, {"static", 0.05}};
-    a.encoder_resolution_m = count;
+    a.encoder.resolution_m = count;
     a.actuator = {.limit_V = limit, .dac_bits = 16, .dac_range_V = 20};
     controller_description c;
     c.position_gain_per_s = m.control.position_gain;

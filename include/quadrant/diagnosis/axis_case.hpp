@@ -16,12 +16,17 @@ public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
               const std::vector<std::string>& excluded, const rules& r, const progress& tell)
         : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
-          resolution(std::max({a.encoder_resolution_m, coarse() ? count : 0.0, l.position_step})),
+          resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
           record(prepare(l, period, resolution)), models(record, a, excluded, r, tell) {
         if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
         path = models.run();
+        count_unnamed =
+            coarse() && std::find(excluded.begin(), excluded.end(), "encoder_quantization") != excluded.end();
         noise = models.noise(path.back());
         structure = models.structure(path.back(), noise);
+        const double left = rms(models.held_out_residual(path.back())), floor = floor_force();
+        immaterial =
+            std::sqrt(std::max(0.0, left * left - floor * floor)) < r.immaterial * models.tolerance_cloud();
     }
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -37,11 +42,14 @@ public:
     std::optional<controller_finding> controller;
     std::vector<candidate> path; ///< the calibrated machine, then with one cause more each
     double noise = 0;            ///< white noise of the position [m]
-    double structure = 0;        ///< what the last model leaves above it, in log-score
+    bool immaterial = false;     ///< what the last model leaves is small beside the cloud of tolerances
+    bool count_unnamed = false; ///< a coarser count than described, and the machine file excludes it as a cause
+    double structure = 0;       ///< what the last model leaves above it, in log-score
 
     const candidate& best() const { return path.back(); }
-    bool coarse() const { return axis.encoder_resolution_m > 0 && count > 1.5 * axis.encoder_resolution_m; }
-    bool at_floor() const { return structure < limits.structure; }
+    bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
+    /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
+    bool at_floor() const { return structure < limits.structure || immaterial; }
     bool controller_differs() const { return controller && controller->differs; }
     bool controller_open() const { return controller_differs() && !controller->mended; }
     double floor_force() const {

@@ -47,7 +47,7 @@ inline std::vector<place> block_places(const axis_case& c) {
     if (c.coarse())
         out.push_back({"block", "sensor",
                        worded("the position moves in steps of %.4g m where %.4g m are described", c.count,
-                              c.axis.encoder_resolution_m),
+                              c.axis.encoder.resolution_m),
                        rest, "replay"});
     std::stable_sort(out.begin(), out.end(),
                      [](const auto& a, const auto& b) { return a.share.value > b.share.value; });

@@ -46,7 +46,7 @@ inline std::vector<parameter> calibration(const plant_description& d, const tole
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
     // Every contact gives way by some tenths of a micrometre before it slips; up to 2 um it is no cause.
     out.push_back({.key = "presliding_length_m",
-                   .of = [](plant_model& p) -> double& { return p.friction.presliding_length; },
+                   .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
                    .start = 2e-7,
                    .low = 1e-8,
                    .high = 2e-6,

@@ -10,8 +10,10 @@ namespace quadrant::diagnosis {
 struct candidate {
     std::vector<const effect*> effects;
     fit_result fit{};
-    std::vector<double> held_out{};       ///< predictive score by motion segment; larger is better
-    double total = 0;                     ///< their sum
+    std::vector<double> held_out{}; ///< predictive score by motion segment; larger is better
+    double penalty =
+        0; ///< for flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices
+    double total = 0;                     ///< their sum without the penalty
     std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
 };
 
@@ -72,7 +74,11 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
             c.held_out[segment] -= 0.5 * nu * std::log(blocks[b].at(step[fold_of(segment)]) + floor * floor);
         }
     });
-    c.total = 0;
+    double unknown = 0;
+    for (const auto& p : c.fit.parameters) unknown += p.spread > 0 ? 0 : 1;
+    c.penalty = 0.5 * unknown * std::log(static_cast<double>(std::max<std::size_t>(2, c.fit.ms.size())));
+    c.penalty += c.fit.choices;
+    c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }
 
@@ -83,38 +89,52 @@ inline std::vector<parameter> resumed(const fit_result& f) {
     return ps;
 }
 
-/// A first look at `from` with one more effect: a few iterations from every start that the effect offers, the best
-/// kept. No score yet. An effect that offers no start leaves an infinite objective.
+/// A first look at `from` with one more effect: two steps from every start that the effect offers, the slopes of the
+/// parameters that `from` has taken from there; the best kept. No score yet. An effect that offers no start leaves an
+/// infinite objective.
 inline candidate sketch(const axis_record& record, const candidate& from, const effect& added,
-                        const screening& look) {
+                        const screening& look, const std::vector<std::vector<double>>& slopes) {
     const fitter fit(record.observer, record.score);
     candidate best{.effects = from.effects};
     best.effects.push_back(&added);
     best.total = -std::numeric_limits<double>::infinity();
+    const auto resumed_from = resumed(from.fit);
     for (const auto& start : added.starts(look)) {
         plant_model plant = from.fit.plant;
         added.join(plant);
-        std::vector<parameter> ps = resumed(from.fit);
-        std::erase_if(ps, [&](const parameter& p) { // the effect's own parameters replace the described ones
-            return std::any_of(start.begin(), start.end(),
-                               [&](const parameter& q) { return &q.of(plant) == &p.of(plant); });
-        });
+        std::vector<parameter> ps;
+        std::vector<const std::vector<double>*> known;
+        for (std::size_t i = 0; i < resumed_from.size();
+             ++i) { // the effect's own parameters replace the described ones
+            const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
+                return &q.of(plant) == &resumed_from[i].of(plant);
+            });
+            if (replaced) continue;
+            ps.push_back(resumed_from[i]);
+            known.push_back(&slopes[i]);
+        }
         ps.insert(ps.end(), start.begin(), start.end());
-        if (auto trial = fit.fit(plant, ps, 3); trial.objective < best.fit.objective)
+        if (auto trial = fit.fit(plant, ps, 2, known); trial.objective < best.fit.objective)
             best.fit = std::move(trial);
     }
     return best;
 }
 
-/// Fits a sketch to the end and scores it on motion that was not fitted.
-inline void finish(const axis_record& record, candidate& c, int iterations = 12) {
+/// Scores a fitted model on motion that was not fitted.
+inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
-    c.fit = fitter(record.observer, record.score).fit(c.fit.plant, resumed(c.fit), iterations);
     Eigen::VectorXd curvature = Eigen::VectorXd::Zero(c.fit.x.size());
     for (Eigen::Index i = 0; i < curvature.size(); ++i)
         if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0)
             curvature[i] = 1 / (p.spread * p.spread);
     cross_validate(c, record.score, curvature);
+}
+
+/// Fits a sketch to the end and scores it.
+inline void finish(const axis_record& record, candidate& c) {
+    if (!std::isfinite(c.fit.objective)) return;
+    c.fit = fitter(record.observer, record.score).fit(c.fit.plant, resumed(c.fit), 30);
+    judge(record, c);
 }
 
 } // namespace quadrant::diagnosis

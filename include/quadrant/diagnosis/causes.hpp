@@ -25,7 +25,7 @@ inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     std::vector<double> score(rivals.size());
     for (const auto& draw : draws) {
         for (std::size_t j = 0; j < rivals.size(); ++j) {
-            score[j] = 0;
+            score[j] = -rivals[j].model.penalty;
             for (std::size_t s = 0; s < draw.size(); ++s) score[j] += draw[s] * rivals[j].model.held_out[s];
         }
         const double top = *std::max_element(score.begin(), score.end());
@@ -46,7 +46,11 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     std::vector<rival> out{{.model = c.best(), .name = own}};
     for (const auto& model : c.models.with_each(without))
         for (const effect* e : model.effects)
-            if (!search::has(without, e) && e != own) out.push_back({.model = model, .name = e});
+            if (!search::has(without, e) && e != own) {
+                out.push_back({.model = model, .name = e});
+                // The same model by another name is fitted as well as the first, whenever it was met.
+                if (e->name == own->equivalent) finish(c.record, out.back().model);
+            }
     weigh(out, c);
 
     const double energy = square(rms(c.models.held_out_residual(c.best())));
@@ -57,7 +61,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         // A name that mends nothing is no rival. Two whose difference is smaller than what both leave unexplained are
         // not told apart by it, nor are two that are one model (gap/FORMAT.md) while their predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
-        const bool within = pays && excess < unexplained;
+        const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
+        const bool within =
+            pays && leaner && excess < unexplained; // more flexible and no better: no second reading
         const bool equivalent = r.name->name == own->equivalent && excess < 0.2 * energy;
         if (within) r.weight = std::max(r.weight, std::exp(-excess / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
@@ -69,8 +75,8 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 }
 
 /// The probability that the cause is none of the suspects. At the floor nothing is left that could speak for it. While
-/// structure is left, whatever leaves it may also be what the name stands in for: at least 0.6 when the name has
-/// untried relatives, else as probable as what is left is large beside what the name explained.
+/// structure is left, whatever leaves it may also be what the name stands in for: as probable as what is left is large
+/// beside what the name explained.
 inline double unknown(const axis_case& c, std::size_t which) {
     constexpr double least = 0.03;
     if (c.at_floor()) return least;
@@ -78,8 +84,7 @@ inline double unknown(const axis_case& c, std::size_t which) {
     const double after = rms(c.models.held_out_residual(c.best()));
     const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
     const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
-    const bool relatives = !c.best().effects[which]->untried_relatives.empty();
-    return std::clamp(least + left / explained, relatives ? 0.6 : least, 0.95);
+    return std::clamp(least + left / explained, least, 0.95);
 }
 
 inline void widen(std::vector<parameter_estimate>& mine, const std::vector<parameter_estimate>& other) {
@@ -131,6 +136,26 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
         named.group_probability *= known;
         out.push_back(std::move(named));
     }
+    return out;
+}
+
+/// What rounding to a count alone leaves in the residual force [N].
+inline double rounding_force(const axis_case& c, double count) {
+    return residual_force_floor(c.axis.plant.mass_kg, count / std::sqrt(12.0), c.record.period,
+                                c.record.bandwidth_Hz);
+}
+
+/// An encoder that counts in coarser steps than described: the positions are multiples of the coarser count, which
+/// needs no dynamics to see.
+inline std::optional<cause> count_cause(const axis_case& c) {
+    if (!c.coarse() || c.count_unnamed) return {};
+    cause out;
+    out.axis = c.axis.name;
+    out.effect = "encoder_quantization";
+    out.exciting_motion = "any: the steps of the reading are counted";
+    out.described = true;
+    out.probability = out.group_probability = 0.97;
+    out.parameters.push_back({"encoder.resolution_m", {{c.count, c.count, c.count}}});
     return out;
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "controller_box.hpp"
-#include "plant_model.hpp"
+#include "log.hpp"
+#include "stepper.hpp"
+
+#include <random>
 
 namespace quadrant::diagnosis {
 
@@ -10,33 +13,43 @@ struct closed_loop_run {
 };
 
 /// The whole simulation as its owner would run it: described controller and given plant from the logged reference,
-/// started where the log starts. Sub-steps keep stick and the held command apart from the sampling.
+/// started where the log starts. Sub-steps keep stick and the held command apart from the sampling. Periods that lose
+/// their command are drawn, always the same ones: which they were on the machine only a log of it can tell.
 inline closed_loop_run simulate_closed_loop(const controller_description& c, const axis_description& axis,
-                                            const plant_model& plant, double period,
-                                            std::span<const double> reference, std::span<const double> position,
-                                            std::span<const double> command) {
+                                            const plant_model& plant, double period, const axis_log& log) {
     constexpr int substeps = 4;
     return with_cascade(c, axis.actuator, period, [&](auto controller) {
         closed_loop_run out;
-        const std::size_t n = reference.size();
+        const std::size_t n = log.reference.size();
         out.position.resize(n);
         out.command.resize(n);
-        start_at_row_0(controller, reference[0], reference[1], position[0], position[1], command[0], period);
+        start_at_row_0(controller, log.reference[0], log.reference[1], log.position[0], log.position[1],
+                       log.command[0], period);
         const auto whole = static_cast<std::size_t>(std::max(0.0, plant.delay) / period);
         const double first = std::max(0.0, plant.delay) - static_cast<double>(whole) * period;
-        const plant_model::stepper older(plant, (first > 0 ? first : period) / substeps),
+        const stepper older(plant, (first > 0 ? first : period) / substeps),
             newer(plant, (period - first) / substeps);
-        plant_model::state s{.x = position[0], .v = (position[1] - position[0]) / period};
+        auto s = plant_state::at(log.position[0] - plant.cyclic.at(log.position[0]),
+                                 (log.position[1] - log.position[0]) / period);
+        std::mt19937_64 random(20080901);
+        std::vector<double> applied(n);
+        const double q = axis.encoder.resolution_m;
         for (std::size_t k = 0; k < n; ++k) {
-            const double q = axis.encoder_resolution_m;
-            out.position[k] = q > 0 ? std::round(s.x / q) * q : s.x;
-            out.command[k] = k == 0 ? command[0]
-                                    : controller(quantity_of<signal::position>::from_value(reference[k]),
+            const double reading = s.load + plant.cyclic.at(s.load);
+            out.position[k] = q > 0 ? std::round(reading / q) * q : reading;
+            out.command[k] = k == 0 ? log.command[0]
+                                    : controller(quantity_of<signal::position>::from_value(log.reference[k]),
                                                  quantity_of<signal::position>::from_value(out.position[k]))
                                           .value();
-            const auto past = [&](std::size_t back) { return out.command[k >= back ? k - back : 0]; };
-            for (int i = 0; i < substeps && first > 0; ++i) older(s, past(whole + 1));
-            for (int i = 0; i < substeps; ++i) newer(s, past(whole));
+            const bool lost =
+                plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
+            applied[k] = lost ? applied[k - 1] : out.command[k];
+            const auto past = [&](std::size_t back) { return applied[k >= back ? k - back : 0]; };
+            const surroundings now{.time = static_cast<double>(k) * period,
+                                   .other_acceleration =
+                                       log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
+            for (int i = 0; i < substeps && first > 0; ++i) older(s, past(whole + 1), now);
+            for (int i = 0; i < substeps; ++i) newer(s, past(whole), now);
         }
         return out;
     });

@@ -2,6 +2,7 @@
 #pragma once
 #include "bad_input.hpp"
 #include "block_places.hpp"
+#include "calibrated.hpp"
 #include "causes.hpp"
 #include "how_far.hpp"
 
@@ -10,7 +11,7 @@ namespace quadrant::diagnosis {
 namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
-    if (c.at_floor() && !c.coarse() && !c.controller_open()) {
+    if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
         if (!causes.empty()) return verdict::explained;
         const auto& given = c.models.given();
         const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
@@ -27,7 +28,7 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     const double floor = square(c.floor_force());
     double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
     double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
-    if (c.coarse())
+    if (c.count_unnamed)
         before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
     std::string text = "axis " + c.axis.name + ": ";
     if (c.controller_differs()) {
@@ -37,9 +38,9 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
             text +=
                 "the controller that ran is not the one described and no single key of it mends the replay; ";
     }
-    if (c.coarse())
+    if (c.count_unnamed)
         text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
-                       c.axis.encoder_resolution_m);
+                       c.axis.encoder.resolution_m);
     if (c.at_floor()) {
         text += worded("%.3g N rms behind the command, the noise floor", result.gap_after.force_rms_N);
     } else {
@@ -59,8 +60,8 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text;
 }
 
-/// The motion to record next: what separates the first group, or a suspect from its untried relatives.
-inline void propose(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes) {
+/// The motion to record next: what separates the first group.
+inline void propose(diagnosis_result& out, const std::vector<cause>& causes) {
     if (!out.next.motion.empty()) return;
     for (const cause& x : causes)
         if (!x.confusable_with.empty()) {
@@ -68,13 +69,6 @@ inline void propose(diagnosis_result& out, const axis_case& c, const std::vector
             out.next.separates = {x.effect};
             out.next.separates.insert(out.next.separates.end(), x.confusable_with.begin(),
                                       x.confusable_with.end());
-            return;
-        }
-    if (c.at_floor()) return;
-    for (const effect* e : c.best().effects)
-        if (!e->untried_relatives.empty()) {
-            out.next.motion = e->exciting_motion;
-            out.next.separates = {std::string(e->name), std::string(e->untried_relatives)};
             return;
         }
 }
@@ -88,7 +82,12 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
         const bool first = command > rms(c.models.residual(c.models.given()));
         causes.insert(first ? causes.begin() : causes.end(), *of_controller);
     }
+    if (auto of_count = count_cause(c)) {
+        const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
+        causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
+    }
     how_far(c).measure(result, causes);
+    result.calibrated = calibrated(c, causes);
     result.verdict = judge(c, causes);
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
@@ -97,9 +96,26 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         describe_rest(out, c, result);
-        propose(out, c, causes);
+        propose(out, causes);
     }
     out.axes.push_back(std::move(result));
+}
+
+/// The log of one axis with the acceleration of the axis that moves most beside it, zero-phase filtered to the
+/// bandwidth of the residual force: what cross-coupling would follow.
+inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period) {
+    axis_log out = own;
+    double most = 0;
+    for (const axis_log& other : log.axes) {
+        if (other.name == own.name || other.still) continue;
+        const double bandwidth = residual_bandwidth_Hz(period);
+        auto a = derivative(derivative(zero_phase(other.position, bandwidth, period), period), period);
+        if (const double size = rms(a); size > most) {
+            most = size;
+            out.other_acceleration = std::move(a);
+        }
+    }
+    return out;
 }
 
 template <class Axes> auto named(const Axes& axes, const std::string& name) {
@@ -131,10 +147,13 @@ inline diagnosis_result diagnose(
     for (const axis_description& axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
-        const axis_log* other = holdout ? detail::named(holdout->axes, axis.name) : nullptr;
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s);
+        std::optional<axis_log> other;
+        if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
+            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s);
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        detail::diagnose_axis(
-            out, axis_case(axis, *logged, other, machine.sample_period_s, machine.excluded_effects, r, tell));
+        detail::diagnose_axis(out, axis_case(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
+                                             machine.excluded_effects, r, tell));
     }
     return out;
 }

@@ -1,26 +1,44 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "effect/actuator_dead_zone.hpp"
+#include "effect/actuator_lag.hpp"
+#include "effect/actuator_saturation.hpp"
 #include "effect/asymmetric_friction.hpp"
+#include "effect/backlash.hpp"
 #include "effect/cogging.hpp"
 #include "effect/constant_force.hpp"
 #include "effect/coulomb_friction.hpp"
+#include "effect/cross_coupling.hpp"
+#include "effect/cutting_force.hpp"
+#include "effect/encoder_cyclic_error.hpp"
 #include "effect/force_constant.hpp"
+#include "effect/force_ripple.hpp"
+#include "effect/friction_drift.hpp"
 #include "effect/mass.hpp"
+#include "effect/position_dependent_friction.hpp"
+#include "effect/position_spring.hpp"
+#include "effect/presliding_friction.hpp"
+#include "effect/sample_loss.hpp"
 #include "effect/stribeck_friction.hpp"
+#include "effect/structural_resonance.hpp"
 #include "effect/time_delay.hpp"
 #include "effect/viscous_friction.hpp"
 
 namespace quadrant::diagnosis {
 
-/// Every suspect behind the command wire. The controller is judged apart, by replay.
-inline constexpr std::array plant_effects{&suspect::coulomb_friction,
-                                          &suspect::viscous_friction,
-                                          &suspect::stribeck_friction,
-                                          &suspect::asymmetric_friction,
-                                          &suspect::mass,
-                                          &suspect::force_constant,
-                                          &suspect::time_delay,
-                                          &suspect::constant_force,
-                                          &suspect::cogging};
+/// Every suspect behind the command wire, in the order of gap/FORMAT.md. The controller is judged apart, by replay, and the
+/// encoder's count by what the positions are multiples of.
+inline constexpr std::array plant_effects{&suspect::coulomb_friction,     &suspect::viscous_friction,
+                                          &suspect::stribeck_friction,    &suspect::presliding_friction,
+                                          &suspect::asymmetric_friction,  &suspect::position_dependent_friction,
+                                          &suspect::friction_drift,       &suspect::mass,
+                                          &suspect::structural_resonance, &suspect::backlash,
+                                          &suspect::constant_force,       &suspect::position_spring,
+                                          &suspect::cross_coupling,       &suspect::cogging,
+                                          &suspect::force_ripple,         &suspect::force_constant,
+                                          &suspect::time_delay,           &suspect::actuator_lag,
+                                          &suspect::actuator_saturation,  &suspect::actuator_dead_zone,
+                                          &suspect::sample_loss,          &suspect::encoder_cyclic_error,
+                                          &suspect::cutting_force};
 
 } // namespace quadrant::diagnosis

@@ -32,11 +32,12 @@ struct block_quadratic {
 };
 
 struct fit_result {
-    plant_model plant{plant_description{}};
+    plant_model plant{};
     std::vector<parameter> parameters{};
     Eigen::VectorXd x{}; ///< fit coordinates
     std::vector<double> innovation{};
     std::vector<double> ms{}, ms_mean{}; ///< by block
+    double choices = 0;                  ///< score that the model took from the log itself, see predictor::run
     std::vector<block_quadratic> quadratic{}, quadratic_mean{};
     double objective = std::numeric_limits<double>::infinity();
 };
@@ -58,14 +59,24 @@ public:
         return sum;
     }
 
-    fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const {
+    /// How the innovation moves with each parameter.
+    std::vector<std::vector<double>> slopes(const fit_result& r) const {
+        std::vector<std::vector<double>> out(r.parameters.size());
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] = slope(r, static_cast<Eigen::Index>(i));
+        return out;
+    }
+
+    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
+    /// at one more effect: the others' slopes are those of the model without it.
+    fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations,
+                   const std::vector<const std::vector<double>*>& known = {}) const {
         const auto n = static_cast<Eigen::Index>(ps.size());
         fit_result best{.plant = start, .parameters = ps, .x = Eigen::VectorXd(n)};
         for (Eigen::Index i = 0; i < n; ++i) best.x[i] = p(ps, i).to_fit(p(ps, i).start);
         evaluate(best);
         double damping = 1e-3;
         for (int iteration = 0;; ++iteration) {
-            linearize(best);
+            linearize(best, known);
             if (iteration == iterations || n == 0) break;
             bool better = false;
             double gain = 0;
@@ -80,7 +91,7 @@ public:
                 }
             }
             if (!better || gain < 0.1) { // a hair beside the margins of the selection
-                if (better) linearize(best);
+                if (better) linearize(best, known);
                 break;
             }
         }
@@ -89,11 +100,13 @@ public:
 
     void evaluate(fit_result& r) const {
         put(r.plant, r.parameters, r.x);
-        predictor_.run(r.plant, r.innovation);
+        const double choices = predictor_.run(r.plant, r.innovation);
+        // As many of a block's rows are independent as its score says.
+        r.choices = choices * (scoring_.nu + scoring_.nu_mean) / static_cast<double>(scoring_.block);
         r.ms = detail::block_ms(r.innovation, scoring_.skip, scoring_.block);
         r.ms_mean = detail::block_ms(detail::means(r.innovation, scoring_.skip, scoring_.mean), 0,
                                      scoring_.block / scoring_.mean);
-        r.objective = score_ms(r.ms, r.ms_mean) + prior(r);
+        r.objective = score_ms(r.ms, r.ms_mean) + prior(r) + r.choices;
         if (!std::isfinite(r.objective)) r.objective = std::numeric_limits<double>::infinity();
     }
 
@@ -111,19 +124,23 @@ private:
         return ps[static_cast<std::size_t>(i)];
     }
 
-    void linearize(fit_result& r) const {
-        const auto n = r.x.size();
-        std::vector<std::vector<double>> d(static_cast<std::size_t>(n)), dm(d.size());
+    std::vector<double> slope(const fit_result& r, Eigen::Index i) const {
+        const auto& q = p(r.parameters, i);
+        const double up = q.to_fit(q.high), h = r.x[i] + q.step > up ? -q.step : q.step;
+        plant_model plant = r.plant;
+        q.of(plant) = q.from_fit(r.x[i] + h);
         std::vector<double> moved;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto& q = p(r.parameters, i);
-            const double up = q.to_fit(q.high), h = r.x[i] + q.step > up ? -q.step : q.step;
-            plant_model plant = r.plant;
-            q.of(plant) = q.from_fit(r.x[i] + h);
-            predictor_.run(plant, moved);
-            for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation[k]) / h;
-            dm[static_cast<std::size_t>(i)] = detail::means(moved, scoring_.skip, scoring_.mean);
-            d[static_cast<std::size_t>(i)] = moved;
+        predictor_.run(plant, moved);
+        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation[k]) / h;
+        return moved;
+    }
+
+    void linearize(fit_result& r, const std::vector<const std::vector<double>*>& known) const {
+        const auto n = static_cast<std::size_t>(r.x.size());
+        std::vector<std::vector<double>> d(n), dm(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            d[i] = i < known.size() && known[i] ? *known[i] : slope(r, static_cast<Eigen::Index>(i));
+            dm[i] = detail::means(d[i], scoring_.skip, scoring_.mean);
         }
         r.quadratic = quadratics(r.innovation, d, scoring_.skip, scoring_.block, r.ms.size());
         r.quadratic_mean = quadratics(detail::means(r.innovation, scoring_.skip, scoring_.mean), dm, 0,

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "axis_case.hpp"
+#include "causes.hpp"
 #include "closed_loop.hpp"
 #include "places.hpp"
+#include "restart.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -27,6 +28,10 @@ public:
         std::optional<controller_description> controller = case_.axis.controller;
         for (cause& c : causes) {
             const bool of_controller = c.effect == "controller_mismatch";
+            if (c.effect == "encoder_quantization") {
+                compare_rounding(c, before);
+                continue;
+            }
             if (of_controller)
                 controller = case_.mended();
             else
@@ -55,17 +60,16 @@ private:
 
     stage at(const candidate& model, const std::optional<controller_description>& controller) const {
         stage s;
+        plant_model plant = model.fit.plant;
         if (case_.holdout) {
+            plant = restarted(plant, judged_);
             std::vector<double> e, a;
-            judged_.observer.run(model.fit.plant, e, &a);
-            s.force =
-                residual_force(model.fit.plant, judged_.position, a, judged_.period, judged_.bandwidth_Hz);
+            judged_.observer.run(plant, e, &a);
+            s.force = residual_force(plant, judged_.position, a, judged_.period, judged_.bandwidth_Hz);
         } else {
             s.force = case_.models.held_out_residual(model);
         }
-        if (controller)
-            s.loop = simulate_closed_loop(*controller, case_.axis, model.fit.plant, judged_.period,
-                                          log_.reference, log_.position, log_.command);
+        if (controller) s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
         return s;
     }
     static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -93,6 +97,19 @@ private:
         c.gap_before_command_rms_V = interval(energy(difference(before.command, log_.command)));
         c.gap_after_command_rms_V = interval(energy(difference(after.command, log_.command)));
     }
+    /// Where rounding falls no model can tell: its energy is taken off as a whole.
+    void compare_rounding(cause& c, const stage& s) const {
+        const segment_energy now = energy(s.force);
+        const std::vector<double> all(judged_.segments, 1.0);
+        const double whole = square(now.rms(all));
+        const double taken = square(rounding_force(case_, case_.count)) -
+                             square(rounding_force(case_, case_.axis.encoder.resolution_m));
+        const double share = whole > 0 ? std::clamp(1 - taken / whole, 0.0, 1.0) : 1;
+        std::vector<double> left = s.force;
+        for (double& f : left) f *= std::sqrt(share);
+        compare(c, now, energy(left));
+    }
+    static double square(double x) { return x * x; }
     gap_numbers numbers(const stage& s) const {
         const std::vector<double> all(judged_.segments, 1.0);
         gap_numbers g;

@@ -13,6 +13,8 @@ struct axis_log {
     std::vector<double> reference;  ///< position reference [m]
     std::vector<double> position;   ///< position as the controller read it [m]
     std::vector<double> command;    ///< controller output of that row, after limit and DAC
+    std::vector<double>
+        other_acceleration{};  ///< of the axis that may be coupled to this one [m/s^2]; empty: alone
     double reference_step = 0; ///< half of the last written digit bounds the rounding of the column; 0: exact
     double position_step = 0;  ///< the same for the position column
     double command_step = 0;   ///< the same for the command column

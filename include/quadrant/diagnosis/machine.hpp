@@ -21,6 +21,15 @@ struct plant_description {
     std::optional<double> constant_force_N;                     ///< added to the motor's force
     std::optional<double> cogging_period_m;
     std::vector<double> cogging_N, cogging_phase_rad; ///< one entry a harmonic
+    std::optional<double> presliding_length_m;        ///< deflection at 1 - 1/e of the Coulomb level
+    std::optional<double> presliding_damping_s;       ///< of the contact before it slips, over its stiffness
+    std::vector<double> gms_weights, gms_stiffness_N_per_m; ///< one entry an element; the weights add up to 1
+    std::optional<double> friction_position_amplitude, friction_position_period_m, friction_position_phase_rad;
+    std::optional<double> friction_drift, friction_drift_time_s;
+    std::optional<double> mode_mass_kg, mode_frequency_Hz, mode_damping; ///< second mass, part of mass_kg
+    std::optional<double> backlash_m, spring_N_per_m;
+    std::optional<double> coupling; ///< this axis' acceleration gains coupling times the other's
+    std::optional<double> ripple, ripple_period_m, ripple_phase_rad;
 };
 
 /// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb", "static", ...).
@@ -56,6 +65,21 @@ struct actuator_description {
     std::optional<double> limit_V;
     std::optional<int> dac_bits;
     std::optional<double> dac_range_V; ///< whole range: 20 for +-10 V
+    std::optional<double> lag_s{};     ///< first-order current loop
+    std::optional<double> drive_limit_V{}, dead_zone_V{};
+    std::optional<double> loss_probability{}; ///< of a period in which the drive keeps the previous command
+};
+
+struct encoder_description {
+    double resolution_m = 0; ///< 0: not described
+    std::optional<double> cyclic_m, cyclic_period_m,
+        cyclic_phase_rad; ///< reading = x + cyclic sin(2 pi x/period + phase)
+};
+
+/// Force from the process: mean_N + sum of force_N[i] sin(2 pi (i + 1) fundamental t + phase[i]), t from the first row of a log.
+struct process_description {
+    std::optional<double> fundamental_Hz, mean_N;
+    std::vector<double> force_N, phase_rad;
 };
 
 struct axis_description {
@@ -64,8 +88,9 @@ struct axis_description {
     std::string command_unit =
         "V"; ///< "V" or "A", from the force constant's key; "N": none given, and 1 is meant
     tolerance_description tolerance;
-    double encoder_resolution_m = 0; ///< 0: not described
+    encoder_description encoder;
     actuator_description actuator;
+    process_description process;
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
 };

@@ -1,137 +1,112 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "friction_contact.hpp"
+#include "harmonics.hpp"
 #include "machine.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
+#include <limits>
 
 namespace quadrant::diagnosis {
 
 /// The plant that the diagnosis simulates: the described machine plus whatever the effects under trial join to it.
 /// Boxes in the order of the loop; every member is neutral when its effect is absent. SI numbers.
 struct plant_model {
-    static constexpr std::size_t max_harmonics = 4;
+    static constexpr std::size_t max_harmonics = harmonics::most;
 
     // actuator
-    double delay = 0;          ///< [s]
-    double force_constant = 0; ///< [N/V]
+    double delay = 0;     ///< [s]
+    double loss = 0;      ///< probability that a period keeps the previous command
+    double dead_zone = 0; ///< [V]
+    double drive_limit = std::numeric_limits<double>::infinity(); ///< [V]
+    double lag = 0;                                               ///< first-order current loop [s]
+    double force_constant = 0;                                    ///< [N/V]
+    harmonics ripple; ///< of the force constant, relative, over position
     // mechanics
-    double mass = 0; ///< [kg]
+    double mass = 0; ///< all that moves, the mode's part too [kg]
     struct friction_box {
-        double viscous_slope = 0;        ///< [N s/m]
-        double coulomb = 0;              ///< [N]
-        double excess = 0;               ///< static minus Coulomb level [N]
-        double stribeck_velocity = 1;    ///< [m/s]
-        double viscous_asymmetry = 0;    ///< relative, signed
-        double coulomb_asymmetry = 0;    ///< relative, signed
-        double presliding_length = 2e-7; ///< the contact's deflection at the Coulomb level [m]
+        double viscous_slope = 0;     ///< [N s/m]
+        double coulomb = 0;           ///< [N]
+        double excess = 0;            ///< static minus Coulomb level [N]
+        double stribeck_velocity = 1; ///< [m/s]
+        double viscous_asymmetry = 0; ///< relative, signed
+        double coulomb_asymmetry = 0; ///< relative, signed
+        friction_contact contact;
+        harmonics along;                  ///< of the Coulomb level, relative, over position
+        double drift = 0, drift_time = 1; ///< Coulomb level times 1 + drift (1 - exp(-t/drift_time))
     } friction;
     double constant_force = 0; ///< [N]
-    struct cogging_box {
-        double period = 0; ///< [m]; 0: none
-        std::size_t harmonics = 0;
-        std::array<double, max_harmonics> cosine{}, sine{}; ///< [N]
-        /// sum of cosine_i cos(2 pi i x / period) + sine_i sin(2 pi i x / period)
-        double force(double x) const {
-            if (harmonics == 0) return 0;
-            const double angle = 2 * std::numbers::pi * x / period, c1 = std::cos(angle), s1 = std::sin(angle);
-            double c = c1, s = s1, sum = 0;
-            for (std::size_t i = 0; i < harmonics; ++i) {
-                sum += cosine[i] * c + sine[i] * s;
-                const double next = c * c1 - s * s1; // angle addition: cheaper than another cosine
-                s = s * c1 + c * s1;
-                c = next;
-            }
-            return sum;
-        }
-    } cogging;
+    double spring = 0;         ///< [N/m], about position 0
+    double coupling = 0;       ///< of the other axis' acceleration
+    harmonics cogging;         ///< [N] over position
+    struct mode_box {          ///< a second mass on a spring, not seen by the encoder
+        double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
+    } mode;
+    double backlash = 0; ///< play between motor and encoder [m]
+    // process
+    harmonics cutting;        ///< [N] over time
+    double cutting_mean = 0;  ///< [N]
+    double cutting_start = 0; ///< time of the process at the first row [s]
+    // sensor
+    harmonics cyclic; ///< [m] over position
 
-    explicit plant_model(const plant_description& d)
-        : delay(d.delay_s), force_constant(d.force_constant_N_per_V), mass(d.mass_kg),
-          constant_force(d.constant_force_N.value_or(0)) {
+    plant_model() = default;
+    explicit plant_model(const plant_description& d) {
+        axis_description a;
+        a.plant = d;
+        *this = plant_model(a);
+    }
+    explicit plant_model(const axis_description& a) {
+        const plant_description& d = a.plant;
+        delay = d.delay_s;
+        loss = a.actuator.loss_probability.value_or(0);
+        dead_zone = a.actuator.dead_zone_V.value_or(0);
+        drive_limit = a.actuator.drive_limit_V.value_or(drive_limit);
+        lag = a.actuator.lag_s.value_or(0);
+        force_constant = d.force_constant_N_per_V;
+        ripple = one(d.ripple, d.ripple_period_m, d.ripple_phase_rad);
+        mass = d.mass_kg;
         friction.viscous_slope = d.viscous_N_s_per_m;
         friction.coulomb = d.coulomb_N.value_or(0);
         friction.excess = d.static_N ? *d.static_N - friction.coulomb : 0;
         friction.stribeck_velocity = d.stribeck_velocity_m_per_s.value_or(1);
         friction.viscous_asymmetry = d.viscous_asymmetry.value_or(0);
         friction.coulomb_asymmetry = d.coulomb_asymmetry.value_or(0);
-        cogging.period = d.cogging_period_m.value_or(0);
-        cogging.harmonics = std::min(d.cogging_N.size(), max_harmonics);
-        for (std::size_t i = 0; i < cogging.harmonics; ++i) {
-            const double phase = i < d.cogging_phase_rad.size() ? d.cogging_phase_rad[i] : 0;
-            cogging.cosine[i] = d.cogging_N[i] * std::sin(phase); // N sin(angle + phase)
-            cogging.sine[i] = d.cogging_N[i] * std::cos(phase);
-        }
+        if (d.presliding_length_m) friction.contact.exponential(*d.presliding_length_m);
+        if (!d.gms_weights.empty()) describe_contact(d);
+        friction.contact.damping = d.presliding_damping_s.value_or(0);
+        friction.along =
+            one(d.friction_position_amplitude, d.friction_position_period_m, d.friction_position_phase_rad);
+        friction.drift = d.friction_drift.value_or(0);
+        friction.drift_time = d.friction_drift_time_s.value_or(1);
+        constant_force = d.constant_force_N.value_or(0);
+        spring = d.spring_N_per_m.value_or(0);
+        coupling = d.coupling.value_or(0);
+        cogging = {d.cogging_period_m.value_or(0), d.cogging_N, d.cogging_phase_rad};
+        if (d.mode_mass_kg)
+            mode = {*d.mode_mass_kg, d.mode_frequency_Hz.value_or(mode.frequency_Hz),
+                    d.mode_damping.value_or(mode.damping)};
+        backlash = d.backlash_m.value_or(0);
+        if (a.process.fundamental_Hz)
+            cutting = {1 / *a.process.fundamental_Hz, a.process.force_N, a.process.phase_rad};
+        cutting_mean = a.process.mean_N.value_or(0);
+        cyclic = one(a.encoder.cyclic_m, a.encoder.cyclic_period_m, a.encoder.cyclic_phase_rad);
     }
 
-    struct state {
-        double x = 0, v = 0;
-        bool slipping = false;
-        double deflection = 0; ///< of the friction contact before it slips [m]
-    };
-
-    /// Advances the plant by steps of one length h under a constant command. Friction is taken implicitly, as in
-    /// friction/stick_slip.hpp, but a contact at rest gives way like a spring until it breaks away: every real stick
-    /// does, by a micrometre or so, and a model without it sees a gap in each reversal. What does not change between
-    /// steps is worked out once: a diagnosis runs millions of them.
-    class stepper {
-    public:
-        stepper(const plant_model& plant, double h) : plant_(plant), h_(h) {
-            for (int i = 0; i < 2; ++i) {
-                const double direction = i == 0 ? -1 : 1;
-                side& d = side_[static_cast<std::size_t>(i)];
-                d.level = plant.friction.coulomb * (1 + plant.friction.coulomb_asymmetry * direction);
-                d.breakaway = d.level + plant.friction.excess;
-                d.stiffness = d.breakaway / plant.friction.presliding_length;
-                const double slope = plant.mass + h * plant.friction.viscous_slope *
-                                                      (1 + plant.friction.viscous_asymmetry * direction);
-                d.inverse_slip = 1 / slope;
-                d.inverse_stick = 1 / (slope + d.stiffness * h * h);
-                d.compliance = d.stiffness > 0 ? 1 / d.stiffness : 0;
-            }
-            inverse_stribeck_ = 1 / plant.friction.stribeck_velocity;
+private:
+    static harmonics one(const std::optional<double>& size, const std::optional<double>& period,
+                         const std::optional<double>& phase) {
+        if (!size) return {};
+        return {period.value_or(0), {*size}, {phase.value_or(0)}};
+    }
+    void describe_contact(const plant_description& d) {
+        auto& c = friction.contact;
+        c.elements = std::min(d.gms_weights.size(), friction_contact::most);
+        for (std::size_t i = 0; i < c.elements; ++i) {
+            c.weights[i] = d.gms_weights[i];
+            c.lengths_as_described[i] =
+                d.gms_weights[i] * (friction.coulomb + friction.excess) / d.gms_stiffness_N_per_m[i];
         }
-
-        void operator()(state& s, double command) const {
-            const double drive =
-                plant_.force_constant * command + plant_.constant_force + plant_.cogging.force(s.x);
-            const double push = plant_.mass * s.v + h_ * drive; // momentum before friction
-            const side& d = side_[(s.v != 0 ? s.v : push) > 0 ? 1 : 0];
-            double v = 0;
-            if (d.breakaway <= 0) {
-                v = push * d.inverse_slip;
-            } else {
-                v = (push - h_ * d.stiffness * s.deflection) * d.inverse_stick;
-                const double deflection = s.deflection + h_ * v;
-                const double slip =
-                    plant_.friction.excess != 0
-                        ? d.level + plant_.friction.excess * std::exp(-std::abs(s.v) * inverse_stribeck_)
-                        : d.level;
-                if (std::abs(d.stiffness * deflection) <=
-                    (s.slipping && deflection * s.v > 0 ? slip : d.breakaway)) {
-                    s.deflection = deflection;
-                    s.slipping = false;
-                } else {
-                    const double force = deflection > 0 ? slip : -slip;
-                    v = (push - h_ * force) * d.inverse_slip;
-                    s.deflection = force * d.compliance;
-                    s.slipping = true;
-                }
-            }
-            s.x += 0.5 * h_ * (s.v + v);
-            s.v = v;
-        }
-
-    private:
-        struct side { // of one direction of motion
-            double level, breakaway, stiffness, compliance, inverse_slip, inverse_stick;
-        };
-        const plant_model& plant_;
-        double h_, inverse_stribeck_;
-        std::array<side, 2> side_{};
-    };
+    }
 };
 
 } // namespace quadrant::diagnosis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "plant_model.hpp"
+#include "sample_loss.hpp"
+#include "stepper.hpp"
 
 #include <span>
 #include <vector>
@@ -10,39 +11,86 @@ namespace quadrant::diagnosis {
 /// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what the
 /// correction had to be. One pass, no drift of the double integrator, and a right model leaves only the encoder's
 /// rounding: the innovation
-///   e[k] = y[k] - x(t_k);  x += L1 e, v += L2 e;  then one period of the plant
+///   e[k] = y[k] - reading(x(t_k));  x += L1 e, v += L2 e;  then one period of the plant
 /// with both observer poles at exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
 /// A constant force error d shows as e = d / (M (2 pi corner)^2) about.
 struct predictor {
     double period;         ///< T [s]
     double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
+    std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
 
-    /// The command row that acts `back` rows ago; before the log: its first row.
-    double past(std::size_t k, std::size_t back) const { return command[k >= back ? k - back : 0]; }
+    /// Innovations; returned is what the model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the mean acceleration that the model gives the encoder over each
+    /// period [m/s^2].
+    double run(const plant_model& plant, std::vector<double>& innovation,
+               std::vector<double>* acceleration = nullptr) const {
+        double choices = 0;
+        if (plant.loss > 0) {
+            pass(plant, command, innovation, nullptr);
+            const auto held = commands_with_loss(command, innovation, loss_response(plant),
+                                                 whole_periods(plant.delay), plant.loss);
+            pass(plant, held.applied, innovation, acceleration);
+            choices = held.choices;
+        } else {
+            pass(plant, command, innovation, acceleration);
+        }
+        return choices;
+    }
 
-    /// Innovations; when `acceleration` is given, also the model's mean acceleration over each period [m/s^2].
-    void run(const plant_model& plant, std::vector<double>& innovation,
-             std::vector<double>* acceleration = nullptr) const {
-        const double z = std::exp(-2 * std::numbers::pi * corner_Hz * period);
-        const double l1 = 1 - z * z, l2 = (1 - z) * (1 - z) / period;
-        const auto whole = static_cast<std::size_t>(std::max(0.0, plant.delay) / period);
+private:
+    std::size_t whole_periods(double delay) const {
+        return static_cast<std::size_t>(std::max(0.0, delay) / period);
+    }
+    double l1() const { return 1 - pole() * pole(); }
+    double l2() const { return (1 - pole()) * (1 - pole()) / period; }
+    double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
+
+    void pass(const plant_model& plant, std::span<const double> u, std::vector<double>& innovation,
+              std::vector<double>* acceleration) const {
+        const double to_position = l1(), to_velocity = l2();
+        const std::size_t whole = whole_periods(plant.delay);
         const double first =
             std::max(0.0, plant.delay) - static_cast<double>(whole) * period; // the older command's part
-        const plant_model::stepper older(plant, first > 0 ? first : period), newer(plant, period - first);
+        const stepper older(plant, first > 0 ? first : period), newer(plant, period - first);
+        const auto past = [&](std::size_t k, std::size_t back) { return u[k >= back ? k - back : 0]; };
         innovation.resize(position.size());
         if (acceleration) acceleration->resize(position.size());
-        plant_model::state s{.x = position[0], .v = 0};
+        auto s = plant_state::at(position[0] - plant.cyclic.at(position[0]));
+        surroundings now;
         for (std::size_t k = 0; k < position.size(); ++k) {
-            const double e = position[k] - s.x;
+            const double e = position[k] - s.load - plant.cyclic.at(s.load);
             innovation[k] = e;
-            s.x += l1 * e;
-            s.v += l2 * e;
-            const double before = s.v;
-            if (first > 0) older(s, past(k, whole + 1));
-            newer(s, past(k, whole));
-            if (acceleration) (*acceleration)[k] = (s.v - before) / period;
+            s.shift(to_position * e, to_velocity * e);
+            if (!other_acceleration.empty()) now.other_acceleration = other_acceleration[k];
+            now.time = static_cast<double>(k) * period;
+            const double before = plant.backlash > 0 ? s.load_velocity : s.v;
+            if (first > 0) older(s, past(k, whole + 1), now);
+            newer(s, past(k, whole), now);
+            if (acceleration) (*acceleration)[k] = (s.load_velocity - before) / period;
         }
+    }
+
+    /// Innovations after one volt too much in one period, on a free axis.
+    std::vector<double> loss_response(const plant_model& plant) const {
+        const double to_position = l1(), to_velocity = l2();
+        const double late =
+            std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
+        const double per_volt = plant.force_constant / plant.mass;
+        std::vector<double> out;
+        double x = 0, v = 0;
+        const auto rows = static_cast<std::size_t>(1.5 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
+        for (std::size_t k = 0; k <= rows; ++k) {
+            if (k > 0) out.push_back(x);
+            const double e = x, length = k == 0   ? period - late
+                                         : k == 1 ? late
+                                                  : 0; // of the volt in this period
+            x -= to_position * e;
+            v -= to_velocity * e;
+            const double rise = per_volt * length;
+            x += period * v + (k == 0 ? 0.5 * length : period - 0.5 * length) * rise;
+            v += rise;
+        }
+        return out;
     }
 };
 

@@ -19,7 +19,7 @@ public:
         top_.object();
         constexpr const char* schema = "must be \"quadrant.machine/1\"";
         if (const auto given = top_.need("schema"); given.text() != "quadrant.machine/1") given.refuse(schema);
-        refuse_unknown_keys(top_, "", {}, machine_file_keys);
+        refuse_unknown_keys(top_, {}, machine_file_keys);
         out_.file = one_line(top_.file);
         out_.sample_period_s = top_.need("sample_period_s").number(rule::positive);
         if (const auto excluded = top_.find("excluded_effects")) read_excluded(*excluded);
@@ -48,13 +48,13 @@ private:
     }
 
     axis_description read_axis(const std::string& name, const json_node& node) {
-        refuse_unknown_keys(node, "axis", {}, axis_keys);
+        refuse_unknown_keys(node, {}, axis_keys);
         axis_description axis;
         axis.name = name;
         read_plant(node.need("plant"), axis);
         if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
-        if (const auto encoder = node.find("encoder"))
-            read_numbers(*encoder, "encoder", encoder_keys, {}, axis);
+        if (const auto encoder = node.find("encoder")) read_encoder(*encoder, axis.encoder);
+        if (const auto process = node.find("process")) read_process(*process, axis.process);
         if (const auto actuator = node.find("actuator")) read_actuator(*actuator, axis.actuator);
         if (const auto controller = node.find("controller"))
             read_controller(*controller, axis);
@@ -66,7 +66,7 @@ private:
 
     static void read_plant(const json_node& node, axis_description& axis) {
         auto& plant = axis.plant;
-        read_numbers(node, "plant", plant_keys, plant_other_keys, plant);
+        read_numbers(node, plant_keys, plant_other_keys, plant);
         const auto per_volt = node.find("force_constant_N_per_V"),
                    per_ampere = node.find("force_constant_N_per_A");
         if (per_volt && per_ampere) per_ampere->refuse("contradicts force_constant_N_per_V: give one of them");
@@ -83,26 +83,69 @@ private:
         if (plant.static_N && *plant.static_N < plant.coulomb_N.value_or(0))
             node.find("static_N")->refuse("must not lie below coulomb_N");
 
-        const auto cogging = node.find("cogging_N"), phase = node.find("cogging_phase_rad");
-        if (cogging) plant.cogging_N = cogging->numbers(rule::any_number);
-        if (phase) plant.cogging_phase_rad = phase->numbers(rule::any_number);
-        if (plant.cogging_N.size() > plant_model::max_harmonics)
-            cogging->refuse(
-                fmt::format("this version simulates {} harmonics at most", plant_model::max_harmonics));
-        if (cogging && !plant.cogging_period_m) cogging->refuse("needs cogging_period_m");
-        if (plant.cogging_period_m && !cogging) node.find("cogging_period_m")->refuse("needs cogging_N");
-        if (phase && plant.cogging_phase_rad.size() != plant.cogging_N.size())
-            phase->refuse("must have one entry for each of cogging_N");
+        read_harmonics(node, "cogging_N", "cogging_phase_rad", plant.cogging_N, plant.cogging_phase_rad);
+        need_each_other(node, "cogging_period_m", "cogging_N");
+        need_each_other(node, "friction_position_amplitude", "friction_position_period_m");
+        need_each_other(node, "friction_drift", "friction_drift_time_s");
+        need_each_other(node, "mode_mass_kg", "mode_frequency_Hz");
+        need_each_other(node, "ripple", "ripple_period_m");
+        if (plant.mode_mass_kg.value_or(0) >= plant.mass_kg)
+            node.find("mode_mass_kg")->refuse("must lie below mass_kg, of which it is a part");
+        read_contact(node, plant);
+    }
+
+    static void read_contact(const json_node& node, plant_description& plant) {
+        need_each_other(node, "gms_weights", "gms_stiffness_N_per_m");
+        const auto weights = node.find("gms_weights"), length = node.find("presliding_length_m");
+        for (const auto& described : {length, weights})
+            if (described && !plant.coulomb_N && !plant.static_N)
+                described->refuse("needs coulomb_N: the friction that gives way");
+        if (!weights) return;
+        plant.gms_weights = weights->numbers(rule::positive);
+        plant.gms_stiffness_N_per_m = node.need("gms_stiffness_N_per_m").numbers(rule::positive);
+        if (plant.gms_weights.empty() || plant.gms_weights.size() > friction_contact::most)
+            weights->refuse(fmt::format("must have one to {} entries", friction_contact::most));
+        if (plant.gms_stiffness_N_per_m.size() != plant.gms_weights.size())
+            node.find("gms_stiffness_N_per_m")->refuse("must have one entry for each of gms_weights");
+        const double sum = std::accumulate(plant.gms_weights.begin(), plant.gms_weights.end(), 0.0);
+        if (std::abs(sum - 1) > 1e-3) weights->refuse("must add up to 1: shares of the friction level");
+        plant.presliding_length_m.reset(); // the elements say it more exactly
+    }
+
+    static void need_each_other(const json_node& node, const char* one, const char* other) {
+        for (const auto& [here, missing] : {std::pair{one, other}, std::pair{other, one}})
+            if (const auto given = node.find(here); given && !node.find(missing))
+                given->refuse(fmt::format("needs {}", missing));
+    }
+    static void read_harmonics(const json_node& node, const char* sizes_key, const char* phases_key,
+                               std::vector<double>& sizes, std::vector<double>& phases) {
+        const auto size = node.find(sizes_key), phase = node.find(phases_key);
+        if (size) sizes = size->numbers(rule::any_number);
+        if (sizes.size() > harmonics::most)
+            size->refuse(fmt::format("this version simulates {} harmonics at most", harmonics::most));
+        if (phase) phases = phase->numbers(rule::any_number);
+        if (phase && phases.size() != sizes.size())
+            phase->refuse(fmt::format("must have one entry for each of {}", sizes_key));
+    }
+
+    static void read_encoder(const json_node& node, encoder_description& encoder) {
+        read_numbers(node, encoder_keys, {}, encoder);
+        need_each_other(node, "cyclic_m", "cyclic_period_m");
+    }
+    static void read_process(const json_node& node, process_description& process) {
+        read_numbers(node, process_keys, process_other_keys, process);
+        read_harmonics(node, "force_N", "phase_rad", process.force_N, process.phase_rad);
+        need_each_other(node, "fundamental_Hz", "force_N");
     }
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
-        refuse_unknown_keys(node.object(), "tolerance", names_of(tolerance_keys), {});
+        refuse_unknown_keys(node.object(), names_of(tolerance_keys), {});
         for (const auto& [key, value] : node.value->items())
             tolerance.given[key] = node.at(key, value).number(rule::relative);
     }
 
     static void read_actuator(const json_node& node, actuator_description& actuator) {
-        read_numbers(node, "actuator", actuator_keys, actuator_other_keys, actuator);
+        read_numbers(node, actuator_keys, actuator_other_keys, actuator);
         const auto dac = node.find("dac_bits");
         if (dac) actuator.dac_bits = static_cast<int>(dac->number(rule::bits));
         if (dac && !actuator.dac_range_V) dac->refuse("needs dac_range_V");
@@ -114,7 +157,7 @@ private:
             return note(axis, fmt::format("controller kind {} is not known: diagnosed from the command onwards",
                                           in_quotes(kind)));
         auto& controller = axis.controller.emplace();
-        read_numbers(node, "controller", controller_keys_of_file, controller_other_keys, controller);
+        read_numbers(node, controller_keys_of_file, controller_other_keys, controller);
 
         using estimator = controller_description::estimator;
         if (const auto given = node.find("velocity_estimator")) {
@@ -132,7 +175,7 @@ private:
             note(axis, "velocity_filter_Hz is not used by the velocity estimator two_sample_mean");
         }
         if (const auto notch = node.find("notch")) {
-            read_numbers(*notch, "notch", notch_keys, {}, controller.notch.emplace());
+            read_numbers(*notch, notch_keys, {}, controller.notch.emplace());
             need_below_nyquist(notch->need("frequency_Hz"));
         }
     }

@@ -50,11 +50,14 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
                                           double bandwidth_Hz) {
     const std::size_t n = position.size();
     std::vector<double> raw(n, 0.0);
+    const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
     for (std::size_t k = 1; k + 1 < n; ++k)
         raw[k] = plant.mass * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
-                               (position[k + 1] - 2 * position[k] + position[k - 1]) / (period * period));
+                               (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
     return zero_phase(raw, bandwidth_Hz, period);
 }
+
+inline double residual_bandwidth_Hz(double period) { return std::min(100.0, 0.15 / period); }
 
 /// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
 inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz) {
@@ -71,13 +74,16 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
                   .reference = log.reference,
                   .position = log.position,
                   .command = log.command,
-                  .observer = {.period = period, .position = log.position, .command = log.command}};
+                  .observer = {.period = period,
+                               .position = log.position,
+                               .command = log.command,
+                               .other_acceleration = log.other_acceleration}};
     const auto smooth = zero_phase(log.position, 60, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
     r.segment = motion_segments(log.reference, period);
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
-    r.bandwidth_Hz = std::min(100.0, 0.15 / period);
+    r.bandwidth_Hz = residual_bandwidth_Hz(period);
 
     // A position's step is at least the rounding of its column.
     const double q = std::max({resolution, log.position_step, 1e-12});

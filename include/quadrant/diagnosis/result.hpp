@@ -87,7 +87,8 @@ struct axis_result {
     quadrant::diagnosis::verdict verdict = verdict::no_gap;
     gap_numbers gap, gap_after; ///< as described; with every named cause and calibration added
     std::vector<place> where;
-    std::string evaluated_on; ///< "held-out segments of LOG" or the hold-out file
+    std::vector<parameter_estimate> calibrated; ///< what moved inside the owner's tolerance, as machine keys
+    std::string evaluated_on;                   ///< "held-out segments of LOG" or the hold-out file
     axis_signals signals;
 };
 

@@ -11,10 +11,13 @@ struct rules {
     double margin = 15;            ///< least held-out gain of one more effect; less is undecided
     double relative_margin = 0.01; ///< least share of everything gained so far
     double least_shrink = 0.05;    ///< least relative fall of the residual force on held-out motion
-    double temperature = 5;        ///< divides scores before they become probabilities: blocks are not independent
-    double structure = 5;          ///< log-score of blocks above their limit that still counts as the floor
+    double temperature = 5; ///< divides scores before they become probabilities: blocks are not independent
+    double structure = 5;   ///< log-score of blocks above their limit that still counts as the floor
+    double immaterial =
+        0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
     std::size_t most_causes = 4, beam = 2;
-    std::size_t finalists = 4; ///< of each round are fitted to the end; the others showed little at a first look
+    std::size_t finalists =
+        4; ///< of each round are fitted to the end; the others showed little at a first look
 };
 
 using progress = std::function<void(const std::string&)>; ///< one short line of what is going on

@@ -59,6 +59,7 @@ inline ordered_json axis_json(const axis_result& a) {
             {"gap", gap_json(a.gap)},
             {"gap_after", gap_json(a.gap_after)},
             {"where", where},
+            {"calibrated", parameters_json(a.calibrated)},
             {"evaluated_on", a.evaluated_on}};
 }
 

@@ -10,7 +10,6 @@ inline constexpr effect asymmetric_friction{
     .name = "asymmetric_friction",
     .box = "mechanics",
     .exciting_motion = "the same stroke in both directions at a slow and a fast constant speed",
-    .untried_relatives = "position_spring",
     .equivalent = "constant_force",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         std::vector<parameter> ps{{.key = "viscous_asymmetry",

@@ -10,7 +10,6 @@ inline constexpr effect constant_force{
     .name = "constant_force",
     .box = "mechanics",
     .exciting_motion = "the same stroke in both directions, and rest after each",
-    .untried_relatives = "position_spring",
     .equivalent = "asymmetric_friction",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double most = 10 * s.leader.force_constant; // a full-scale command of any amplifier

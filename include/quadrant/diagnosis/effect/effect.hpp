@@ -25,9 +25,6 @@ struct key_value {
 struct effect {
     std::string_view name, box;
     std::string_view exciting_motion; ///< what motion shows it
-    /// Effects that look much like this one and are not among the suspects yet: while structure is left over, one of
-    /// them may be the cause, and this name is no more than a suspicion. Empty: those that look like it contain it.
-    std::string_view untried_relatives = "";
     /// A name that is the same model on any motion as far as its other terms agree (gap/FORMAT.md, known equivalences).
     std::string_view equivalent = "";
     /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the same
@@ -61,6 +58,23 @@ inline parameter freed(const char* key, double& (*of)(plant_model&), double valu
             .high = value * 4,
             .logarithmic = true,
             .step = 1e-3};
+}
+
+/// The value from which a fit begins, of those that may be tried: where the gradient sees nothing (a dead zone, a limit,
+/// a play) only looking helps. Each costs one pass over the log.
+inline double best_start(const screening& s, double& (*of)(plant_model&), const std::vector<double>& values) {
+    const fitter fit(s.record.observer, s.record.score);
+    double best = values.front(), least = std::numeric_limits<double>::infinity();
+    for (double value : values) {
+        fit_result trial{.plant = s.leader, .x = Eigen::VectorXd(0)};
+        of(trial.plant) = value;
+        fit.evaluate(trial);
+        if (trial.objective < least) {
+            least = trial.objective;
+            best = value;
+        }
+    }
+    return best;
 }
 
 } // namespace detail

@@ -10,7 +10,6 @@ inline constexpr effect force_constant{
     .name = "force_constant",
     .box = "actuator",
     .exciting_motion = "strong accelerations beside slow strokes against known friction, or a known load",
-    .untried_relatives = "force_ripple, actuator_saturation",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         return {{detail::freed(
             "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },

@@ -10,7 +10,6 @@ inline constexpr effect mass{
     .name = "mass",
     .box = "mechanics",
     .exciting_motion = "strong accelerations beside slow strokes against friction",
-    .untried_relatives = "structural_resonance",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         return {{detail::freed(
             "mass_kg", [](plant_model& p) -> double& { return p.mass; }, s.leader.mass)}};

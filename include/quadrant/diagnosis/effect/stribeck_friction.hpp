@@ -10,7 +10,6 @@ inline constexpr effect stribeck_friction{
     .name = "stribeck_friction",
     .box = "mechanics",
     .exciting_motion = "slow reversals and constant speeds from creep to a few times the Stribeck velocity",
-    .untried_relatives = "presliding_friction",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         double peak = 0;
         for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));

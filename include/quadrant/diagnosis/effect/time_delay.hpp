@@ -10,7 +10,6 @@ inline constexpr effect time_delay{
     .name = "time_delay",
     .box = "actuator",
     .exciting_motion = "multi-sine of 20 to 200 Hz, or sharp starts and stops",
-    .untried_relatives = "actuator_lag, structural_resonance",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double t = s.record.period;
         std::vector<std::vector<parameter>> out;

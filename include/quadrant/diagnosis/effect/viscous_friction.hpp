@@ -10,7 +10,6 @@ inline constexpr effect viscous_friction{
     .name = "viscous_friction",
     .box = "mechanics",
     .exciting_motion = "constant speeds, slow and fast, in both directions",
-    .untried_relatives = "actuator_lag",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         double vv = 0, vf = 0;
         for (std::size_t k = 0; k < s.residual.size(); ++k) {

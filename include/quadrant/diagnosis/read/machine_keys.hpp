@@ -16,6 +16,8 @@ inline constexpr number_rule up_to_a_second{"must be a number from 0 to 1 (secon
                                             [](double x) { return x >= 0 && x <= 1; }};
 inline constexpr number_rule asymmetry{"must be a number between -1 and 1 (relative)",
                                        [](double x) { return x > -1 && x < 1; }};
+inline constexpr number_rule above_minus_one{"must be a number above -1 (relative)",
+                                             [](double x) { return x > -1; }};
 inline constexpr number_rule relative{"must be a number from 0 to below 1 (relative: 0.05 is 5 %)",
                                       [](double x) { return x >= 0 && x < 1; }};
 inline constexpr number_rule bits{"must be a whole number from 1 to 32",
@@ -50,9 +52,42 @@ inline constexpr std::array plant_keys{
                                   [](auto& p) -> double& { return p.constant_force_N.emplace(); }},
     number_key<plant_description>{"cogging_period_m", rule::positive,
                                   [](auto& p) -> double& { return p.cogging_period_m.emplace(); }},
+    number_key<plant_description>{"presliding_length_m", rule::positive,
+                                  [](auto& p) -> double& { return p.presliding_length_m.emplace(); }},
+    number_key<plant_description>{"presliding_damping_s", rule::up_to_a_second,
+                                  [](auto& p) -> double& { return p.presliding_damping_s.emplace(); }},
+    number_key<plant_description>{"friction_position_amplitude", rule::asymmetry,
+                                  [](auto& p) -> double& { return p.friction_position_amplitude.emplace(); }},
+    number_key<plant_description>{"friction_position_period_m", rule::positive,
+                                  [](auto& p) -> double& { return p.friction_position_period_m.emplace(); }},
+    number_key<plant_description>{"friction_position_phase_rad", rule::any_number,
+                                  [](auto& p) -> double& { return p.friction_position_phase_rad.emplace(); }},
+    number_key<plant_description>{"friction_drift", rule::above_minus_one,
+                                  [](auto& p) -> double& { return p.friction_drift.emplace(); }},
+    number_key<plant_description>{"friction_drift_time_s", rule::positive,
+                                  [](auto& p) -> double& { return p.friction_drift_time_s.emplace(); }},
+    number_key<plant_description>{"mode_mass_kg", rule::positive,
+                                  [](auto& p) -> double& { return p.mode_mass_kg.emplace(); }},
+    number_key<plant_description>{"mode_frequency_Hz", rule::positive,
+                                  [](auto& p) -> double& { return p.mode_frequency_Hz.emplace(); }},
+    number_key<plant_description>{"mode_damping", rule::relative,
+                                  [](auto& p) -> double& { return p.mode_damping.emplace(); }},
+    number_key<plant_description>{"backlash_m", rule::not_negative,
+                                  [](auto& p) -> double& { return p.backlash_m.emplace(); }},
+    number_key<plant_description>{"spring_N_per_m", rule::any_number,
+                                  [](auto& p) -> double& { return p.spring_N_per_m.emplace(); }},
+    number_key<plant_description>{"coupling", rule::asymmetry,
+                                  [](auto& p) -> double& { return p.coupling.emplace(); }},
+    number_key<plant_description>{"ripple", rule::asymmetry,
+                                  [](auto& p) -> double& { return p.ripple.emplace(); }},
+    number_key<plant_description>{"ripple_period_m", rule::positive,
+                                  [](auto& p) -> double& { return p.ripple_period_m.emplace(); }},
+    number_key<plant_description>{"ripple_phase_rad", rule::any_number,
+                                  [](auto& p) -> double& { return p.ripple_phase_rad.emplace(); }},
 };
-inline constexpr std::array<std::string_view, 4> plant_other_keys{
-    "force_constant_N_per_V", "force_constant_N_per_A", "cogging_N", "cogging_phase_rad"};
+inline constexpr std::array<std::string_view, 6> plant_other_keys{
+    "force_constant_N_per_V", "force_constant_N_per_A", "cogging_N", "cogging_phase_rad", "gms_weights",
+    "gms_stiffness_N_per_m"};
 
 inline constexpr std::array controller_keys_of_file{
     number_key<controller_description>{"position_gain_per_s", rule::not_negative,
@@ -87,16 +122,38 @@ inline constexpr std::array actuator_keys{
                                      [](auto& a) -> double& { return a.limit_V.emplace(); }},
     number_key<actuator_description>{"dac_range_V", rule::positive,
                                      [](auto& a) -> double& { return a.dac_range_V.emplace(); }},
+    number_key<actuator_description>{"lag_s", rule::up_to_a_second,
+                                     [](auto& a) -> double& { return a.lag_s.emplace(); }},
+    number_key<actuator_description>{"drive_limit_V", rule::positive,
+                                     [](auto& a) -> double& { return a.drive_limit_V.emplace(); }},
+    number_key<actuator_description>{"dead_zone_V", rule::not_negative,
+                                     [](auto& a) -> double& { return a.dead_zone_V.emplace(); }},
+    number_key<actuator_description>{"loss_probability", rule::relative,
+                                     [](auto& a) -> double& { return a.loss_probability.emplace(); }},
 };
 inline constexpr std::array<std::string_view, 1> actuator_other_keys{"dac_bits"};
 
 inline constexpr std::array encoder_keys{
-    number_key<axis_description>{"resolution_m", rule::not_negative,
-                                 [](auto& a) -> double& { return a.encoder_resolution_m; }},
+    number_key<encoder_description>{"resolution_m", rule::not_negative,
+                                    [](auto& e) -> double& { return e.resolution_m; }},
+    number_key<encoder_description>{"cyclic_m", rule::any_number,
+                                    [](auto& e) -> double& { return e.cyclic_m.emplace(); }},
+    number_key<encoder_description>{"cyclic_period_m", rule::positive,
+                                    [](auto& e) -> double& { return e.cyclic_period_m.emplace(); }},
+    number_key<encoder_description>{"cyclic_phase_rad", rule::any_number,
+                                    [](auto& e) -> double& { return e.cyclic_phase_rad.emplace(); }},
 };
 
-inline constexpr std::array<std::string_view, 5> axis_keys{"plant", "tolerance", "encoder", "actuator",
-                                                           "controller"};
+inline constexpr std::array process_keys{
+    number_key<process_description>{"fundamental_Hz", rule::positive,
+                                    [](auto& p) -> double& { return p.fundamental_Hz.emplace(); }},
+    number_key<process_description>{"mean_N", rule::any_number,
+                                    [](auto& p) -> double& { return p.mean_N.emplace(); }},
+};
+inline constexpr std::array<std::string_view, 2> process_other_keys{"force_N", "phase_rad"};
+
+inline constexpr std::array<std::string_view, 6> axis_keys{"plant",    "tolerance",  "encoder",
+                                                           "actuator", "controller", "process"};
 inline constexpr std::array<std::string_view, 4> machine_file_keys{"schema", "sample_period_s",
                                                                    "excluded_effects", "axes"};
 
@@ -118,36 +175,6 @@ inline constexpr std::array tolerance_keys{
     tolerance_key{"constant_force", [](auto& p) { return p.constant_force_N.value_or(0); }},
     tolerance_key{"cogging_period", [](auto& p) { return p.cogging_period_m.value_or(0); }},
     tolerance_key{"cogging", [](auto& p) { return p.cogging_N.empty() ? 0.0 : p.cogging_N.front(); }},
-};
-
-/// Keys of effects that a machine file may describe and this version cannot simulate.
-struct unmodelled_key {
-    std::string_view object, name, effect;
-};
-inline constexpr std::array unmodelled_keys{
-    unmodelled_key{"plant", "presliding_length_m", "presliding_friction"},
-    unmodelled_key{"plant", "gms_weights", "presliding_friction"},
-    unmodelled_key{"plant", "gms_stiffness_N_per_m", "presliding_friction"},
-    unmodelled_key{"plant", "friction_position_amplitude", "position_dependent_friction"},
-    unmodelled_key{"plant", "friction_position_period_m", "position_dependent_friction"},
-    unmodelled_key{"plant", "friction_drift", "friction_drift"},
-    unmodelled_key{"plant", "friction_drift_time_s", "friction_drift"},
-    unmodelled_key{"plant", "mode_mass_kg", "structural_resonance"},
-    unmodelled_key{"plant", "mode_frequency_Hz", "structural_resonance"},
-    unmodelled_key{"plant", "mode_damping", "structural_resonance"},
-    unmodelled_key{"plant", "backlash_m", "backlash"},
-    unmodelled_key{"plant", "spring_N_per_m", "position_spring"},
-    unmodelled_key{"plant", "coupling", "cross_coupling"},
-    unmodelled_key{"plant", "ripple", "force_ripple"},
-    unmodelled_key{"plant", "ripple_period_m", "force_ripple"},
-    unmodelled_key{"plant", "ripple_phase_rad", "force_ripple"},
-    unmodelled_key{"actuator", "lag_s", "actuator_lag"},
-    unmodelled_key{"actuator", "drive_limit_V", "actuator_saturation"},
-    unmodelled_key{"actuator", "dead_zone_V", "actuator_dead_zone"},
-    unmodelled_key{"actuator", "loss_probability", "sample_loss"},
-    unmodelled_key{"encoder", "cyclic_m", "encoder_cyclic_error"},
-    unmodelled_key{"encoder", "cyclic_period_m", "encoder_cyclic_error"},
-    unmodelled_key{"axis", "process", "cutting_force"},
 };
 
 } // namespace quadrant::diagnosis::detail

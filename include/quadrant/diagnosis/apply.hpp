@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "read_diagnosis.hpp"
+#include "read_machine.hpp"
+#include "write_machine.hpp"
+
+namespace quadrant::diagnosis {
+
+/// One value of a machine file that a diagnosis changes, as JSON text.
+struct applied_change {
+    std::string path, before, after; ///< before: empty where the key was absent
+    std::string reason;              ///< the effect, or what moves with it
+};
+
+struct applied_diagnosis {
+    nlohmann::ordered_json machine; ///< key order and every other value of the original kept
+    std::vector<applied_change> changes;
+    std::vector<std::string> notes; ///< causes that were left out, and why
+};
+
+namespace detail {
+
+/// One diagnosis on one machine file.
+class corrector {
+public:
+    corrector(const nlohmann::ordered_json& machine, std::string_view file, double at_least)
+        : file_(file), at_least_(at_least) {
+        out_.machine = machine;
+    }
+
+    applied_diagnosis take(const diagnosis_result& d) {
+        const json before = out_.machine;
+        for (const axis_result& a : d.axes)
+            if (!before["axes"].contains(a.name))
+                throw bad_input(
+                    file_, fmt::format("axes.{}: is missing; the diagnosis is of another machine", a.name));
+        for (const cause& c : d.causes) {
+            if (c.probability < at_least_)
+                out_.notes.push_back(fmt::format("{} of axis {} is left out: probability {:.2f}, below {:g}",
+                                                 c.effect, c.axis, c.probability, at_least_));
+            else if (c.parameters.empty())
+                out_.notes.push_back(fmt::format(
+                    "{} of axis {} is left out: the diagnosis gives no value for it", c.effect, c.axis));
+            else
+                join(c, before["axes"][c.axis]);
+        }
+        for (const axis_result& a : d.axes) {
+            cause moved; // never one that the machine file lacked
+            moved.axis = a.name;
+            moved.effect = "calibration";
+            moved.described = true;
+            moved.parameters = a.calibrated;
+            join(moved, before["axes"][a.name]);
+        }
+        for (const axis_result& a : d.axes) follow(a.name, before["axes"][a.name]["plant"]);
+        read_machine(out_.machine.dump(), fmt::format("{} with the diagnosis applied", file_)); // or it throws
+        return std::move(out_);
+    }
+
+private:
+    using json = nlohmann::ordered_json;
+
+    void join(const cause& c, const json& before) {
+        refuse_if_there(c, before);
+        for (const parameter_estimate& p : c.parameters) {
+            const auto [box, key] = place_of(c, p.key);
+            if (box == "controller" && !before.contains("controller"))
+                throw bad_input(
+                    file_,
+                    fmt::format("axes.{}.controller: is missing; the diagnosis is of another machine", c.axis));
+            set(c.axis, box, key, value_of(key, p), c.effect);
+        }
+    }
+
+    /// A cause that the simulation lacked, in a file that has it: the diagnosis is of another file, or applied already.
+    void refuse_if_there(const cause& c, const json& axis) const {
+        const auto says_something = [&](const parameter_estimate& p) {
+            const auto [box, key] = place_of(c, p.key);
+            if (!axis.contains(box) || !axis[box].contains(key)) return false;
+            const json& value = axis[box][key];
+            return value != 0 && !(key == "static_N" && value == axis[box].value("coulomb_N", 0.0));
+        };
+        if (!c.described && std::all_of(c.parameters.begin(), c.parameters.end(), says_something))
+            throw bad_input(file_,
+                            fmt::format("axes.{}: has {} already, and the diagnosis found it missing: it is of "
+                                        "another machine file, or applied before",
+                                        c.axis, c.effect));
+    }
+
+    /// Where a parameter of a diagnosis stands in the machine file: box and key, dotted where the key is nested.
+    std::pair<std::string, std::string> place_of(const cause& c, const std::string& name) const {
+        if (c.effect == "controller_mismatch") return {"controller", name};
+        if (const auto dot = name.find('.'); dot != name.npos)
+            return {name.substr(0, dot), name.substr(dot + 1)};
+        if (name != "force_constant_N_per_V") return {"plant", name};
+        const json& plant = out_.machine["axes"][c.axis]["plant"];
+        for (const char* key : {"force_constant_N_per_V", "force_constant_N_per_A"})
+            if (plant.contains(key)) return {"plant", key};
+        throw bad_input(
+            file_, fmt::format("axes.{}.plant.force_constant_N_per_V: is missing; the diagnosis is of another "
+                               "machine",
+                               c.axis));
+    }
+
+    /// A number, or an array of harmonics or elements where the machine file has one.
+    static json value_of(const std::string& key, const parameter_estimate& p) {
+        static constexpr std::array arrays{
+            "cogging_N", "cogging_phase_rad", "gms_weights", "gms_stiffness_N_per_m", "force_N", "phase_rad"};
+        if (std::find(arrays.begin(), arrays.end(), key) == arrays.end() && p.values.size() == 1)
+            return p.values[0].value;
+        json values = json::array();
+        for (const estimate& e : p.values) values.push_back(e.value);
+        return values;
+    }
+
+    void set(const std::string& axis, const std::string& box, const std::string& key, const json& value,
+             const std::string& reason) {
+        json* place = &out_.machine["axes"][axis][box];
+        std::string_view rest = key;
+        for (std::size_t dot; (dot = rest.find('.')) != rest.npos; rest.remove_prefix(dot + 1))
+            place = &(*place)[std::string(rest.substr(0, dot))];
+        json& old = (*place)[std::string(rest)];
+        if (old == value) return;
+        out_.changes.push_back({fmt::format("axes.{}.{}.{}", axis, box, key), old.is_null() ? "" : old.dump(),
+                                value.dump(), reason});
+        old = value;
+    }
+
+    static double level(const json& plant) { // of friction at rest
+        return std::max(plant.value("coulomb_N", 0.0), plant.value("static_N", 0.0));
+    }
+
+    bool changed(const std::string& axis, const char* key) const {
+        const std::string path = fmt::format("axes.{}.plant.{}", axis, key);
+        return std::any_of(out_.changes.begin(), out_.changes.end(),
+                           [&](const auto& c) { return c.path == path; });
+    }
+
+    /// The diagnosis holds what the machine file describes otherwise: the excess of static over Coulomb friction, and
+    /// the way in which friction gives way.
+    void follow(const std::string& axis, const json& before) {
+        const json& plant = out_.machine["axes"][axis]["plant"];
+        constexpr const char* why = "moves with the friction";
+        if (changed(axis, "coulomb_N") && before.contains("static_N") && !changed(axis, "static_N"))
+            set(axis, "plant", "static_N",
+                before["static_N"].get<double>() + plant["coulomb_N"].get<double>() -
+                    before.value("coulomb_N", 0.0),
+                why);
+        if (!before.contains("gms_stiffness_N_per_m") || changed(axis, "gms_stiffness_N_per_m") ||
+            level(before) == 0)
+            return;
+        json stiffness = before["gms_stiffness_N_per_m"];
+        for (json& k : stiffness) k = k.get<double>() * (level(plant) / level(before));
+        if (level(plant) != level(before)) set(axis, "plant", "gms_stiffness_N_per_m", stiffness, why);
+    }
+
+    std::string_view file_;
+    double at_least_;
+    applied_diagnosis out_;
+};
+
+} // namespace detail
+
+/// Writes the causes of a diagnosis that are at least as probable as `at_least` into a machine file: its JSON text in, the
+/// corrected document and what was changed out. Throws bad_input when the text is no machine file (read_machine), when the
+/// diagnosis is of another machine, and when the values found are not ones that a machine file may hold.
+inline applied_diagnosis apply(std::string_view machine_text, std::string_view machine_file,
+                               const diagnosis_result& d, double at_least = 0.5) {
+    read_machine(machine_text, machine_file);
+    const auto json = nlohmann::ordered_json::parse(detail::without_byte_order_mark(machine_text));
+    return detail::corrector(json, machine_file, at_least).take(d);
+}
+
+/// The same on a description that was read or made before. A controller of unknown kind is not in it, and so not in the
+/// result.
+inline machine_description apply(const machine_description& machine, const diagnosis_result& d,
+                                 double at_least = 0.5) {
+    const std::string file = machine.file.empty() ? "the machine" : machine.file;
+    return read_machine(apply(to_json(machine).dump(), file, d, at_least).machine.dump(), file);
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "axis_case.hpp"
+#include "interval.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// The described machine's own numbers as machine keys. Friction that gives way
+/// a little is written as one element.
+inline constexpr effect described_values{
+    .name = "calibration",
+    .box = "",
+    .exciting_motion = "",
+    .starts = nullptr,
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        const auto& f = p.friction;
+        std::vector<key_value> out{{"mass_kg", {p.mass}},
+                                   {"force_constant_N_per_V", {p.force_constant}},
+                                   {"viscous_N_s_per_m", {f.viscous_slope}},
+                                   {"delay_s", {p.delay}},
+                                   {"coulomb_N", {f.coulomb}}};
+        if (f.excess > 0) {
+            out.push_back({"static_N", {f.coulomb + f.excess}});
+            out.push_back({"stribeck_velocity_m_per_s", {f.stribeck_velocity}});
+        }
+        if (f.coulomb + f.excess > 0 && f.contact.elements == 1) {
+            out.push_back({"gms_weights", {1}});
+            out.push_back({"gms_stiffness_N_per_m", {(f.coulomb + f.excess) / f.contact.lengths()[0]}});
+        }
+        return out;
+    }};
+
+} // namespace detail
+
+/// What the best model of an axis has moved inside the owner's tolerance, as
+/// machine keys. A key that a cause gives is that cause's; a value that the
+/// machine file does not describe stays undescribed, but for the give of its
+/// friction.
+inline std::vector<parameter_estimate> calibrated(const axis_case& c, const std::vector<cause>& causes) {
+    const auto before = detail::described_values.read(c.models.given().fit.plant);
+    std::vector<parameter_estimate> out;
+    for (auto& p : estimates(c.best(), detail::described_values, c.record.score)) {
+        const bool of_a_cause = std::any_of(causes.begin(), causes.end(), [&](const cause& x) {
+            return std::any_of(x.parameters.begin(), x.parameters.end(),
+                               [&](const auto& q) { return q.key == p.key; });
+        });
+        const auto was =
+            std::find_if(before.begin(), before.end(), [&](const auto& b) { return b.key == p.key; });
+        const bool moved =
+            was == before.end() || p.key.starts_with("gms") || was->values[0] != p.values[0].value;
+        if (!of_a_cause && moved) out.push_back(std::move(p));
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

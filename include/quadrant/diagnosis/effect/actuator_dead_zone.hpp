@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repeating.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// Commands below the dead zone have no effect, larger ones lose it: an output stage without bias, or a controller's dead
+/// band in the drive. Joins the actuator. Shows when the command changes its sign, at any speed; friction turns with the
+/// velocity instead.
+inline constexpr effect actuator_dead_zone{
+    .name = "actuator_dead_zone",
+    .box = "actuator",
+    .exciting_motion = "slow reversals beside accelerations in which the command changes its sign in motion",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        const double most = detail::largest_command(s), usual = rms(s.record.command);
+        if (!(usual > 0)) return {};
+        double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.dead_zone; };
+        return {
+            {{.key = "actuator.dead_zone_V",
+              .of = of,
+              .start = detail::best_start(s, of, {0.01 * usual, 0.03 * usual, 0.1 * usual, 0.3 * usual, usual}),
+              .low = 1e-4 * usual,
+              .high = 0.9 * most,
+              .logarithmic = true,
+              .step = 1e-2}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"actuator.dead_zone_V", {p.dead_zone}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

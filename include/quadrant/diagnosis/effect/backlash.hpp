@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// Play between the motor and the encoder on the load: the reading stands still until the motor has crossed it. Joins the
+/// position. Shows at each reversal as a pause of the reading at full command, as long as the play is wide. A direct drive
+/// cannot have it: name it in excluded_effects.
+inline constexpr effect backlash{
+    .name = "backlash",
+    .box = "mechanics",
+    .exciting_motion = "slow reversals of 0.1 mm and more, with rest before each",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.backlash; };
+        return {{{.key = "backlash_m",
+                  .of = of,
+                  .start = detail::best_start(s, of, {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}),
+                  .low = s.record.score.floor / 0.4,
+                  .high = std::max(1e-3, s.record.score.floor * 100),
+                  .logarithmic = true,
+                  .step = 1e-2}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"backlash_m", {p.backlash}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

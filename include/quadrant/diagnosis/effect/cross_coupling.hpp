@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// M c a_other: the acceleration of the other axis forces this one, through a guide that is not square or a base that gives
+/// way. Joins the force. Shows while the other axis accelerates, at rest too.
+inline constexpr effect cross_coupling{
+    .name = "cross_coupling",
+    .box = "mechanics",
+    .exciting_motion = "accelerate the other axis while this one rests, then both in a circle",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        const auto& other = s.record.observer.other_acceleration;
+        double aa = 0, af = 0;
+        for (std::size_t k = 0; k < other.size(); ++k) {
+            aa += other[k] * other[k];
+            af += other[k] * s.residual[k];
+        }
+        if (!(aa > 0)) return {};
+        return {{{.key = "coupling",
+                  .of = [](plant_model& p) -> double& { return p.coupling; },
+                  .start = std::clamp(s.leader.coupling - af / aa / s.leader.mass, -0.5, 0.5),
+                  .low = -1,
+                  .high = 1,
+                  .step = 1e-4}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"coupling", {p.coupling}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

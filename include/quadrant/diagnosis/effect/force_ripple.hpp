@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repeating.hpp"
+
+namespace quadrant::diagnosis::detail {
+inline harmonics& force_ripple_harmonics(plant_model& p) { return p.ripple; }
+} // namespace quadrant::diagnosis::detail
+
+namespace quadrant::diagnosis::suspect {
+
+/// kf (1 + ripple sin(2 pi x / period + phase)): the force of a motor varies with the magnets. Joins the actuator's gain.
+/// Shows as a residual that repeats with position and grows with the command; without command there is none, which tells
+/// it from cogging.
+inline constexpr effect force_ripple{
+    .name = "force_ripple",
+    .box = "actuator",
+    .exciting_motion =
+        "strokes over several periods with strong accelerations, or against a load, and the same slowly",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        const double travel = detail::travel(s);
+        std::vector<double> by_command(s.residual.size());
+        for (std::size_t k = 0; k < by_command.size(); ++k) by_command[k] = s.residual[k] * s.record.command[k];
+        std::vector<std::vector<parameter>> out;
+        for (double period : spatial_peaks(by_command, s.record.position, 0.5 * travel,
+                                           std::max(travel / 400, 2e-4), 2, s.record.score.skip))
+            out.push_back(detail::repeating<detail::force_ripple_harmonics, 1>("ripple_period_m", "ripple",
+                                                                               period, travel, 0.9));
+        return out;
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"ripple", p.ripple.sizes()},
+                {"ripple_period_m", {p.ripple.period}},
+                {"ripple_phase_rad", p.ripple.phases()}};
+    },
+    .join = [](plant_model& p) { p.ripple.count = 1; }};
+
+} // namespace quadrant::diagnosis::suspect

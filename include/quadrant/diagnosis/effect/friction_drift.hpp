@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repeating.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// Fc (1 + drift (1 - exp(-t / time))) sign(v): the Coulomb level changes over the log, as the guides warm up. Joins the
+/// force, in the friction box. Shows as the same stroke that needs another force later.
+inline constexpr effect friction_drift{
+    .name = "friction_drift",
+    .box = "mechanics",
+    .exciting_motion = "the same stroke repeated for longer than the machine takes to warm up",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        if (!(s.leader.friction.coulomb > 0)) return {};
+        const double duration = detail::duration(s);
+        const auto level = [&](double from, double to) {
+            const auto n = static_cast<double>(s.residual.size());
+            double sum = 0, count = 0;
+            for (auto k = static_cast<std::size_t>(from * n); k < static_cast<std::size_t>(to * n); ++k)
+                if (const double v = s.record.velocity[k]; v != 0) {
+                    sum += v > 0 ? s.residual[k] : -s.residual[k];
+                    ++count;
+                }
+            return count > 0 ? sum / count : 0;
+        };
+        const double change =
+            std::clamp((level(0.67, 1) - level(0, 0.33)) / s.leader.friction.coulomb, -0.6, 2.0);
+        std::vector<std::vector<parameter>> out;
+        for (double time : {0.15 * duration, duration})
+            out.push_back({{.key = "friction_drift",
+                            .of = [](plant_model& p) -> double& { return p.friction.drift; },
+                            .start = time < duration ? change : 1.5 * change,
+                            .low = -0.95,
+                            .high = 10,
+                            .step = 1e-3},
+                           {.key = "friction_drift_time_s",
+                            .of = [](plant_model& p) -> double& { return p.friction.drift_time; },
+                            .start = time,
+                            .low = 0.02 * duration,
+                            .high = 3 * duration,
+                            .logarithmic = true,
+                            .step = 1e-2}});
+        return out;
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"friction_drift", {p.friction.drift}}, {"friction_drift_time_s", {p.friction.drift_time}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repeating.hpp"
+
+namespace quadrant::diagnosis::detail {
+inline harmonics& position_dependent_friction_harmonics(plant_model& p) { return p.friction.along; }
+} // namespace quadrant::diagnosis::detail
+
+namespace quadrant::diagnosis::suspect {
+
+/// Fc (1 + amplitude sin(2 pi x / period + phase)) sign(v): the Coulomb level varies along the travel, as on a guide that is
+/// not straight or a screw that is tight at one end. Joins the force, in the friction box. Shows as a residual that repeats
+/// with position and turns its sign with the direction; cogging does not turn.
+inline constexpr effect position_dependent_friction{
+    .name = "position_dependent_friction",
+    .box = "mechanics",
+    .exciting_motion = "the same slow stroke in both directions over the whole travel",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        if (!(s.leader.friction.coulomb > 0)) return {};
+        const double travel = detail::travel(s);
+        double peak = 0;
+        for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
+        std::vector<double> against(s.residual.size());
+        for (std::size_t k = 0; k < against.size(); ++k) {
+            const double v = s.record.velocity[k];
+            against[k] = std::abs(v) < 0.005 * peak ? 0 : v > 0 ? s.residual[k] : -s.residual[k];
+        }
+        std::vector<std::vector<parameter>> out;
+        for (double period : spatial_peaks(against, s.record.position, 2 * travel, std::max(travel / 50, 1e-3),
+                                           2, s.record.score.skip))
+            out.push_back(detail::repeating<detail::position_dependent_friction_harmonics, 1>(
+                "friction_position_period_m", "friction_position_amplitude", period, travel, 0.95));
+        return out;
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"friction_position_amplitude", p.friction.along.sizes()},
+                {"friction_position_period_m", {p.friction.along.period}},
+                {"friction_position_phase_rad", p.friction.along.phases()}};
+    },
+    .join = [](plant_model& p) { p.friction.along.count = 1; }};
+
+} // namespace quadrant::diagnosis::suspect

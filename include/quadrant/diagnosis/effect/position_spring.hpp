@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repeating.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// F = -k x: a cable carrier, a bellows, a spring-balanced axis. Joins the force. Shows as a residual proportional to the
+/// position, at rest too, that does not turn with the direction.
+inline constexpr effect position_spring{
+    .name = "position_spring",
+    .box = "mechanics",
+    .exciting_motion = "slow strokes over the whole travel in both directions, with rest at both ends",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        double xx = 0, xf = 0, mean_x = 0, mean_f = 0;
+        const auto n = static_cast<double>(s.residual.size());
+        for (std::size_t k = 0; k < s.residual.size(); ++k) {
+            mean_x += s.record.position[k] / n;
+            mean_f += s.residual[k] / n;
+        }
+        for (std::size_t k = 0; k < s.residual.size(); ++k) {
+            xx += (s.record.position[k] - mean_x) * (s.record.position[k] - mean_x);
+            xf += (s.record.position[k] - mean_x) * (s.residual[k] - mean_f);
+        }
+        const double slope = s.leader.spring + (xx > 0 ? xf / xx : 0), travel = detail::travel(s);
+        if (!(slope > 0) || !(travel > 0)) return {};
+        return {{{.key = "spring_N_per_m",
+                  .of = [](plant_model& p) -> double& { return p.spring; },
+                  .start = slope,
+                  .low = 0,
+                  .high = 20 * s.leader.force_constant / travel,
+                  .step = 1e-5 * s.leader.force_constant / travel}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        return {{"spring_N_per_m", {p.spring}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

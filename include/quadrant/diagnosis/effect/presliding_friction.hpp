@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// Friction that gives way before it slips and remembers where it turned: elements in parallel, each a spring with its share
+/// of the friction level (Maxwell-slip [Jamaludin2008] eq. 3.6-3.8; Dahl and LuGre have nearly the same curve). Joins the
+/// force, in the friction box. Shows within some ten micrometres after each reversal and in small motions. Every contact
+/// gives way by up to two micrometres: that much is no cause.
+inline constexpr effect presliding_friction{
+    .name = "presliding_friction",
+    .box = "mechanics",
+    .exciting_motion = "sinusoids of 15 and 450 um at 0.1 to 1 Hz, where friction gives way before it slips",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        if (!(s.leader.friction.coulomb > 0)) return {};
+        std::vector<std::vector<parameter>> out;
+        for (double length : {3e-6, 1e-5, 4e-5})
+            out.push_back({{.key = "presliding_length_m",
+                            .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
+                            .start = length,
+                            .low = 1e-6,
+                            .high = 1e-3,
+                            .logarithmic = true,
+                            .step = 1e-2},
+                           {.key = "presliding_length_m",
+                            .of = [](plant_model& p) -> double& { return p.friction.contact.spread; },
+                            .start = 2.2,
+                            .low = 1.05,
+                            .high = 8,
+                            .logarithmic = true,
+                            .step = 1e-2},
+                           {.key = "presliding_damping_s",
+                            .of = [](plant_model& p) -> double& { return p.friction.contact.damping; },
+                            .start = 1e-3,
+                            .low = 0,
+                            .high = 0.05,
+                            .step = 1e-5}});
+        return out;
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        const auto& c = p.friction.contact;
+        key_value weights{"gms_weights", {}}, stiffness{"gms_stiffness_N_per_m", {}};
+        const auto lengths = c.lengths();
+        for (std::size_t i = 0; i < c.elements; ++i) {
+            weights.values.push_back(c.weights[i]);
+            stiffness.values.push_back(c.weights[i] * (p.friction.coulomb + p.friction.excess) / lengths[i]);
+        }
+        return {{"presliding_length_m", {c.way_to_63_percent()}},
+                {"presliding_damping_s", {c.damping}},
+                weights,
+                stiffness};
+    },
+    .join =
+        [](plant_model& p) {
+            p.friction.contact.exponential(p.friction.contact.length);
+            p.friction.contact.lengths_as_described = {};
+        }};
+
+} // namespace quadrant::diagnosis::suspect

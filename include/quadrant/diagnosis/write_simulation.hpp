@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "simulate.hpp"
+#include "write_diagnosis.hpp"
+
+namespace quadrant::diagnosis {
+
+/// What a simulation leaves, as JSON (docs/schema/simulation.schema.json).
+inline nlohmann::ordered_json to_json(const simulation_result& s) {
+    nlohmann::ordered_json axes = nlohmann::ordered_json::object();
+    for (const simulated_axis& a : s.axes) {
+        nlohmann::ordered_json where = nlohmann::ordered_json::array();
+        for (const place& p : a.where) where.push_back(detail::place_json(p));
+        axes[a.name] = {{"closed_loop", a.closed_loop},
+                        {"command_unit", a.command_unit},
+                        {"gap", detail::gap_json(a.gap)},
+                        {"where", where}};
+    }
+    return {{"schema", "quadrant.simulation/1"}, {"axes", axes}, {"notes", s.notes}};
+}
+
+} // namespace quadrant::diagnosis

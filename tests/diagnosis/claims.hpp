@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "workshop.hpp"
+
+#include <quadrant/diagnosis/diagnose.hpp>
+
+#include <doctest/doctest.h>
+
+/// What the tests ask of a diagnosis.
+namespace workshop {
+
+using namespace quadrant::diagnosis;
+
+inline diagnosis_result diagnosed(const machine_description& described_machine, const workshop::machine& real) {
+    return diagnose(described_machine, workshop::as_log(workshop::run(real)));
+}
+
+/// Names that are claimed: blamed at one half or more.
+inline std::vector<std::string> claims(const diagnosis_result& d) {
+    std::vector<std::string> out;
+    for (const cause& c : d.causes)
+        if (c.probability >= 0.5) out.push_back(c.effect);
+    return out;
+}
+
+inline const estimate& value_of(const cause& c, const std::string& key) {
+    for (const auto& p : c.parameters)
+        if (p.key == key) return p.values.at(0);
+    FAIL("no parameter " << key);
+    static const estimate none;
+    return none;
+}
+
+/// The effect is named first and claimed, nothing else is, its parameter is found, and the gap shrinks to the floor.
+inline void named(const diagnosis_result& d, const std::string& effect, const std::string& key, double truth,
+                  double within) {
+    CAPTURE(effect);
+    CHECK(std::string(name_of(d.verdict)) == "explained");
+    REQUIRE(claims(d) == std::vector{effect});
+    const cause& c = d.causes.front();
+    CHECK(c.effect == effect);
+    CHECK(value_of(c, key).value == doctest::Approx(truth).epsilon(within));
+    CHECK(value_of(c, key).low < value_of(c, key).value);
+    CHECK(value_of(c, key).high > value_of(c, key).value);
+    CHECK(c.gap_after_force_rms_N.value < 0.5 * c.gap_before_force_rms_N.value);
+    CHECK(c.shrink.low <= c.shrink.value);
+    CHECK(c.shrink.value <= c.shrink.high);
+}
+
+/// Something is wrong and no name is claimed for it.
+inline void abstains(const diagnosis_result& d) {
+    CHECK(d.verdict >= verdict::partly_explained);
+    CHECK(claims(d).empty());
+    CHECK(!d.remaining_structure.empty());
+}
+
+} // namespace workshop

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/init.hpp"
+#include "quadrant/diagnosis/write_machine.hpp"
+#include "workshop.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+init_request request(double mass = 180, double constant = 1100) {
+    init_request r;
+    r.values["mass"][""] = mass;
+    r.values["force-constant"][""] = constant;
+    return r;
+}
+
+std::string refusal(const init_request& r, const machine_log* log = nullptr) {
+    try {
+        init_machine(r, log);
+    } catch (const bad_input& fault) {
+        return fault.what();
+    }
+    return "accepted";
+}
+
+machine_log workshop_log() {
+    auto log = workshop::as_log(workshop::run({}, 6.2));
+    log.file = "log.csv";
+    return log;
+}
+
+bool says(const std::vector<std::string>& notes, const std::string& words) {
+    return std::any_of(notes.begin(), notes.end(), [&](const auto& n) { return n.find(words) != n.npos; });
+}
+
+} // namespace
+
+TEST_CASE("init: period, axis, unit and resolution come from the log, and the file passes read_machine") {
+    const auto log = workshop_log();
+    const auto begun = init_machine(request(), &log);
+    const auto machine = read_machine(begun.machine.dump(), "m.json");
+    CHECK(machine.sample_period_s == workshop::period);
+    REQUIRE(machine.axes.size() == 1);
+    CHECK(machine.axes[0].name == "x");
+    CHECK(machine.axes[0].encoder.resolution_m == doctest::Approx(workshop::count));
+    CHECK_FALSE(machine.axes[0].controller);
+    CHECK(says(begun.notes, "by the log the command moves about"));
+    CHECK(begun.comments.find("| `axes.x.plant.mass_kg` | 180 |") != std::string::npos);
+    CHECK(begun.comments.find("smallest step of the position in the log") != std::string::npos);
+}
+
+TEST_CASE("init: every field goes to its key, each with its line of comment") {
+    auto r = request();
+    r.sample_period_s = 0.0005;
+    r.axes = {"x", "y"};
+    for (const init_field& f : init_fields)
+        if (!r.values.contains(f.option))
+            r.values[f.option][""] = std::string(f.option) == "dac-bits" ? 16 : 0.25;
+    r.values["coulomb"]["y"] = 0.2;
+    const auto begun = init_machine(r);
+    const auto flat = begun.machine.flatten();
+    for (const init_field& f : init_fields) {
+        CAPTURE(f.option);
+        std::string path = fmt::format("/axes/x/{}/{}", f.box, f.key);
+        std::replace(path.begin(), path.end(), '.', '/');
+        CHECK(flat.contains(path));
+        CHECK(begun.comments.find(fmt::format("`axes.x.{}.{}`", f.box, f.key)) != std::string::npos);
+    }
+    CHECK(flat["/axes/y/plant/coulomb_N"] == 0.2);
+    CHECK(flat["/axes/x/controller/kind"] == "cascade_p_pi");
+    CHECK(begun.machine["axes"]["x"]["controller"].begin().key() == "kind");
+    // What was begun is what a description of it would write.
+    CHECK(nlohmann::json(
+              to_json(read_machine(begun.machine.dump(), "m.json")))["axes"]["y"]["plant"]["coulomb_N"] == 0.2);
+}
+
+TEST_CASE(
+    "init: a mass that the log contradicts is refused, one that is missing is asked for with the log's own") {
+    const auto log = workshop_log();
+    for (double mass : {1.8, 180000.0})
+        CHECK(refusal(request(mass), &log).find("cannot be of this log") != std::string::npos);
+    auto r = request();
+    r.values.erase("mass");
+    const auto said = refusal(r, &log);
+    CHECK(said.find("init: axis x: --mass is missing; the log speaks of about 1") == 0); // 180 kg
+    r = request();
+    r.values.erase("force-constant");
+    CHECK(refusal(r, &log).find("--force-constant is missing; the log speaks of about 1") != std::string::npos);
+}
+
+TEST_CASE("init: what does not fit together is refused, what is unusual is asked about") {
+    CHECK(refusal(request()).find("--sample-period is missing") != std::string::npos);
+    auto r = request(340000);
+    r.sample_period_s = 0.0005;
+    CHECK(says(init_machine(r).notes, "axes.x.plant.mass_kg = 340000 is unusual"));
+    r.command_unit = "N";
+    CHECK(refusal(r) == "init: --force-constant contradicts a command in newtons");
+    r.command_unit = "A";
+    CHECK(init_machine(r).machine["axes"]["x"]["plant"].contains("force_constant_N_per_A"));
+    const auto log = workshop_log();
+    CHECK(refusal(r, &log) == "log.csv: the command of axis x is in V, not in A");
+    r.axes = {"a b"};
+    CHECK(refusal(r).find("an axis is named by letters") != std::string::npos);
+    r.axes = {"z"};
+    CHECK(refusal(r, &log) == "log.csv: axis z is not in the log");
+    r = request();
+    r.sample_period_s = 0.0005;
+    r.values["static"][""] = 10; // without the velocity at which it fades
+    CHECK(refusal(r) == "init: axes.x.plant.static_N: needs stribeck_velocity_m_per_s");
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/simulate.hpp"
+#include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/write_simulation.hpp"
+#include "workshop.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+/// The machine file of a machine with its values as they are.
+machine_description exact(const workshop::machine& m) {
+    auto d = workshop::described(m);
+    auto& p = d.axes[0].plant;
+    p.mass_kg = m.mass;
+    p.force_constant_N_per_V = m.force_constant;
+    p.viscous_N_s_per_m = m.viscous;
+    if (m.coulomb > 0) p.coulomb_N = m.coulomb;
+    return d;
+}
+
+simulated_axis only(const simulation_result& s) {
+    REQUIRE(s.axes.size() == 1);
+    return s.axes[0];
+}
+
+} // namespace
+
+TEST_CASE("simulate: a machine as described is predicted to the noise, one with another mass is not") {
+    const workshop::machine m;
+    const auto log = workshop::as_log(workshop::run(m, 4.15));
+    auto file = exact(m);
+    const auto right = only(simulate(file, log));
+    CHECK(right.closed_loop);
+    CHECK(right.gap.force_rms_N < 1.5 * right.gap.noise_floor_force_rms_N);
+    CHECK(right.gap.position_peak_m < 2e-6);
+    CHECK(right.position.size() == log.samples);
+
+    file.axes[0].plant.mass_kg *= 1.2;
+    const auto wrong = only(simulate(file, log));
+    CHECK(wrong.gap.force_rms_N > 5 * right.gap.force_rms_N);
+    CHECK(wrong.gap.position_rms_m > right.gap.position_rms_m);
+    CHECK(wrong.gap.command_rms_V > right.gap.command_rms_V);
+    // The floor is the sensor's, not the gap's: the same whatever the model lacks, but for the mass that it is told with.
+    CHECK(wrong.gap.noise_floor_force_rms_N ==
+          doctest::Approx(1.2 * right.gap.noise_floor_force_rms_N).epsilon(0.15));
+}
+
+TEST_CASE("simulate: without a controller the force alone is judged") {
+    const workshop::machine m;
+    auto file = exact(m);
+    file.axes[0].controller.reset();
+    const auto s = only(simulate(file, workshop::as_log(workshop::run(m, 2.15))));
+    CHECK_FALSE(s.closed_loop);
+    CHECK(s.position.empty());
+    CHECK(s.gap.position_rms_m == 0);
+    CHECK(s.gap.force_rms_N > 0);
+}
+
+TEST_CASE("simulate: a process that began elsewhere in its cycle is found again") {
+    workshop::machine m;
+    m.cutting = 30;
+    auto file = exact(m);
+    auto& p = file.axes[0].process;
+    p.fundamental_Hz = m.cutting_frequency;
+    p.force_N = {30, 15};
+    p.phase_rad = {0.4 + 2.2, 4.4}; // 2.2 rad of the fundamental later than the machine's
+    const auto s = only(simulate(file, workshop::as_log(workshop::run(m, 4.15))));
+    file.axes[0].process = {};
+    const auto none = only(simulate(file, workshop::as_log(workshop::run(m, 4.15))));
+    CHECK(s.gap.force_rms_N < 0.15 * none.gap.force_rms_N);
+}
+
+TEST_CASE("simulate: a parked axis is left out, a log too short refused") {
+    const workshop::machine m;
+    auto file = exact(m);
+    auto log = workshop::as_log(workshop::run(m, 1));
+    file.axes.push_back(file.axes[0]);
+    file.axes[1].name = "y";
+    log.axes.push_back(log.axes[0]);
+    log.axes[1].name = "y";
+    log.axes[1].still = true;
+    CHECK(simulate(file, log).axes.size() == 1);
+    log.samples = 900;
+    CHECK_THROWS_AS(simulate(file, log), bad_input);
+}
+
+TEST_CASE("simulate: what diagnose forecasts is achieved on another log, within ten points") {
+    workshop::machine m;
+    m.cogging = 25;
+    const auto machine = exact(m);
+    const auto d = diagnose(machine, workshop::as_log(workshop::run(m)));
+    const auto corrected = apply(machine, d);
+    CHECK(corrected.axes[0].plant.cogging_N.size() > 0);
+    const auto other = workshop::as_log(workshop::run(m, 4.15, 7)); // the strokes alone
+    const double before = only(simulate(machine, other)).gap.force_rms_N,
+                 after = only(simulate(corrected, other)).gap.force_rms_N;
+    const double forecast = 1 - d.axes[0].gap_after.force_rms_N / d.axes[0].gap.force_rms_N;
+    CAPTURE(before);
+    CAPTURE(after);
+    CHECK(forecast > 0.5);
+    CHECK(std::abs(1 - after / before - forecast) < 0.1);
+}
+
+TEST_CASE("simulate: with the calibrated values the forecast is kept where the machine file is off inside its "
+          "tolerance") {
+    workshop::machine m;
+    m.excess = 40;
+    const auto machine = workshop::described(m);
+    const auto d = diagnose(machine, workshop::as_log(workshop::run(m)));
+    REQUIRE(!d.axes[0].calibrated.empty());
+    const auto other = workshop::as_log(workshop::run(m, 6.15, 7));
+    const double before = only(simulate(machine, other)).gap.force_rms_N,
+                 after = only(simulate(apply(machine, d), other)).gap.force_rms_N;
+    CHECK(std::abs(after / before - d.axes[0].gap_after.force_rms_N / d.axes[0].gap.force_rms_N) < 0.1);
+}
+
+TEST_CASE("simulate: its JSON holds the numbers of each axis") {
+    const workshop::machine m;
+    const auto s = simulate(exact(m), workshop::as_log(workshop::run(m, 2.15)));
+    const auto json = to_json(s);
+    CHECK(json["schema"] == "quadrant.simulation/1");
+    CHECK(json["axes"]["x"]["gap"]["force_rms_N"] == s.axes[0].gap.force_rms_N);
+    CHECK(json["axes"]["x"]["command_unit"] == "V");
+}

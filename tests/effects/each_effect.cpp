@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "diagnosis/claims.hpp"
+
+using namespace workshop;
+
+// Each effect alone, by a simulator with another friction law: 3 % on what friction hides, 1 % on the rest.
+TEST_CASE("diagnose: Coulomb friction that is not modelled") {
+    const machine real;
+    auto file = described(real);
+    file.axes[0].plant.coulomb_N.reset();
+    named(diagnosed(file, real), "coulomb_friction", "coulomb_N", 60, 0.03);
+}
+TEST_CASE("diagnose: viscous friction that is not as described") {
+    machine real;
+    const auto file = described(real);
+    real.viscous = 600;
+    named(diagnosed(file, real), "viscous_friction", "viscous_N_s_per_m", 600, 0.03);
+}
+TEST_CASE("diagnose: Stribeck friction that is not modelled") {
+    machine real;
+    const auto file = described(real);
+    real.excess = 50;
+    named(diagnosed(file, real), "stribeck_friction", "stribeck_velocity_m_per_s", 0.004, 0.05);
+}
+TEST_CASE("diagnose: friction that differs by direction") {
+    machine real;
+    const auto file = described(real);
+    real.viscous_asymmetry = 0.5;
+    named(diagnosed(file, real), "asymmetric_friction", "viscous_asymmetry", 0.5, 0.03);
+}
+TEST_CASE("diagnose: another mass") {
+    machine real;
+    const auto file = described(real);
+    real.mass = 225;
+    named(diagnosed(file, real), "mass", "mass_kg", 225, 0.02);
+}
+TEST_CASE("diagnose: another force constant") {
+    machine real;
+    const auto file = described(real);
+    real.force_constant = 930;
+    named(diagnosed(file, real), "force_constant", "force_constant_N_per_V", 930, 0.03);
+}
+TEST_CASE("diagnose: a command that acts late") {
+    machine real;
+    const auto file = described(real);
+    real.delay = 0.0018;
+    named(diagnosed(file, real), "time_delay", "delay_s", 0.0018, 0.02);
+}
+TEST_CASE("diagnose: cogging with two harmonics") {
+    machine real;
+    const auto file = described(real);
+    real.cogging = 15;
+    real.cogging_second = 5;
+    const auto d = diagnosed(file, real);
+    named(d, "cogging", "cogging_period_m", 0.03, 0.01);
+    CHECK(value_of(d.causes.front(), "cogging_N").value == doctest::Approx(15).epsilon(0.03));
+    CHECK(value_of(d.causes.front(), "cogging_phase_rad").value == doctest::Approx(0.7).epsilon(0.03));
+}
+TEST_CASE("diagnose: a current loop of first order, not a delay") {
+    machine real;
+    const auto file = described(real);
+    real.lag = 0.002;
+    named(diagnosed(file, real), "actuator_lag", "actuator.lag_s", 0.002, 0.03);
+}
+TEST_CASE("diagnose: a spring, not a constant force") {
+    machine real;
+    const auto file = described(real);
+    real.spring = 800;
+    named(diagnosed(file, real), "position_spring", "spring_N_per_m", 800, 0.03);
+}
+TEST_CASE("diagnose: play, not presliding friction") {
+    machine real;
+    const auto file = described(real);
+    real.backlash = 8e-6;
+    named(diagnosed(file, real), "backlash", "backlash_m", 8e-6, 0.1);
+}
+TEST_CASE("diagnose: friction that gives way by ten micrometres, not play") {
+    machine real;
+    const auto file = described(real);
+    real.bristle = 1e-5;
+    // Bristles lose their damping as they stretch, elements keep it until they slip: the length is found to a factor.
+    named(diagnosed(file, real), "presliding_friction", "presliding_length_m", 1e-5, 0.5);
+}
+TEST_CASE("diagnose: friction that varies along the travel, not cogging") {
+    machine real;
+    const auto file = described(real);
+    real.friction_along = 0.4;
+    named(diagnosed(file, real), "position_dependent_friction", "friction_position_amplitude", 0.4, 0.05);
+}
+TEST_CASE("diagnose: friction that changes while the machine warms up") {
+    machine real;
+    const auto file = described(real);
+    real.friction_drift = -0.4;
+    named(diagnosed(file, real), "friction_drift", "friction_drift", -0.4, 0.1);
+}
+TEST_CASE("diagnose: a second mass on a spring") {
+    machine real;
+    real.mass = 150;
+    real.mode_mass = 30;
+    machine whole = real;
+    whole.mass = 180;
+    named(diagnosed(described(whole), real), "structural_resonance", "mode_frequency_Hz", 70, 0.02);
+}
+TEST_CASE("diagnose: a force constant that varies along the travel, not cogging") {
+    machine real;
+    const auto file = described(real);
+    real.ripple = 0.15;
+    named(diagnosed(file, real), "force_ripple", "ripple_period_m", 0.024, 0.01);
+}
+TEST_CASE("diagnose: a drive that clips below the controller's limit") {
+    machine real;
+    const auto file = described(real);
+    real.drive_limit = 0.8;
+    named(diagnosed(file, real), "actuator_saturation", "actuator.drive_limit_V", 0.8, 0.01);
+}
+TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction") {
+    machine real;
+    const auto file = described(real);
+    real.dead_zone = 0.03;
+    named(diagnosed(file, real), "actuator_dead_zone", "actuator.dead_zone_V", 0.03, 0.05);
+}
+// Few losses in a record that hardly changes its command do not earn a claim; they are never called something else.
+TEST_CASE(
+    "diagnose: lost commands take their pulses out of the gap, a delay does not, and nothing else is claimed") {
+    machine real;
+    const auto file = described(real);
+    real.loss = 0.1;
+    const auto log = run(real);
+    const auto record = prepare(log, workshop::period, workshop::count);
+    const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
+    const double before = rms(models.held_out_residual(models.calibrated()));
+    CHECK(rms(models.held_out_residual(models.with({&suspect::sample_loss}))) < 0.4 * before);
+    CHECK(rms(models.held_out_residual(models.with({&suspect::time_delay}))) > 0.95 * before);
+    const auto d = diagnose(file, as_log(log));
+    CHECK(d.verdict >= verdict::explained);
+    for (const auto& name : claims(d)) CHECK(name == "sample_loss");
+}
+TEST_CASE("diagnose: a cyclic error of the encoder, not cogging of the same period") {
+    machine real;
+    const auto file = described(real);
+    real.cyclic = 1e-6;
+    const auto d = diagnosed(file, real);
+    named(d, "encoder_cyclic_error", "encoder.cyclic_period_m", 0.0004, 0.01);
+    CHECK(d.axes[0].where[0].block == "sensor");
+}
+TEST_CASE("diagnose: a turning process") {
+    machine real;
+    const auto file = described(real);
+    real.cutting = 20;
+    const auto d = diagnosed(file, real);
+    named(d, "cutting_force", "process.fundamental_Hz", 23.3, 0.001);
+    CHECK(d.axes[0].where[0].block == "process");
+}
+TEST_CASE("diagnose: a turning process begins anew in the hold-out log") {
+    machine real;
+    const auto file = described(real);
+    real.cutting = 20;
+    axis_log second = run(real, 8.15, 7);
+    for (auto* column : {&second.reference, &second.position, &second.command})
+        column->erase(column->begin(), column->begin() + 1234);
+    const auto log = as_log(run(real)), other = as_log(second);
+    const auto d = diagnose(file, log, &other);
+    REQUIRE(claims(d) == std::vector<std::string>{"cutting_force"});
+    CHECK(d.axes[0].gap_after.force_rms_N < 2 * d.axes[0].gap_after.noise_floor_force_rms_N);
+}
+TEST_CASE("diagnose: the acceleration of the other axis, on the axis that feels it") {
+    machine real, other;
+    auto file = described(real);
+    auto second = file.axes[0];
+    second.name = "y";
+    file.axes.push_back(second);
+    auto log = as_log(run(other, 8.15, 3));
+    log.axes[0].name = "y";
+    const auto shaken =
+        derivative(derivative(zero_phase(log.axes[0].position, 100, workshop::period), workshop::period),
+                   workshop::period);
+    real.coupling = 0.05;
+    real.other_acceleration = [&](double t) { // y runs one second behind, so that the two motions differ
+        const double k = (t - 1) / workshop::period;
+        return k > 0 ? shaken[static_cast<std::size_t>(k)] : 0.0;
+    };
+    auto x = run(real);
+    auto& y = log.axes[0];
+    for (auto* column : {&y.reference, &y.position, &y.command}) {
+        column->insert(column->begin(), 2000, column->front());
+        column->resize(x.position.size());
+    }
+    log.axes.insert(log.axes.begin(), x);
+    log.samples = x.position.size();
+    const auto d = diagnose(file, log);
+    REQUIRE(claims(d) == std::vector<std::string>{"cross_coupling"});
+    CHECK(d.causes.front().axis == "x");
+    CHECK(value_of(d.causes.front(), "coupling").value == doctest::Approx(0.05).epsilon(0.03));
+}
