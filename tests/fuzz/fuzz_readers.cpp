@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // The first byte chooses the reader; bad_input is the only way out but success.
+#include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/import/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
-#include "quadrant/diagnosis/read_machine.hpp"
 
 #include <cstdint>
 #include <sstream>
@@ -25,11 +26,41 @@ void check_log(const std::string& text) {
     }
 }
 
+/// What is written from a machine is a machine; the axes are those that were read.
 void check_machine(const std::string& text) {
     const auto machine = read_machine(text, "machine.json");
+    must_hold(read_machine(to_json(machine).dump(), "again.json").axes.size() == machine.axes.size());
     must_hold(machine.sample_period_s > 0 && !machine.axes.empty());
     for (const auto& axis : machine.axes)
         must_hold(axis.plant.mass_kg > 0 && axis.plant.force_constant_N_per_V > 0);
+}
+
+/// A diagnosis, applied to a machine that has the axis of most of them.
+void check_diagnosis(const std::string& text) {
+    const auto d = read_diagnosis(text, "diagnosis.json");
+    const char* const machine = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.0005, "axes": {"x": {
+        "plant": {"mass_kg": 1, "force_constant_N_per_V": 1, "coulomb_N": 1},
+        "controller": {"kind": "cascade_p_pi", "position_gain_per_s": 1, "velocity_gain_V_s_per_m": 1,
+                       "velocity_filter_Hz": 100}}}})";
+    const auto out = apply(machine, "machine.json", d, 0);
+    read_machine(out.machine.dump(), "out.json");
+}
+
+void check_map(const std::string& text) {
+    const auto map = read_import_map(text, "map.json");
+    must_hold(!map.axes.empty() && (map.time || map.period_s > 0));
+}
+
+/// A foreign log with decimal commas, a header and an end.
+void check_foreign_log(const std::string& text) {
+    const auto map = read_import_map(
+        R"({"schema": "quadrant.import/1", "separator": "tab", "decimal": ",", "header": "Name", "end": "EOF",
+            "time": {"column": 1, "unit": "ms"}, "axes": {"x": {"reference": {"column": "r", "unit": "mm"},
+            "position": {"column": "y", "unit": "mm"}, "command": {"column": "u", "unit": "mV"}}}})",
+        "map.json");
+    auto in = import_log(map, text, "log.txt");
+    must_hold(in.log.samples >= 2 && in.log.sample_period_s > 0);
+    check_physics(in, map);
 }
 
 } // namespace
@@ -38,7 +69,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size == 0) return 0;
     const std::string text(data + 1, data + size);
     try {
-        data[0] % 2 == 0 ? check_log(text) : check_machine(text);
+        constexpr void (*readers[])(const std::string&) = {check_log, check_machine, check_diagnosis, check_map,
+                                                           check_foreign_log};
+        readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
     }

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSL-1.0
+// quadrant-gap diagnose: why does the machine not do what its simulation says?
+#include "commands.hpp"
+#include "report.hpp"
+#include "summary.hpp"
+
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/write_diagnosis.hpp>
+
+#include <memory>
+#include <optional>
+#include <unistd.h>
+
+namespace quadrant_gap {
+
+namespace {
+
+struct diagnose_options {
+    std::string machine, log, holdout, json, report;
+    terminal say;
+};
+
+/// One line on the terminal that is overwritten; every line with --verbose, none with --quiet or into a file.
+class progress_line {
+public:
+    explicit progress_line(const diagnose_options& o)
+        : verbose_(o.say.verbose), shown_(!o.say.quiet && isatty(STDERR_FILENO)) {}
+    ~progress_line() { clear(); }
+    progress_line(const progress_line&) = delete;
+    progress_line& operator=(const progress_line&) = delete;
+    void operator()(const std::string& text) {
+        if (verbose_)
+            std::fprintf(stderr, "%s\n", text.c_str());
+        else if (shown_)
+            std::fprintf(stderr, "\r\033[K%.*s", 78, text.c_str());
+    }
+    void clear() const {
+        if (shown_ && !verbose_) std::fputs("\r\033[K", stderr);
+    }
+
+private:
+    bool verbose_, shown_;
+};
+
+void run(const diagnose_options& o) {
+    const auto machine = read_machine(std::filesystem::path(o.machine));
+    const auto log = read_log(std::filesystem::path(o.log));
+    check_match(machine, log);
+    std::optional<machine_log> holdout;
+    if (!o.holdout.empty()) {
+        holdout = read_log(std::filesystem::path(o.holdout));
+        check_match(machine, *holdout);
+    }
+    progress_line tell(o);
+    const auto result =
+        diagnose(machine, log, holdout ? &*holdout : nullptr, [&](const std::string& s) { tell(s); });
+    tell.clear();
+    if (!o.json.empty())
+        write_aside(o.json,
+                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.report.empty()) write_aside(o.report, html_report(result));
+    if (!o.say.quiet) std::fputs(summary(result).c_str(), stdout);
+}
+
+} // namespace
+
+void add_diagnose(CLI::App& app) {
+    const auto o = std::make_shared<diagnose_options>();
+    auto* command = app.add_subcommand(
+        "diagnose", "name the effect that the simulation lacks, and how far the gap shrinks with it");
+    command->add_option("--machine", o->machine, "machine file (JSON): what the simulation believes")
+        ->required();
+    command->add_option("--log", o->log, "servo log (CSV): what the machine did")->required();
+    command->add_option("--holdout", o->holdout,
+                        "log of another motion of the same machine, to judge the forecast on");
+    command->add_option("--json", o->json, "write the diagnosis (JSON)");
+    command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    add_terminal_options(*command, o->say, "every model tried, with its gain");
+    command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
+}
+
+} // namespace quadrant_gap

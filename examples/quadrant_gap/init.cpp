@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSL-1.0
+// quadrant-gap init: begins a machine file from options, a log, and a few questions on a terminal.
+#include "commands.hpp"
+
+#include <quadrant/diagnosis/init.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/write_diagnosis.hpp>
+
+#include <iostream>
+#include <memory>
+#include <unistd.h>
+
+namespace quadrant_gap {
+
+namespace {
+
+using namespace quadrant::diagnosis;
+
+struct init_options {
+    std::string out, log;
+    bool questions = false;
+    init_request request;
+    std::array<std::vector<std::string>, init_fields.size()> texts;
+    terminal say;
+};
+
+/// "340", "0.4ms", "x=340": the axis ("" is every axis) and the number in SI.
+std::pair<std::string, double> parse(const init_field& f, std::string_view text) {
+    const auto refuse = [&](std::string_view what) {
+        throw bad_input(fmt::format("--{}", f.option), fmt::format("{}: {}", detail::in_quotes(text), what));
+    };
+    const std::size_t equals = text.find('=');
+    const std::string axis(equals == text.npos ? "" : text.substr(0, equals));
+    const std::string_view rest = equals == text.npos ? text : text.substr(equals + 1);
+    const std::size_t end = std::min(rest.find_first_not_of("0123456789.eE+-"), rest.size());
+    std::string_view unit = rest.substr(end);
+    while (unit.starts_with(' ')) unit.remove_prefix(1);
+    double value = 0;
+    if (const char* fault = detail::parse_number(rest.substr(0, end), value)) refuse(fault);
+    if (unit.empty() || unit == f.unit) return {axis, value};
+    const unit_name* known = find_unit(unit);
+    if (!known || known->si != f.unit)
+        refuse(fmt::format("is not a number of {}", *f.unit ? f.unit : "no unit"));
+    return {axis, known->factor < 1 ? value / (1 / known->factor) : value * known->factor};
+}
+
+/// Asks for what is not given; an empty answer leaves it out.
+void ask(init_options& o) {
+    for (const std::size_t i : std::array<std::size_t, 13>{0, 1, 2, 3, 4, 7, 8, 11, 12, 15, 16, 17, 18}) {
+        const init_field& f = init_fields[i];
+        if (!o.texts[i].empty()) continue;
+        std::fprintf(stderr, "%s%s%s%s: ", f.meaning, *f.unit ? " [" : "", f.unit, *f.unit ? "]" : "");
+        std::string answer;
+        if (!std::getline(std::cin, answer)) return;
+        if (!answer.empty()) o.texts[i].push_back(answer);
+    }
+}
+
+void run(init_options& o) {
+    std::optional<machine_log> log;
+    if (!o.log.empty()) log = read_log(std::filesystem::path(o.log));
+    if (o.questions || isatty(STDIN_FILENO)) ask(o);
+    for (std::size_t i = 0; i < init_fields.size(); ++i)
+        for (const std::string& text : o.texts[i]) {
+            const auto [axis, value] = parse(init_fields[i], text);
+            o.request.values[init_fields[i].option][axis] = value;
+        }
+    const auto begun = init_machine(o.request, log ? &*log : nullptr);
+    write_aside(o.out, begun.machine.dump(2) + "\n");
+    const std::string beside = std::filesystem::path(o.out).replace_extension("md").string();
+    write_aside(beside, begun.comments);
+    if (o.say.quiet) return;
+    std::printf("%s written; %s says what each value means and where it is from.\n", o.out.c_str(),
+                beside.c_str());
+    for (const auto& note : begun.notes) std::printf("Note: %s\n", note.c_str());
+    if (o.say.verbose) std::fputs(("\n" + begun.comments).c_str(), stdout);
+}
+
+} // namespace
+
+void add_init(CLI::App& app) {
+    const auto o = std::make_shared<init_options>();
+    auto* command =
+        app.add_subcommand("init", "begin a machine file from a few numbers, and a log when there is one");
+    command->add_option("--out", o->out, "machine file to write; its comments go beside it (.md)")->required();
+    command->add_option("--log", o->log, "servo log (CSV): period, axes, units and resolution come from it");
+    command->add_option("--axes", o->request.axes, "names of the axes (default: the log's, or x)")
+        ->delimiter(',');
+    command->add_option("--sample-period", o->request.sample_period_s, "period of the servo loop [s]")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--command-unit", o->request.command_unit, "unit of the command: V, A or N")
+        ->check(CLI::IsMember({"V", "A", "N"}));
+    command->add_flag("--questions", o->questions, "ask for what is not given, though no terminal listens");
+    for (std::size_t i = 0; i < init_fields.size(); ++i) {
+        const init_field& f = init_fields[i];
+        const std::string unit = *f.unit ? fmt::format(" [{}]", f.unit) : "";
+        command->add_option(fmt::format("--{}", f.option), o->texts[i], f.meaning + unit)
+            ->delimiter(',')
+            ->group("Values, for every axis or AXIS=VALUE,...");
+    }
+    add_terminal_options(*command, o->say, "also every value with its meaning");
+    command->callback([o] { refuse_in_name_of(o->out, [&] { run(*o); }); });
+}
+
+} // namespace quadrant_gap

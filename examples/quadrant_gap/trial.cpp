@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSL-1.0
+// quadrant-gap trial: does the diagnosis find what was put into machines that it did not make?
+#include "commands.hpp"
+#include "trial/child.hpp"
+#include "trial/files.hpp"
+#include "trial/page.hpp"
+#include "trial/tally.hpp"
+
+#include <atomic>
+#include <mutex>
+#include <openssl/evp.h>
+#include <thread>
+#include <unistd.h>
+
+namespace quadrant_gap {
+
+namespace {
+
+using namespace trial;
+
+struct trial_options {
+    std::size_t machines = 200;
+    std::uint64_t seed = 1;
+    std::string json, report, keep, program;
+    std::vector<std::size_t> only;
+    unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+    double limit_s = 300;
+    bool no_forecast = false;
+    terminal say;
+};
+
+std::string sha256(const std::string& text) {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int length = 0;
+    if (EVP_Digest(text.data(), text.size(), digest, &length, EVP_sha256(), nullptr) != 1)
+        throw std::runtime_error("SHA-256 is not there");
+    std::string out;
+    for (unsigned int k = 0; k < length; ++k) out += fmt::format("{:02x}", digest[k]);
+    return out;
+}
+
+/// One line on the terminal that is overwritten; with --verbose a line a machine.
+class progress {
+public:
+    progress(const char* what, std::size_t of, const terminal& say) : what_(what), of_(of), say_(say) {}
+    void operator()(const std::string& more = "") {
+        const std::lock_guard lock(telling_);
+        ++done_;
+        if (say_.verbose)
+            std::fprintf(stderr, "%s %zu of %zu%s\n", what_, done_, of_, more.c_str());
+        else if (!say_.quiet && isatty(STDERR_FILENO))
+            std::fprintf(stderr, "\r\033[K%s %zu of %zu%s", what_, done_, of_, done_ == of_ ? "\n" : "");
+    }
+
+private:
+    const char* what_;
+    std::size_t of_, done_ = 0;
+    terminal say_;
+    std::mutex telling_;
+};
+
+/// work(k) for k below n on several threads; the first exception is thrown on.
+template <class Work> void for_each_index(std::size_t n, unsigned jobs, Work&& work) {
+    std::atomic<std::size_t> next = 0;
+    std::exception_ptr failed;
+    std::mutex failing;
+    const auto loop = [&] {
+        for (std::size_t k; (k = next++) < n;) try {
+                work(k);
+            } catch (...) {
+                const std::lock_guard lock(failing);
+                if (!failed) failed = std::current_exception();
+                next = n;
+            }
+    };
+    {
+        std::vector<std::jthread> others;
+        for (unsigned j = 1; j < jobs; ++j) others.emplace_back(loop);
+        loop();
+    }
+    if (failed) std::rethrow_exception(failed);
+}
+
+/// The claims of a diagnosis that never saw the hold-out log: its forecast, and what they do on that log.
+std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const std::filesystem::path& folder) {
+    const auto file = [&](const char* name) { return (folder / name).string(); };
+    const answer f = diagnose_files(o.program, folder, false, o.limit_s);
+    const auto forecast = whole_shrink(f.diagnosis);
+    if (!forecast || run_child({o.program, "apply", "--quiet", "--machine", file("machine.json"), "--diagnosis",
+                                file("forecast.json"), "--out", file("corrected.json")},
+                               folder / "heard.txt", o.limit_s) != 0)
+        return std::nullopt;
+    const auto left = [&](const char* machine) -> std::optional<double> {
+        if (run_child({o.program, "simulate", "--quiet", "--machine", file(machine), "--log",
+                       file("holdout.csv"), "--json", file("simulated.json")},
+                      folder / "heard.txt", o.limit_s) != 0)
+            return std::nullopt;
+        std::ifstream written(file("simulated.json"));
+        const auto s = ordered_json::parse(written, nullptr, false);
+        return remaining_force(s);
+    };
+    const auto before = left("machine.json"), after = left("corrected.json");
+    if (!before || !after || *before <= 0) return std::nullopt;
+    return shrink_pair{*forecast, 1 - *after / *before};
+}
+
+void run_trial(trial_options o) {
+    if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const auto planned_machines = plan(o.seed, o.machines);
+    std::vector<std::size_t> chosen(o.machines);
+    for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
+    if (!o.only.empty()) chosen = o.only;
+    for (const std::size_t k : chosen)
+        if (k >= o.machines)
+            throw quadrant::diagnosis::bad_input("--only", fmt::format("there is no machine {}", k));
+    std::vector<ordered_json> truths(chosen.size());
+    progress drawn("drawn", chosen.size(), o.say);
+    std::vector<drawn_machine> machines(chosen.size());
+    for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
+        machines[k] = draw(o.seed, chosen[k], planned_machines.at(chosen[k]));
+        truths[k] = truth_of(machines[k]);
+        drawn();
+    });
+    const std::string truth = ordered_json(truths).dump(1) + "\n", digest = sha256(truth);
+    if (!o.say.quiet) {
+        std::printf("truth of %zu machines, seed %llu, sealed: SHA-256 %s\n", chosen.size(),
+                    static_cast<unsigned long long>(o.seed), digest.c_str());
+        std::fflush(stdout);
+    }
+
+    std::vector<judged_machine> judged(chosen.size());
+    progress diagnosed("diagnosed", chosen.size(), o.say);
+    for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
+        const neutral_folder folder;
+        write_files(machines[k], folder.path());
+        machines[k] = {};
+        const answer a = diagnose_files(o.program, folder.path(), true, o.limit_s);
+        judged[k].judged = judge(truths[k], a.diagnosis);
+        if (!a.error.empty()) judged[k].judged.said += ": " + a.error;
+        if (!o.no_forecast && whole_shrink(a.diagnosis))
+            judged[k].shrink = forecast_and_achieved(o, folder.path());
+        if (!o.keep.empty()) {
+            const auto kept = std::filesystem::path(o.keep) / fmt::format("{:03}", chosen[k]);
+            std::filesystem::create_directories(kept);
+            std::filesystem::copy(folder.path(), kept,
+                                  std::filesystem::copy_options::recursive |
+                                      std::filesystem::copy_options::overwrite_existing);
+        }
+        const judgement& j = judged[k].judged;
+        diagnosed(fmt::format(": {:03} {} {} ({:.1f}) {} in {:.0f} s: {}", j.index, j.kind, j.truth, j.size,
+                              j.right ? "right" : "NOT RIGHT", a.seconds, j.said));
+    });
+
+    ordered_json result{{"schema", "quadrant.trial/1"},
+                        {"seed", o.seed},
+                        {"machines", chosen.size()},
+                        {"truth_sha256", digest}};
+    result.update(tally(judged));
+    const std::string text = summary_text(result);
+    if (!o.keep.empty()) write_file(std::filesystem::path(o.keep) / "truth.json", truth);
+    if (!o.json.empty()) write_file(o.json, result.dump(1) + "\n");
+    if (!o.report.empty()) write_file(o.report, page(result));
+    if (!o.say.quiet) std::fputs(text.c_str(), stdout);
+}
+
+} // namespace
+
+void add_trial(CLI::App& app) {
+    const auto o = std::make_shared<trial_options>();
+    CLI::App* const command = app.add_subcommand(
+        "trial", "draw machines at random, diagnose them from their files, and judge what was said");
+    command->add_option("--machines", o->machines, "how many")->check(CLI::Range(1, 100000));
+    command->add_option("--seed", o->seed, "another seed, another population; the same seed, the same result");
+    command->add_option("--only", o->only, "of that population, these machines alone")->delimiter(',');
+    command->add_option("--json", o->json, "write every figure and case (JSON)");
+    command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    command->add_option("--keep", o->keep, "keep every machine's files and diagnosis in this folder");
+    command->add_option("--jobs", o->jobs, "machines at a time")->check(CLI::Range(1, 256));
+    command->add_option("--program", o->program, "diagnose with this quadrant-gap instead of the running one");
+    command->add_option("--limit", o->limit_s, "seconds after which a diagnosis counts as not answered");
+    command->add_flag("--no-forecast", o->no_forecast, "do not diagnose again without the hold-out log");
+    add_terminal_options(*command, o->say, "every machine as it is diagnosed");
+    command->callback([o] { run_trial(*o); });
+}
+
+} // namespace quadrant_gap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "loop.hpp"
+#include "motion.hpp"
+#include "plan.hpp"
+
+/// A machine of the trial without its effects: values as machine tools have them, a controller tuned to them.
+namespace quadrant_gap::trial {
+
+struct tolerances {
+    double mass = 0.02, force_constant = 0.01, viscous = 0.1, coulomb = 0.05, at_rest = 0.05;
+};
+
+struct drawn_effect {
+    std::string name;
+    double size = 0; ///< command gap that it alone makes [in the 95th percentile of the tolerance cloud]
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
+};
+
+struct drawn_machine {
+    std::size_t index = 0;
+    kind what = kind::none;
+    double period = 0.0005;
+    std::vector<axis_truth> truth, described; ///< axis by axis; effects are on the first
+    tolerances tolerance;
+    std::vector<drawn_effect> effects{};
+    std::vector<std::string> excluded{};
+    std::vector<std::vector<double>> log_reference, holdout_reference;
+    std::uint64_t noise_seed = 0;
+    double cloud = 0; ///< 95th percentile of the command gap by tolerances, noise and rounding alone [N]
+};
+
+namespace detail {
+
+/// Six digits, as files carry them: what is described is what is written.
+inline double written(double v) {
+    if (v == 0) return 0;
+    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(v))) - 5);
+    return unit < 1 ? std::round(v / unit) / std::round(1 / unit) : std::round(v / unit) * unit;
+}
+
+inline axis_truth drawn_axis(double period, const std::string& name, dice& random) {
+    axis_truth a;
+    a.name = name;
+    auto& c = a.controller;
+    c.limit = random.one_of(std::vector<double>{10, 10, 10, 8, 5});
+    c.dac_bits = random.one_of(std::vector<int>{16, 16, 16, 14, 12, 0});
+    a.mechanics.mass = written(random.log_uniform(15, 600));
+    const double peak = random.log_uniform(8, 60); // acceleration at the limit [m/s^2]
+    const double kf = a.actuator.force_constant = written(a.mechanics.mass * peak / c.limit);
+    a.friction.viscous = written(a.mechanics.mass * random.log_uniform(0.3, 4));
+    a.actuator.delay = written(std::round(random.log_uniform(1e-4, 1.2e-3) * 2e4) / 2e4);
+    if (random.chance(0.65)) {
+        a.friction.coulomb = written(a.mechanics.mass * peak * random.log_uniform(0.004, 0.03));
+        if (random.chance(0.4)) {
+            a.friction.level_at_rest = written(a.friction.coulomb * random.uniform(1.15, 1.9));
+            a.friction.stribeck_velocity = written(random.log_uniform(1.5e-3, 1e-2));
+        }
+    }
+    auto& f = a.friction;
+    f.law = static_cast<contact_law>(random.whole(0, 3));
+    f.length = random.log_uniform(5e-8, 4e-7);
+    f.exponent = random.uniform(0.5, 1.6);
+    f.damping = random.uniform(0.1, 0.4);
+    double sum = 0;
+    for (int k = random.whole(6, 10); k > 0; --k) {
+        f.weights.push_back(random.uniform(0.4, 1));
+        f.ways.push_back(random.log_uniform(0.3, 2.5));
+        sum += f.weights.back();
+    }
+    for (double& w : f.weights) w /= sum;
+
+    c.two_sample_mean = random.chance(0.25);
+    c.filter_Hz = written(random.uniform(90, std::min(300.0, 0.16 / period)));
+    const double estimator = c.two_sample_mean ? period : 1 / (2 * std::numbers::pi * c.filter_Hz);
+    const double crossover =
+        std::clamp(random.uniform(0.25, 0.45) / (a.actuator.delay + period / 2 + estimator), 40.0, 450.0);
+    c.velocity_gain = written(crossover * a.mechanics.mass / kf);
+    c.position_gain = written(crossover * random.uniform(0.25, 0.42));
+    c.integral = written(c.velocity_gain * random.log_uniform(3, 15));
+    c.velocity_feedforward = random.chance(0.85) ? 1 : 0;
+    if (random.chance(0.8))
+        c.acceleration_feedforward = written(a.mechanics.mass / kf * random.uniform(0.85, 1.02));
+    if (random.chance(0.7)) c.viscous_feedforward = written(f.viscous / kf * random.uniform(0.8, 1.1));
+    if (f.coulomb > 0 && random.chance(0.35))
+        c.coulomb_feedforward = written(f.coulomb / kf * random.uniform(0.5, 1));
+    if (random.chance(0.3)) {
+        c.notch_Hz = written(random.uniform(150, std::min(400.0, 0.3 / period)));
+        c.notch_damping = written(random.uniform(0.04, 0.25));
+    }
+    std::vector<double> counts;
+    for (const double q : {1e-8, 5e-8, 1e-7, 2.5e-7, 2.5e-7, 5e-7, 1e-6})
+        if (q / period * c.velocity_gain * std::min(1.0, 2 * c.filter_Hz * period) < 0.15) counts.push_back(q);
+    a.encoder.resolution = counts.empty() ? 1e-8 : random.one_of(counts);
+    a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 1);
+    a.encoder.noise_colour = random.uniform(0, 0.95);
+    return a;
+}
+
+inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
+    const auto moved = [&](double& value, double relative) {
+        value *= 1 + random.uniform(-relative, relative);
+    };
+    moved(a.mechanics.mass, t.mass);
+    moved(a.actuator.force_constant, t.force_constant);
+    moved(a.friction.viscous, t.viscous);
+    moved(a.friction.coulomb, t.coulomb);
+    moved(a.friction.level_at_rest, t.at_rest);
+    if (a.friction.level_at_rest > 0)
+        a.friction.level_at_rest = std::max(a.friction.level_at_rest, a.friction.coulomb);
+    moved(a.friction.stribeck_velocity, 0.05);
+    const double delay = std::min(2e-5, 0.05 * a.actuator.delay);
+    a.actuator.delay += random.uniform(-delay, delay);
+}
+
+/// The true values of an effect, after calibration has moved them too.
+inline void read_again(nlohmann::ordered_json& parameters, const axis_truth& a) {
+    const auto put = [&](const char* key, double value) {
+        if (parameters.contains(key)) parameters[key] = value;
+    };
+    put("mass_kg", a.mechanics.mass);
+    put("force_constant_N_per_V", a.actuator.force_constant);
+    put("delay_s", a.actuator.delay);
+    put("viscous_N_s_per_m", a.friction.viscous);
+    put("coulomb_N", a.friction.coulomb);
+    put("static_N", a.friction.level_at_rest);
+    put("stribeck_velocity_m_per_s", a.friction.stribeck_velocity);
+}
+
+inline motion_limits limits(const axis_truth& a, double seconds, double period, dice& random) {
+    motion_limits l;
+    l.seconds = seconds;
+    const double peak = a.actuator.force_constant * a.controller.limit / a.mechanics.mass;
+    l.acceleration = std::min(8.0, peak * random.uniform(0.2, 0.45));
+    l.velocity = random.log_uniform(0.08, 0.6);
+    l.half_travel = random.log_uniform(0.04, 0.3);
+    l.top_Hz = std::min(180.0, 0.15 / period);
+    return l;
+}
+
+} // namespace detail
+
+} // namespace quadrant_gap::trial

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "population.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+/// The files of a drawn machine: what it is described as, and what it did. Neither knows of an effect.
+namespace quadrant_gap::trial {
+
+using nlohmann::ordered_json;
+
+inline ordered_json machine_file(const drawn_machine& m) {
+    ordered_json axes = ordered_json::object();
+    for (const axis_truth& a : m.described) {
+        ordered_json plant{{"mass_kg", a.mechanics.mass},
+                           {"force_constant_N_per_V", a.actuator.force_constant},
+                           {"viscous_N_s_per_m", a.friction.viscous},
+                           {"delay_s", a.actuator.delay}};
+        if (a.friction.coulomb > 0) plant["coulomb_N"] = a.friction.coulomb;
+        if (a.friction.level_at_rest > 0) {
+            plant["static_N"] = a.friction.level_at_rest;
+            plant["stribeck_velocity_m_per_s"] = a.friction.stribeck_velocity;
+        }
+        const tolerances& t = m.tolerance;
+        ordered_json drive{{"limit_V", a.controller.limit}};
+        if (a.controller.dac_bits > 0) {
+            drive["dac_bits"] = a.controller.dac_bits;
+            drive["dac_range_V"] = a.controller.dac_range;
+        }
+        const controller_truth& c = a.controller;
+        ordered_json control{{"kind", "cascade_p_pi"},
+                             {"position_gain_per_s", c.position_gain},
+                             {"velocity_gain_V_s_per_m", c.velocity_gain},
+                             {"velocity_integral_V_per_m", c.integral}};
+        if (c.two_sample_mean)
+            control["velocity_estimator"] = "two_sample_mean";
+        else
+            control["velocity_filter_Hz"] = c.filter_Hz;
+        control["velocity_feedforward"] = c.velocity_feedforward;
+        control["acceleration_feedforward_V_s2_per_m"] = c.acceleration_feedforward;
+        control["viscous_feedforward_V_s_per_m"] = c.viscous_feedforward;
+        control["coulomb_feedforward_V"] = c.coulomb_feedforward;
+        if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"damping", c.notch_damping}};
+        axes[a.name] = {{"plant", plant},
+                        {"tolerance",
+                         {{"mass", t.mass},
+                          {"force_constant", t.force_constant},
+                          {"viscous", t.viscous},
+                          {"coulomb", t.coulomb},
+                          {"static", t.at_rest}}},
+                        {"encoder", {{"resolution_m", a.encoder.resolution}}},
+                        {"actuator", drive},
+                        {"controller", control}};
+    }
+    ordered_json out{{"schema", "quadrant.machine/1"}, {"sample_period_s", m.period}};
+    if (!m.excluded.empty()) out["excluded_effects"] = m.excluded;
+    out["axes"] = axes;
+    return out;
+}
+
+/// Columns of all axes, rounded as servo loggers round.
+inline std::string log_file(const drawn_machine& m, const std::vector<axis_record>& axes) {
+    const int time_digits = m.period < 2e-4 ? 6 : 5;
+    std::string out = "t_s";
+    for (const axis_truth& a : m.described) out += fmt::format(",{0}_ref_m,{0}_pos_m,{0}_cmd_V", a.name);
+    out += '\n';
+    char text[128];
+    for (std::size_t k = 0; k < axes[0].position.size(); ++k) {
+        std::snprintf(text, sizeof text, "%.*f", time_digits, static_cast<double>(k) * m.period);
+        out += text;
+        for (const axis_record& a : axes) {
+            std::snprintf(text, sizeof text, ",%.12f,%.9f,%.6f", a.reference[k], a.position[k], a.command[k]);
+            out += text;
+        }
+        out += '\n';
+    }
+    return out;
+}
+
+inline void write_file(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+/// machine.json, log.csv and holdout.csv into a folder.
+inline void write_files(const drawn_machine& m, const std::filesystem::path& folder) {
+    write_file(folder / "machine.json", machine_file(m).dump(2) + "\n");
+    write_file(folder / "log.csv", log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed)));
+    write_file(folder / "holdout.csv",
+               log_file(m, run(m.truth, m.holdout_reference, m.period, m.noise_seed + 1)));
+}
+
+/// What the parent keeps to itself.
+inline ordered_json truth_of(const drawn_machine& m) {
+    ordered_json inside = ordered_json::array();
+    for (const drawn_effect& e : m.effects)
+        inside.push_back({{"effect", e.name}, {"axis", "x"}, {"size", e.size}, {"parameters", e.parameters}});
+    return {{"index", m.index},
+            {"kind", name_of(m.what)},
+            {"effects", inside},
+            {"cloud_N", m.cloud},
+            {"sample_period_s", m.period},
+            {"rows", m.log_reference[0].size()},
+            {"axes", m.described.size()},
+            {"law", static_cast<int>(m.truth[0].friction.law)}};
+}
+
+} // namespace quadrant_gap::trial

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What was said of one machine beside what is true of it, judged as gap/check.py judges. Pure functions of two files.
+namespace quadrant_gap::trial {
+
+using nlohmann::ordered_json;
+
+enum class found { named, silent, another }; ///< the effect itself, no claim at all, a claim for something else
+
+struct judged_parameter {
+    std::string effect, key;
+    double truth = 0, value = 0, low = 0, high = 0;
+    bool covered() const { // a count is known exactly: the interval has no width
+        const double rounding = 1e-6 * std::abs(truth);
+        return low - rounding <= truth && truth <= high + rounding;
+    }
+};
+
+struct judgement {
+    std::size_t index = 0;
+    std::string kind, truth, said;
+    bool answered = false, right = false, blamed_falsely = false;
+    std::optional<bool> box;
+    double size = 0; ///< of the only effect; of the smaller of two
+    found outcome = found::silent;
+    std::vector<std::pair<double, bool>> named; ///< probability of each listed cause, and whether it is there
+    std::vector<judged_parameter> parameters;   ///< of causes that are there
+    std::string first; ///< what a confusion matrix enters: the first claim, or the verdict
+};
+
+/// Names that are one model on most records (FORMAT.md, known equivalences).
+inline bool same_model(const std::string& said, const std::string& true_name) {
+    if (said == true_name) return true;
+    const auto pair = [&](const char* a, const char* b) {
+        return (said == a && true_name == b) || (said == b && true_name == a);
+    };
+    return pair("mass", "force_constant") || pair("constant_force", "asymmetric_friction");
+}
+
+inline std::string box_of(const std::string& effect) {
+    if (effect == "controller_mismatch") return "controller";
+    if (effect == "cutting_force") return "process";
+    if (effect.starts_with("encoder_")) return "sensor";
+    if (effect.starts_with("actuator_") || effect == "force_constant" || effect == "time_delay" ||
+        effect == "force_ripple" || effect == "sample_loss")
+        return "actuator";
+    return "mechanics";
+}
+
+namespace detail {
+
+struct cause_view {
+    std::string axis, effect;
+    double probability = 1;
+    std::vector<std::string> confusable;
+    const ordered_json* whole = nullptr;
+};
+
+inline std::vector<cause_view> causes_of(const ordered_json& d) {
+    std::vector<cause_view> out;
+    for (const ordered_json& c : d.value("causes", ordered_json::array()))
+        out.push_back({c.value("axis", "x"), c.value("effect", ""), c.value("probability", 1.0),
+                       c.value("confusable_with", std::vector<std::string>{}), nullptr});
+    if (const auto list = d.find("causes"); list != d.end())
+        for (std::size_t k = 0; k < out.size(); ++k) out[k].whole = &(*list)[k];
+    return out;
+}
+
+inline void judge_parameters(judgement& j, const ordered_json& effect, const cause_view& c) {
+    const auto parameters = c.whole->find("parameters");
+    if (parameters == c.whole->end() || c.effect != effect.at("effect")) return;
+    for (const auto& [key, value] : effect.at("parameters").items()) {
+        const auto given = parameters->find(key);
+        if (!value.is_number() || given == parameters->end()) continue;
+        const ordered_json &estimated = given->at("value"), &interval = given->at("ci95");
+        const bool list = estimated.is_array(); // harmonics: the first is compared
+        if (list && estimated.empty()) continue;
+        const ordered_json& ends = list ? interval.at(0) : interval;
+        if (!ends.is_array() || !ends.at(0).is_number() || !ends.at(1).is_number()) continue;
+        const double v = list ? estimated.at(0).get<double>() : estimated.get<double>();
+        j.parameters.push_back({c.effect, key, value.get<double>(), v, ends.at(0), ends.at(1)});
+    }
+}
+
+} // namespace detail
+
+/// `said` is null when the program wrote no diagnosis.
+inline judgement judge(const ordered_json& truth, const ordered_json& said) {
+    judgement j;
+    j.index = truth.at("index");
+    j.kind = truth.at("kind");
+    std::vector<std::string> want;
+    j.size = HUGE_VAL;
+    for (const ordered_json& e : truth.at("effects")) {
+        want.push_back(e.at("effect"));
+        j.size = std::min(j.size, e.at("size").is_number() ? e.at("size").get<double>() : HUGE_VAL);
+        j.truth += (j.truth.empty() ? "" : "+") + want.back();
+        if (want.back() == "unknown") j.truth = e.at("parameters").at("unknown");
+    }
+    if (want.empty()) j.truth = "none", j.size = 0;
+    if (!said.is_object()) {
+        j.said = j.first = "no answer";
+        if (j.kind == "single" || j.kind == "poor_excitation") j.box = false;
+        return j;
+    }
+    j.answered = true;
+    const auto causes = detail::causes_of(said);
+    const std::string verdict = said.value("verdict", "");
+    const bool quiet = verdict == "no_gap" || verdict == "within_tolerance";
+    const auto is = [&](const detail::cause_view& c, const std::string& w) {
+        return c.axis == "x" && same_model(c.effect, w);
+    };
+    const auto there = [&](const detail::cause_view& c) {
+        return std::any_of(want.begin(), want.end(), [&](const std::string& w) { return is(c, w); });
+    };
+    j.said = verdict;
+    std::vector<detail::cause_view> claims;
+    for (const auto& c : causes) {
+        j.named.emplace_back(c.probability, there(c));
+        char text[96];
+        std::snprintf(text, sizeof text, " %s %.2f", c.effect.c_str(), c.probability);
+        j.said += text;
+        if (c.axis != "x") j.said += " on " + c.axis;
+        if (c.probability >= 0.5) claims.push_back(c);
+    }
+    std::vector<detail::cause_view> wrong;
+    for (const auto& c : claims)
+        if (!there(c)) wrong.push_back(c);
+    j.blamed_falsely = !wrong.empty();
+    j.first = claims.empty() ? verdict : claims.front().effect;
+    if (!claims.empty())
+        j.outcome = std::any_of(claims.begin(), claims.end(), there) ? found::named : found::another;
+
+    if (j.kind == "none") {
+        j.right = quiet && claims.empty();
+    } else if (j.kind == "unknown") {
+        j.right = (verdict == "unexplained" || verdict == "partly_explained") && claims.empty();
+    } else if (j.kind == "single") {
+        j.right = !causes.empty() && is(causes[0], want[0]) && verdict == "explained" && wrong.empty();
+    } else if (j.kind == "pair") {
+        j.right = causes.size() >= 2 && verdict == "explained" && wrong.empty();
+        for (const std::string& w : want)
+            j.right = j.right && (is(causes[0], w) || (causes.size() > 1 && is(causes[1], w)));
+    } else if (!causes
+                    .empty()) { // poor excitation: a small group that holds the truth, and no claim outside it
+        std::vector<std::string> group = causes[0].confusable;
+        group.insert(group.begin(), causes[0].effect);
+        const bool holds = std::any_of(group.begin(), group.end(),
+                                       [&](const std::string& n) { return same_model(n, want[0]); });
+        const bool outside = std::any_of(wrong.begin(), wrong.end(), [&](const detail::cause_view& c) {
+            return std::find(group.begin(), group.end(), c.effect) == group.end();
+        });
+        j.right = holds && group.size() <= 3 && !outside;
+    }
+    if (j.kind == "single" || j.kind == "poor_excitation") {
+        j.box = false;
+        const ordered_json axes = said.value("axes", ordered_json::object());
+        for (const ordered_json& axis : axes) {
+            const auto places = axis.find("where");
+            if (places == axis.end() || places->empty()) continue;
+            const std::string block = (*places)[0].value("block", "");
+            for (const std::string& w : {want[0], std::string(want[0] == "mass" ? "force_constant" : want[0]),
+                                         std::string(want[0] == "force_constant" ? "mass" : want[0])})
+                j.box = *j.box || block == box_of(w);
+            j.box = *j.box || (want[0] == "cogging" && block == "actuator");
+        }
+    }
+    for (const ordered_json& e : truth.at("effects"))
+        for (const auto& c : causes)
+            if (c.axis == "x" && c.probability >= 0.5) detail::judge_parameters(j, e, c);
+    return j;
+}
+
+/// Forecast against achieved: the whole shrink by the claims, forecast from held-out parts of the log, achieved on another.
+struct shrink_pair {
+    double forecast = 0, achieved = 0;
+};
+
+/// 1 - after/before in force, over all claims together; empty without a claim.
+inline std::optional<double> whole_shrink(const ordered_json& said) {
+    if (!said.is_object()) return std::nullopt;
+    double left = 1;
+    bool any = false;
+    for (const ordered_json& c : said.value("causes", ordered_json::array())) {
+        if (c.value("probability", 1.0) < 0.5 || !c.contains("shrink") || !c["shrink"].is_number()) continue;
+        left *= 1 - c["shrink"].get<double>();
+        any = true;
+    }
+    return any ? std::optional(1 - left) : std::nullopt;
+}
+
+/// Residual force of the axis with the effects, as `simulate --json` writes it.
+inline std::optional<double> remaining_force(const ordered_json& simulated) {
+    if (!simulated.is_object()) return std::nullopt;
+    const ordered_json force =
+        simulated.value(ordered_json::json_pointer("/axes/x/gap/force_rms_N"), ordered_json());
+    return force.is_number() ? std::optional(force.get<double>()) : std::nullopt;
+}
+
+} // namespace quadrant_gap::trial

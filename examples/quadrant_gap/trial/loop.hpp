@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "plant.hpp"
+
+#include <deque>
+
+/// Controller, encoder and the closed loop of the trial's machines.
+namespace quadrant_gap::trial {
+
+/// Kind cascade_p_pi of FORMAT.md.
+class cascade {
+public:
+    cascade(const controller_truth& c, double period) : c_(c), T_(period) {
+        if (c.notch_Hz > 0) {
+            const double w = 2 * std::numbers::pi * c.notch_Hz, k = w / std::tan(w * T_ / 2);
+            const double a0 = k * k + c.notch_damping * w * k + w * w;
+            b0_ = (k * k + w * w) / a0;
+            b1_ = 2 * (w * w - k * k) / a0;
+            a2_ = (k * k - c.notch_damping * w * k + w * w) / a0;
+        }
+    }
+    double operator()(double r, double y) {
+        const double v_ref = (r - r1_) / T_, a_ref = (v_ref - v_ref1_) / T_;
+        double v = 0;
+        if (c_.two_sample_mean) {
+            v = (y - y2_) / (2 * T_);
+        } else {
+            const double w = 2 * std::numbers::pi * c_.filter_Hz;
+            v = filtered_ = ((2 - w * T_) * filtered_ + 2 * w * (y - y1_)) / (2 + w * T_);
+        }
+        y2_ = y1_, y1_ = y, r1_ = r, v_ref1_ = v_ref;
+        const double e = c_.position_gain * (r - y) + c_.velocity_feedforward * v_ref - v;
+        integral_ = std::clamp(integral_ + c_.integral * T_ * e, -c_.limit, c_.limit);
+        double u = c_.velocity_gain * e + integral_;
+        if (c_.notch_Hz > 0) {
+            const double out = b0_ * u + b1_ * u1_ + b0_ * u2_ - b1_ * n1_ - a2_ * n2_;
+            u2_ = u1_, u1_ = u, n2_ = n1_, n1_ = out;
+            u = out;
+        }
+        u += c_.acceleration_feedforward * a_ref + c_.viscous_feedforward * v_ref +
+             c_.coulomb_feedforward * (v_ref > 0   ? 1
+                                       : v_ref < 0 ? -1
+                                                   : 0);
+        u = std::clamp(u, -c_.limit, c_.limit);
+        if (c_.dac_bits == 0) return u;
+        const double step = c_.dac_range / static_cast<double>(std::uint64_t{1} << c_.dac_bits);
+        return std::round(u / step) * step;
+    }
+
+private:
+    controller_truth c_;
+    double T_, b0_ = 1, b1_ = 0, a2_ = 0;
+    double r1_ = 0, v_ref1_ = 0, y1_ = 0, y2_ = 0, filtered_ = 0, integral_ = 0, u1_ = 0, u2_ = 0, n1_ = 0,
+           n2_ = 0;
+};
+
+/// Count, white and coloured noise, cyclic error.
+class encoder {
+public:
+    encoder(const encoder_truth& e, dice random) : e_(e), random_(random) {}
+    double operator()(double x) {
+        double y = x + at(e_.cyclic, x);
+        if (e_.noise > 0) {
+            colour_ =
+                e_.noise_colour * colour_ + std::sqrt(1 - e_.noise_colour * e_.noise_colour) * random_.normal();
+            y += e_.noise * std::sqrt(0.5) * (colour_ + random_.normal());
+        }
+        return e_.resolution > 0 ? std::round(y / e_.resolution) * e_.resolution : y;
+    }
+
+private:
+    const encoder_truth& e_;
+    dice random_;
+    double colour_ = 0;
+};
+
+struct axis_record {
+    std::vector<double> reference, position, command;
+};
+
+/// Log without rounding and noise: what the equations alone make of a motion.
+inline axis_truth ideal(axis_truth a) {
+    a.encoder.resolution = a.encoder.noise = 0;
+    a.controller.dac_bits = 0;
+    return a;
+}
+
+/// The axes of a machine under their references, at least 20 fine steps a period and none above 25 us. A run that leaves
+/// the travel has a NaN as its last position.
+inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
+                                    const std::vector<std::vector<double>>& references, double period,
+                                    std::uint64_t seed) {
+    constexpr double coarsest = 2.5e-5, farthest = 5;
+    const auto fine = static_cast<std::size_t>(std::max(20.0, std::ceil(period / coarsest)));
+    const double h = period / static_cast<double>(fine);
+    const std::size_t samples = references.front().size();
+    struct one {
+        cascade control;
+        actuator drive;
+        mechanics body;
+        encoder scale;
+    };
+    std::deque<one> all;
+    std::vector<axis_record> out(axes.size());
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        all.push_back({cascade(axes[i].controller, period),
+                       actuator(axes[i].actuator, period, dice(seed, 2 * i)),
+                       mechanics(axes[i], static_cast<double>(samples) * period),
+                       encoder(axes[i].encoder, dice(seed, 2 * i + 1))});
+        out[i].reference = references[i];
+    }
+    for (std::size_t k = 0; k < samples; ++k) {
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            const double y = all[i].scale(all[i].body.seen());
+            const double u = all[i].control(references[i][k], y);
+            all[i].drive.command(k, u);
+            out[i].position.push_back(y);
+            out[i].command.push_back(u);
+            if (!(std::abs(y) < farthest)) {
+                out[i].position.back() = std::nan("");
+                return out;
+            }
+        }
+        for (std::size_t f = 0; f < fine; ++f) {
+            const double t = (static_cast<double>(k * fine + f)) * h;
+            for (std::size_t i = 0; i < axes.size(); ++i) {
+                const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
+                const double motor = all[i].drive.force(all[i].drive.acting(t, h), all[i].body.position());
+                all[i].body.step(motor, t, h, other);
+            }
+        }
+    }
+    return out;
+}
+
+} // namespace quadrant_gap::trial

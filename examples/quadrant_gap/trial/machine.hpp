@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// The machines of the trial as they are, not as they are described. All values SI. Nothing here comes from the diagnosis.
+namespace quadrant_gap::trial {
+
+/// A force, a gain or an error that repeats along the travel: sum of size[i] sin(2 pi (i + 1) x / period + phase[i]).
+struct wave {
+    double period = 1;
+    std::vector<double> size{}, phase{};
+};
+
+enum class contact_law { lugre, dahl, maxwell_slip, tanh_spring };
+enum class stribeck_shape { exponential, gaussian, lorentzian };
+
+struct friction_truth {
+    double coulomb = 0, level_at_rest = 0,
+           stribeck_velocity = 0.003; ///< level_at_rest: 0 without a Stribeck effect
+    stribeck_shape shape = stribeck_shape::exponential;
+    double viscous = 0, viscous_asymmetry = 0, coulomb_asymmetry = 0;
+    wave along{};                     ///< relative, of the Coulomb level
+    double drift = 0, drift_time = 5; ///< relative, of the Coulomb level
+    contact_law law = contact_law::lugre;
+    double length = 3e-7;                  ///< deflection at 63 % of the level, loaded for the first time
+    double exponent = 1;                   ///< of Dahl
+    std::vector<double> weights{}, ways{}; ///< Maxwell-slip: shares of the level, relative ways to slip
+    double damping = 0.2;                  ///< of the contact, relative
+};
+
+struct actuator_truth {
+    double force_constant = 0, delay = 0, lag = 0, drive_limit = 1e9, dead_zone = 0, loss = 0;
+    double slew = 0;       ///< [V/s], 0: none; in no list
+    double soft_limit = 0; ///< [V] where the force constant has lost half, 0: none; in no list
+    wave ripple{};         ///< relative
+};
+
+struct mechanics_truth {
+    double mass = 0;                                                ///< all that moves
+    double mode_mass = 0, mode_frequency = 60, mode_damping = 0.02; ///< part of mass, not under the encoder
+    double backlash = 0, spring = 0, constant_force = 0, coupling = 0;
+    wave cogging{};
+};
+
+struct encoder_truth {
+    double resolution = 0, noise = 0, noise_colour = 0; ///< rms [m]; pole of the coloured half
+    wave cyclic{};
+};
+
+struct process_truth {
+    double fundamental = 0; ///< [Hz], 0: no cutting
+    double mean = 0;
+    std::vector<double> size{}, phase{};
+};
+
+/// What no diagnosis has a name for.
+struct stranger {
+    enum class kind { none, drag, ramp, bump, quadratic_spring, step, bursts, wander } what = kind::none;
+    double size = 0;  ///< [N] at its scale
+    double scale = 1; ///< [m/s], [m] or [s]
+    double begin = 0; ///< [s] or [m]
+    std::uint64_t seed = 0;
+};
+
+struct controller_truth {
+    double position_gain = 0, velocity_gain = 0, integral = 0, filter_Hz = 0;
+    bool two_sample_mean = false;
+    double velocity_feedforward = 1, acceleration_feedforward = 0, viscous_feedforward = 0,
+           coulomb_feedforward = 0;
+    double notch_Hz = 0, notch_damping = 0; ///< 0 Hz: no notch
+    double limit = 10, dac_range = 20;
+    int dac_bits = 16; ///< 0: no rounding
+};
+
+struct axis_truth {
+    std::string name = "x";
+    mechanics_truth mechanics{};
+    friction_truth friction{};
+    actuator_truth actuator{};
+    encoder_truth encoder{};
+    process_truth process{};
+    stranger unknown{};
+    controller_truth controller{};
+};
+
+} // namespace quadrant_gap::trial

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effects.hpp"
+
+#include <string>
+
+/// Which machines a trial holds: kinds in fixed shares, effects in turn, so that a population of any size is balanced.
+namespace quadrant_gap::trial {
+
+enum class kind { none, single, pair, unknown, poor };
+constexpr const char* name_of(kind k) {
+    switch (k) {
+    case kind::none:
+        return "none";
+    case kind::single:
+        return "single";
+    case kind::pair:
+        return "pair";
+    case kind::unknown:
+        return "unknown";
+    default:
+        return "poor_excitation";
+    }
+}
+
+struct planned {
+    kind what = kind::none;
+    std::vector<std::string> effects{};
+    bool two_axes = false, slow_only = false;
+};
+
+/// Names that one log can hardly tell apart: never both in one machine.
+inline bool near_relatives(std::string_view a, std::string_view b) {
+    static const std::vector<std::vector<std::string_view>> families{
+        {"mass", "force_constant"},
+        {"time_delay", "actuator_lag"},
+        {"coulomb_friction", "stribeck_friction", "presliding_friction", "asymmetric_friction",
+         "position_dependent_friction", "friction_drift"},
+        {"constant_force", "asymmetric_friction", "position_spring"},
+        {"cogging", "force_ripple", "encoder_cyclic_error", "position_dependent_friction"}};
+    for (const auto& f : families)
+        if (std::find(f.begin(), f.end(), a) != f.end() && std::find(f.begin(), f.end(), b) != f.end())
+            return true;
+    return a == b;
+}
+
+/// Of every 20 machines: 6 without an effect (one with slow strokes only), 7 with one, 3 with two, 2 with something that is in no
+/// list, 2 with slow strokes only. One in ten has two axes, and all with cross-coupling.
+inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
+    using enum kind;
+    dice random(seed, 1);
+    std::vector<std::string> turn, slow_turn;
+    const auto next = [&](std::vector<std::string>& bag, bool slow) {
+        if (bag.empty()) {
+            for (const withheld& e : effects)
+                if (!slow || e.slow_shows_it) bag.emplace_back(e.name);
+            random.shuffle(bag);
+        }
+        std::string out = bag.back();
+        bag.pop_back();
+        return out;
+    };
+    std::vector<planned> out;
+    while (out.size() < machines) {
+        std::vector<kind> twenty{none,   none,   none,   none, none, none, single,  single,  single, single,
+                                 single, single, single, pair, pair, pair, unknown, unknown, poor,   poor};
+        random.shuffle(twenty);
+        bool slow_none = true;
+        for (const kind k : twenty) {
+            planned p{k, {}, random.chance(0.1), k == poor};
+            if (k == none && slow_none) slow_none = false, p.slow_only = true;
+            if (k == single) p.effects = {next(turn, false)};
+            if (k == poor) p.effects = {next(slow_turn, true)};
+            if (k == pair) {
+                std::vector<std::string> all;
+                for (const withheld& e : effects) all.emplace_back(e.name);
+                p.effects = {random.one_of(all)};
+                while (p.effects.size() < 2)
+                    if (const std::string& other = random.one_of(all); !near_relatives(other, p.effects[0]))
+                        p.effects.push_back(other);
+            }
+            if (std::find(p.effects.begin(), p.effects.end(), "cross_coupling") != p.effects.end())
+                p.two_axes = true;
+            out.push_back(std::move(p));
+        }
+    }
+    out.resize(machines);
+    return out;
+}
+
+} // namespace quadrant_gap::trial

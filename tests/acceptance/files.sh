@@ -1,0 +1,88 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# From numbers and a log to a corrected machine file, by the subcommands in turn; and what each of them refuses.
+# usage: files.sh PROGRAM ROOT SCRATCH
+set -eu
+program=$1 root=$2 scratch=$3
+rm -rf "$scratch"
+mkdir -p "$scratch"
+cd "$scratch"
+data=$root/examples/data
+
+refuses() { # WORDS ARGUMENTS...
+    words=$1 code=0
+    shift
+    "$program" "$@" </dev/null >said.txt 2>&1 || code=$?
+    [ "$code" = 2 ] || { echo "exit code $code, not 2: $*: $(cat said.txt)"; exit 1; }
+    grep -qF -- "$words" said.txt || { echo "does not say '$words': $(cat said.txt)"; exit 1; }
+    echo "ok: $(head -n 1 said.txt)"
+}
+force_gap() { # MACHINE: rms on the other log [N]
+    "$program" simulate --quiet --machine "$1" --log "$data/holdout.csv" --json simulated.json
+    sed -n 's/.*"force_rms_N": \([0-9.e+-]*\).*/\1/p' simulated.json
+}
+
+# diagnose, apply, simulate: the gap on another log shrinks, and a diagnosis is applied once.
+"$program" diagnose --quiet --machine "$data/machine.json" --log "$data/log.csv" --json found.json
+"$program" apply --machine "$data/machine.json" --diagnosis found.json --out better.json | tee changes.txt
+grep -q '^axes.x.plant.static_N: absent -> ' changes.txt
+before=$(force_gap "$data/machine.json") after=$(force_gap better.json)
+echo "force gap on the other log: $before N, then $after N"
+awk "BEGIN { exit !($after < 0.5 * $before) }"
+"$program" simulate --verbose --machine better.json --log "$data/holdout.csv" --report simulated.html >simulated.txt
+grep -q 'force remain where sensor noise' simulated.txt
+grep -q '</html>' simulated.html
+[ -z "$("$program" apply --quiet --machine "$data/machine.json" --diagnosis found.json --out better.json)" ]
+refuses 'has stribeck_friction already' apply --machine better.json --diagnosis found.json --out again.json
+refuses 'schema: must be "quadrant.diagnosis/1"' apply --machine better.json --diagnosis better.json --out again.json
+sed 's/"x": {/"z": {/' "$data/machine.json" >z.json
+refuses 'axes.x: is missing; the diagnosis is of another machine' apply --machine z.json --diagnosis found.json --out again.json
+refuses 'axis x is not described' simulate --machine z.json --log "$data/log.csv"
+refuses 'not in range' apply --machine better.json --diagnosis found.json --out again.json --at-least 2
+refuses 'excludes' apply --machine better.json --diagnosis found.json --out again.json --at-least 1 --all
+[ ! -e again.json ]
+
+# import: the samples that are shipped, then what is wrong with them.
+for sample in halsampler.txt odrive.csv twincat_scope.csv; do
+    "$program" import --map "$root/examples/import/${sample%.*}.map.json" "$root/examples/import/$sample" "${sample%.*}.csv"
+done
+head -n 1 odrive.csv | grep -qx 't_s,c_ref_rad,c_pos_rad,c_cmd_Nm'
+sed 300d "$root/examples/import/halsampler.txt" >lost.txt
+refuses 'lost.txt:300:1: rows missing before this one: 1' import --map "$root/examples/import/halsampler.map.json" lost.txt l.csv
+sed 's/"unit": "V"/"unit": "V", "scale": -1/' "$root/examples/import/halsampler.map.json" >turned.json
+refuses 'the command drives against the acceleration' import --map turned.json "$root/examples/import/halsampler.txt" l.csv
+refuses 'times the mass of 8000' import --map "$root/examples/import/halsampler.map.json" --mass 8000 --force-constant 400 \
+    "$root/examples/import/halsampler.txt" l.csv
+"$program" import --quiet --unchecked --map turned.json "$root/examples/import/halsampler.txt" l.csv
+refuses 'no column "time"' import --map "$root/examples/import/odrive.map.json" halsampler.csv l2.csv
+[ ! -e l2.csv ]
+
+# init: from a log and options, from questions, and a machine file that simulate takes.
+"$program" init --out begun.json --log halsampler.csv --mass 80kg --force-constant 400 --coulomb 25 --viscous 100 </dev/null
+grep -q '"mass_kg": 80' begun.json
+grep -q 'axes.x.plant.mass_kg' begun.md
+"$program" simulate --machine begun.json --log halsampler.csv >/dev/null
+printf '80\n400\n\n0.4ms\n' | "$program" init --questions --quiet --out asked.json --log halsampler.csv 2>asked.txt
+grep -q 'moving mass' asked.txt
+grep -q '"delay_s": 0.0004' asked.json
+refuses '--mass is missing; the log speaks of about 8' init --out no.json --log halsampler.csv --force-constant 400
+refuses 'is not a number of kg' init --out no.json --log halsampler.csv --mass 80mm --force-constant 400
+refuses 'cannot be of this log' init --out no.json --log halsampler.csv --mass 80000 --force-constant 400
+[ ! -e no.json ]
+
+# The same options and exit codes everywhere; the completion offers what the help has.
+refuses 'subcommand is required'
+for subcommand in diagnose apply simulate init import; do
+    "$program" $subcommand --help | grep -q -- '--quiet'
+    "$program" $subcommand --version >/dev/null
+    refuses 'Run with --help' $subcommand --nonsense
+done
+[ "$("$program" --version)" = "$("$program" apply --version)" ]
+if command -v bash >/dev/null; then
+    mkdir -p bin && ln -sf "$program" bin/quadrant-gap
+    PATH=$PWD/bin:$PATH bash -c '. "$1"
+        COMP_WORDS=(quadrant-gap a) COMP_CWORD=1; _quadrant_gap; [ "${COMPREPLY[*]}" = apply ]
+        COMP_WORDS=(quadrant-gap apply --at) COMP_CWORD=2; _quadrant_gap; [ "${COMPREPLY[*]}" = --at-least ]' - \
+        "$root/examples/quadrant_gap/quadrant-gap.bash"
+    echo 'ok: completion'
+fi

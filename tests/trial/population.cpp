@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant_gap/trial/files.hpp"
+
+#include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+#include <sstream>
+
+using namespace quadrant_gap::trial;
+
+TEST_CASE("plan: the shares that were promised, every effect in turn, no two near relatives in one machine") {
+    const auto all = plan(5, 200);
+    std::map<kind, int> kinds;
+    std::set<std::string> singles;
+    int two_axes = 0, slow_none = 0;
+    for (const planned& p : all) {
+        ++kinds[p.what];
+        two_axes += p.two_axes;
+        slow_none += p.what == kind::none && p.slow_only;
+        if (p.what == kind::single) singles.insert(p.effects.at(0));
+        if (p.what == kind::pair) CHECK_FALSE(near_relatives(p.effects.at(0), p.effects.at(1)));
+        for (const std::string& e : p.effects)
+            if (e == "cross_coupling") CHECK(p.two_axes);
+    }
+    CHECK(kinds[kind::none] == 60);
+    CHECK(kinds[kind::unknown] == 20);
+    CHECK(kinds[kind::pair] == 30);
+    CHECK(kinds[kind::poor] == 20);
+    CHECK(kinds[kind::single] == 70);
+    CHECK(slow_none == 10);
+    CHECK(singles.size() == 25);
+    CHECK(two_axes >= 10);
+}
+
+TEST_CASE("plan: a machine is the same in a population of any size") {
+    const auto small = plan(9, 20), large = plan(9, 60);
+    for (std::size_t k = 0; k < small.size(); ++k) CHECK(small[k].effects == large[k].effects);
+}
+
+TEST_CASE("population: the same seed gives the same files, byte for byte; another seed others") {
+    const planned p{kind::single, {"cogging"}, false, false};
+    const drawn_machine a = draw(3, 4, p), b = draw(3, 4, p), c = draw(4, 4, p);
+    const auto log = [](const drawn_machine& m) {
+        return log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed));
+    };
+    CHECK(machine_file(a).dump() == machine_file(b).dump());
+    CHECK(truth_of(a).dump() == truth_of(b).dump());
+    CHECK(log(a) == log(b));
+    CHECK(machine_file(a).dump() != machine_file(c).dump());
+}
+
+TEST_CASE("population: the files are read without complaint, and say nothing of the effect") {
+    for (const char* effect : {"coulomb_friction", "cross_coupling"}) {
+        CAPTURE(effect);
+        const drawn_machine m =
+            draw(11, 2, {kind::single, {effect}, std::string(effect) == "cross_coupling", false});
+        const std::string file = machine_file(m).dump(2);
+        CHECK(file.find(effect) == std::string::npos);
+        CHECK(file.find("cogging_N") == std::string::npos);
+        CHECK(file.find("cyclic") == std::string::npos);
+        const auto machine = quadrant::diagnosis::read_machine(file, "machine.json");
+        const auto text = log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed));
+        std::istringstream stream(text);
+        const auto log = quadrant::diagnosis::read_log(stream, "log.csv");
+        CHECK_NOTHROW(quadrant::diagnosis::check_match(machine, log));
+        CHECK(log.samples == m.log_reference[0].size());
+    }
+}
+
+TEST_CASE(
+    "population: an effect is as large as was asked, in clouds, and the machine stays in its tolerances") {
+    const drawn_machine m = draw(21, 6, {kind::poor, {"constant_force"}, false, true});
+    CHECK(m.effects.at(0).size >= 1.2);
+    CHECK(m.effects.at(0).size < 15);
+    CHECK(m.cloud > 0);
+    const double moved = m.truth[0].mechanics.mass / m.described[0].mechanics.mass - 1;
+    CHECK(std::abs(moved) <= m.tolerance.mass);
+    CHECK(moved != 0);
+}

@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# quadrant-gap trial on four machines: the seal holds, the diagnosed folders hold no truth, the same seed says the same.
+# usage: program.sh PROGRAM FOLDER
+set -e
+program=$1
+out=$2
+rm -rf "$out"
+mkdir -p "$out"
+fail() { echo "$1"; exit 1; }
+population="--machines 20 --seed 2 --only 6,8,10,16"
+
+"$program" trial $population --no-forecast --json "$out/a.json" --report "$out/a.html" --keep "$out/kept" > "$out/a.txt"
+sealed=$(sed -n '1s/.*SHA-256 //p' "$out/a.txt")
+[ "$(sha256sum < "$out/kept/truth.json" | cut -d' ' -f1)" = "$sealed" ] || fail "the truth is not what was sealed"
+grep -q "$sealed" "$out/a.json" "$out/a.html" || fail "the seal is not in the result"
+[ "$(ls -d "$out"/kept/*/ | wc -l)" = 4 ] || fail "four machines were asked for"
+for folder in "$out"/kept/*/; do
+    for file in machine.json log.csv holdout.csv diagnosis.json; do
+        [ -s "$folder$file" ] || fail "$folder$file is missing"
+    done
+    grep -q -e '"effects"' -e 'cloud' "$folder/machine.json" && fail "$folder/machine.json tells the truth"
+done
+grep -q "Right answers" "$out/a.txt" || fail "no summary"
+grep -q "</html>" "$out/a.html" || fail "no page"
+
+"$program" trial $population --no-forecast --quiet --jobs 1 --json "$out/b.json"
+cmp "$out/a.json" "$out/b.json" || fail "the same seed said something else"
+
+"$program" trial --machines 4 --only 4 2> "$out/refused.txt" && fail "machine 4 of 4 was accepted"
+grep -q -e "--only" "$out/refused.txt" || fail "no word about --only"
+echo "four machines, sealed and repeated"
