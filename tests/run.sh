@@ -27,6 +27,7 @@ case "${1-}" in
 '') set -- release sanitize thread fuzz callgrind ;;
 all)
     fuzz_seconds=120
+    export QUADRANT_TESTS=all
     set -- release sanitize thread fuzz callgrind tidy
     ;;
 esac

@@ -39,6 +39,9 @@ def main(program, shared):
         return 77
     with open(os.path.join(practice, "truth.json")) as f:
         truth = json.load(f)
+    if os.environ.get("QUADRANT_TESTS") != "all":  # three minutes of CPU for all of them
+        truth = {i: truth[i] for i in sorted(truth) if i in sorted(truth)[2::3] or truth[i]["kind"] == "unknown"}
+        print("every third log and what is in no list; all with QUADRANT_TESTS=all, as in `sh tests/run.sh all`")
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(lambda i: diagnose_log(program, f"{practice}/{i}", ["--holdout", f"{practice}/{i}/holdout.csv"]), sorted(truth)))
     bad = 0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/diagnose.hpp"
 #include "quadrant/diagnosis/write_simulation.hpp"
 #include "workshop.hpp"
 

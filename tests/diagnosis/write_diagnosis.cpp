@@ -109,6 +109,7 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
      ]
     }
    ],
+   "calibrated": {},
    "evaluated_on": "holdout.csv"
   }
  },

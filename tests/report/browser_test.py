@@ -176,7 +176,9 @@ def main():
             check(not loaded, f"the page loads {loaded}")
             pdf = driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
             (given.shots / f"{given.report.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))
-            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")]
+            # Chromium notes so when our finger moves while it still scrolls, on a busy machine: not the page's doing.
+            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")
+                      and "Ignored attempt to cancel a touch" not in e["message"]]
             check(not errors, f"the console says {errors}")
         finally:
             driver.quit()

@@ -5,6 +5,7 @@
 #include "calibrated.hpp"
 #include "causes.hpp"
 #include "how_far.hpp"
+#include "neighbour.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -99,23 +100,6 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
         propose(out, causes);
     }
     out.axes.push_back(std::move(result));
-}
-
-/// The log of one axis with the acceleration of the axis that moves most beside it, zero-phase filtered to the
-/// bandwidth of the residual force: what cross-coupling would follow.
-inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period) {
-    axis_log out = own;
-    double most = 0;
-    for (const axis_log& other : log.axes) {
-        if (other.name == own.name || other.still) continue;
-        const double bandwidth = residual_bandwidth_Hz(period);
-        auto a = derivative(derivative(zero_phase(other.position, bandwidth, period), period), period);
-        if (const double size = rms(a); size > most) {
-            most = size;
-            out.other_acceleration = std::move(a);
-        }
-    }
-    return out;
 }
 
 template <class Axes> auto named(const Axes& axes, const std::string& name) {

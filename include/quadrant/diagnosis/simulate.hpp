@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "diagnose.hpp"
+#include "bad_input.hpp"
+#include "how_far.hpp"
+#include "neighbour.hpp"
 
 namespace quadrant::diagnosis {
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "record.hpp"
+
+namespace quadrant::diagnosis::detail {
+
+/// The log of one axis with the acceleration of the axis that moves most beside it, zero-phase filtered to the
+/// bandwidth of the residual force: what cross-coupling would follow.
+inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period) {
+    axis_log out = own;
+    double most = 0;
+    for (const axis_log& other : log.axes) {
+        if (other.name == own.name || other.still) continue;
+        const double bandwidth = residual_bandwidth_Hz(period);
+        auto a = derivative(derivative(zero_phase(other.position, bandwidth, period), period), period);
+        if (const double size = rms(a); size > most) {
+            most = size;
+            out.other_acceleration = std::move(a);
+        }
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis::detail
