@@ -245,6 +245,7 @@ private:
     std::string describe(const candidate& c) const {
         std::string out = axis_.name + ":";
         for (const effect* e : c.effects) (out += ' ') += e->name;
+        if (!std::isfinite(c.total)) return out += " cannot be told from this record";
         return (out += ' ') += std::to_string(static_cast<long>(c.total - calibrated_.total));
     }
 
