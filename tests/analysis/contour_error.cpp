@@ -107,16 +107,17 @@ TEST_CASE(
         const auto curved =
             estimated_contour_error(reference, measured, 0_mps, way * 0.1 * 1_mps, way * 30.0 * 1_mm);
         REQUIRE(line);
-        CHECK(mm(*line) - way * true_error == doctest::Approx(way * lag * lag / (2 * R)).epsilon(0.01));
-        CHECK(mm(*curved) == doctest::Approx(way * true_error).epsilon(1e-6));
+        CHECK(mm(*line) - way * true_error ==
+              doctest::Approx(way * lag * lag / (2 * R)).epsilon(0.01).scale(0));
+        CHECK(mm(*curved) == doctest::Approx(way * true_error).epsilon(1e-6).scale(0));
     }
     CHECK_FALSE(estimated_contour_error(at(0, 0), at(1, 0), 0_mps, 0_mps));
 }
 TEST_CASE("contour_errors: a log along a path; refuses what is unequal, not finite, no path") {
     const std::vector<displacement> x{0_mm, 1_mm, 2_mm}, y{0_mm, 0.001_mm, -0.002_mm};
     const auto errors = contour_errors(line_path{at(0, 0), at(1, 0)}, x, y);
-    CHECK(mm(errors[1]) == doctest::Approx(0.001));
-    CHECK(mm(errors[2]) == doctest::Approx(-0.002));
+    CHECK(mm(errors[1]) == doctest::Approx(0.001).scale(0));
+    CHECK(mm(errors[2]) == doctest::Approx(-0.002).scale(0));
     CHECK_THROWS_AS(contour_errors(line_path{at(0, 0), at(1, 0)}, x, {0_mm}), invalid_parameter);
     CHECK_THROWS_AS(contour_errors(line_path{at(0, 0), at(1, 0)}, {double(NAN) * 1_m}, {0_mm}),
                     invalid_parameter);

@@ -80,6 +80,9 @@ TEST_CASE("excitation: a multisine repeats, has the lines it says and the peak i
         for (std::size_t k = 0; k < 512; ++k)
             if (std::abs(x[k]) > 1e-6) loud.push_back(k);
         CHECK(loud == m.lines()); // odd ones
+        const auto first = multisine<force>{m.given(), T}();
+        m(), m.reset();
+        CHECK(m() == first);
         CHECK(loud.front() == 7);
         CHECK(loud.back() == 101);
     }

@@ -2,6 +2,7 @@
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/nyquist.hpp>
 #include <quadrant/literals.hpp>
+#include <quadrant/observer/disturbance_observer.hpp>
 
 #include <doctest/doctest.h>
 

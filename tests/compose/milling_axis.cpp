@@ -181,6 +181,32 @@ TEST_CASE("milling_axis: an observer is fed the command without friction, less i
     CHECK(a.limited());
     CHECK(a.wire.command == 10_V);
     CHECK(a.box.disturbance.seen.value() == doctest::Approx(10 - a.wire.friction.value()).epsilon(1e-9));
+    auto stepped = x_axis<boxes<friction, half_observer>>(); // what the DAC rounds off too
+    stepped.dac_step = 0.25_V;
+    observed b{.box = {stepped, Ts}};
+    b(motion<observed>(1), metres(0));
+    CHECK(b.wire.command != b.wire.limited);
+    CHECK(b.box.disturbance.seen.value() ==
+          doctest::Approx((b.wire.command - b.wire.friction).value()).epsilon(1e-9));
+}
+TEST_CASE("milling_axis: what is cut off is charged to the velocity loop, whoever asked for it") {
+    struct listening : boxes<> {
+        using boxes<>::boxes;
+        struct loop {
+            using output = signal::voltage;
+            quantity<si::electric_potential> operator()(quantity<si::velocity>) { return 1_V; }
+            void applied(quantity<si::electric_potential> u) { told = u; }
+            void reset() {}
+            void settle(quantity<si::velocity>, quantity<si::electric_potential>) {}
+            quantity<si::electric_potential> told{};
+        } velocity_loop;
+    };
+    milling_axis<listening> a{.box = {x_axis(), Ts}};
+    a({{}, {}, 10_mps2}, 0_m);
+    CHECK(a.box.velocity_loop.told == 1_V); // nothing was cut off
+    a({{}, {}, 45.26_mps2}, 0_m);           // 10 V for the mass: 1 V too much
+    CHECK(a.limited());
+    CHECK(std::abs(a.box.velocity_loop.told.value()) < 1e-12);
 }
 TEST_CASE("milling_axis: every wire has a tap, and the log header its units") {
     axis a{.box = {x_axis(), Ts}};

@@ -170,13 +170,13 @@ inline const std::tuple blocks{
     entry{"preview", 0.125, []<class R>(values<R>& p) { return previewed<3, R>({p(0.85_ms)}, T); }},
     entry{"inverse_model", 0.125,
           []<class R>(values<R>& p) {
-              return inverted<s::voltage, R>({p(4.526_mps2 / 1_V), p(28.57_Hz)}, T);
+              return inverted<s::voltage, R>({p(4.526_mps2 / 1_V), p(28.57 / 1_s)}, T);
           }},
     entry{"sampled_inverse_model", 0.125,
           []<class R>(values<R>& p) {
               using number = parameter_real<R>;
               return sampled_inverse_model<s::voltage, 2, s::position, R>(
-                  axis_model<s::voltage, number>{p(4.526_mps2 / 1_V), p(28.57_Hz)}, T);
+                  axis_model<s::voltage, number>{p(4.526_mps2 / 1_V), p(28.57 / 1_s)}, T);
           }},
     entry{"sampled_inverse_model, order 4", 0.125,
           []<class R>(values<R>& p) {

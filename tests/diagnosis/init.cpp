@@ -44,7 +44,7 @@ TEST_CASE("init: period, axis, unit and resolution come from the log, and the fi
     CHECK(machine.sample_period_s == workshop::period);
     REQUIRE(machine.axes.size() == 1);
     CHECK(machine.axes[0].name == "x");
-    CHECK(machine.axes[0].encoder.resolution_m == doctest::Approx(workshop::count));
+    CHECK(workshop::near(machine.axes[0].encoder.resolution_m, workshop::count, 1e-5));
     CHECK_FALSE(machine.axes[0].controller);
     CHECK(says(begun.notes, "by the log the command moves about"));
     CHECK(begun.comments.find("| `axes.x.plant.mass_kg` | 180 |") != std::string::npos);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
 usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [DIAGNOSIS.json ...]
-Always: the schemas themselves, every machine file and log under examples/ and tests/, and small files that each schema
+Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
 import copy
@@ -87,13 +87,12 @@ for box, keys in keys_of_the_reader().items():
     if difference := keys ^ machine.schema["$defs"][box]["properties"].keys():
         faults.append(f"machine.schema.json and the reader differ in the keys of {box}: {sorted(difference)}")
 
+by_name = {"quadrant.machine/1": machine, "quadrant.import/1": import_map, "quadrant.diagnosis/1": diagnosis}
 for folder in (root / "examples", root / "tests"):
     for path in sorted(folder.rglob("*.json")):
         content = load(path)
-        if isinstance(content, dict) and content.get("schema") == "quadrant.machine/1":
-            accept(machine, content, path)
-        if isinstance(content, dict) and content.get("schema") == "quadrant.import/1":
-            accept(import_map, content, path)
+        if isinstance(content, dict) and content.get("schema") in by_name:
+            accept(by_name[content["schema"]], content, path)
     for path in sorted(folder.rglob("*.csv")):
         if "t_s" in header(path):
             accept(log, header(path), path)

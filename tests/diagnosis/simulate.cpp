@@ -92,10 +92,10 @@ TEST_CASE("simulate: what diagnose forecasts is achieved on another log, within 
     workshop::machine m;
     m.cogging = 25;
     const auto machine = exact(m);
-    const auto d = diagnose(machine, workshop::as_log(workshop::run(m)));
+    const auto d = diagnose(machine, workshop::as_log(workshop::run(m, workshop::strokes)));
     const auto corrected = apply(machine, d);
     CHECK(corrected.axes[0].plant.cogging_N.size() > 0);
-    const auto other = workshop::as_log(workshop::run(m, 4.15, 7)); // the strokes alone
+    const auto other = workshop::as_log(workshop::run(m, 6.15, 7)); // and swings of 20 mm and 2 mm
     const double before = only(simulate(machine, other)).gap.force_rms_N,
                  after = only(simulate(corrected, other)).gap.force_rms_N;
     const double forecast = 1 - d.axes[0].gap_after.force_rms_N / d.axes[0].gap.force_rms_N;
@@ -110,7 +110,7 @@ TEST_CASE("simulate: with the calibrated values the forecast is kept where the m
     workshop::machine m;
     m.excess = 40;
     const auto machine = workshop::described(m);
-    const auto d = diagnose(machine, workshop::as_log(workshop::run(m)));
+    const auto d = diagnose(machine, workshop::as_log(workshop::run(m, workshop::strokes)));
     REQUIRE(!d.axes[0].calibrated.empty());
     const auto other = workshop::as_log(workshop::run(m, 6.15, 7));
     const double before = only(simulate(machine, other)).gap.force_rms_N,

@@ -84,6 +84,8 @@ inline double motion(double t) {
     return x;
 }
 
+inline constexpr double three_strokes = 2.95, strokes = 4.15; ///< of motion(), where the rest is not needed [s]
+
 /// The log of a machine that follows motion() under its controller.
 inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15, unsigned seed = 1) {
     quadrant::diagnosis::axis_log log;
@@ -166,6 +168,11 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
     log.reference_step = 1e-12;
     log.position_step = 1e-12;
     return log;
+}
+
+/// Within a share of the truth, however small that is in SI (doctest's Approx adds one to the scale).
+inline bool near(double value, double truth, double share) {
+    return std::abs(value - truth) <= share * std::abs(truth);
 }
 
 /// The machine file of a machine: its numbers moved inside the owner's tolerance; effects are left out by the caller.

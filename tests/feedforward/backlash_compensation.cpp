@@ -50,11 +50,11 @@ TEST_CASE("backlash_compensation: 20 um at 4 mm/s and 2 kHz are crossed in 10 sa
     for (int k = 0; k < 10; ++k) {
         CHECK_FALSE((k > 0 && !f.crossing()));
         const double y = f(metres(5e-6 - k * 1e-6)).value();
-        CHECK(last - y == doctest::Approx(2e-6));
-        CHECK(f.rate().value() == doctest::Approx(-4e-3));
+        CHECK(last - y == doctest::Approx(2e-6).scale(0));
+        CHECK(f.rate().value() == doctest::Approx(-4e-3).scale(0));
         last = y;
     }
-    CHECK(last == doctest::Approx(-10e-6));
+    CHECK(last == doctest::Approx(-10e-6).scale(0));
     f(-10_um); // what ten steps of 2 um left by rounding
     CHECK(f.now().y == -10_um);
     CHECK_FALSE(f.crossing());
@@ -139,7 +139,7 @@ TEST_CASE("backlash_compensation: turned back in the middle of the crossing it g
     f(10_um);
     for (int k = 0; k < 5; ++k) f(metres(5e-6 - k * 1e-6));
     CHECK(f.now().y.value() == doctest::Approx(0).scale(1e-9));
-    CHECK(f(4_um).value() == doctest::Approx(2e-6));
+    CHECK(f(4_um).value() == doctest::Approx(2e-6).scale(0));
 }
 TEST_CASE("backlash_compensation: names the field that it refuses") {
     auto p = screw;

@@ -3,6 +3,8 @@
 #include <quadrant/friction/presliding.hpp>
 #include <quadrant/literals.hpp>
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -57,6 +59,28 @@ private:
     }
     std::uint64_t x_;
 };
+
+/// A bad velocity gives the last force and moves nothing; it is told until settle or reset.
+template <class Law> void check_bad_velocities(const Law& fresh) {
+    for (const double bad : {bad_number, infinite, -infinite}) {
+        Law law = fresh;
+        const auto last = law(2_mmps);
+        auto twin = law;
+        CHECK(law(mps(bad)) == last);
+        CHECK(law.faulted());
+        CHECK_FALSE(twin.faulted());
+        for (int k = 0; k < 10; ++k) CHECK(law(-3_mmps) == twin(-3_mmps));
+        CHECK(law.faulted());
+        law.settle(0_mps);
+        CHECK_FALSE(law.faulted());
+        CHECK(law(0_mps) == 0_N);
+        law.settle(mps(bad));
+        CHECK(law.faulted());
+        law.reset();
+        CHECK_FALSE(law.faulted());
+        CHECK(law(mps(bad)) == 0_N);
+    }
+}
 
 /// What the constructor says to changed parameters; "taken" when nothing.
 template <class Law, class Change>

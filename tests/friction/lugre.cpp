@@ -260,27 +260,13 @@ TEST_CASE("lugre: as a block it is the law with its period, odd bit for bit, and
 TEST_CASE("lugre: settle is sliding at that speed, or relaxed at rest; a bad velocity gives the last force, "
           "moves nothing") {
     stribeck<> curve{stage().curve, Ts};
-    for (const double bad : {bad_number, infinite, -infinite}) {
-        lugre<> law{stage(), Ts};
-        for (const double v : {1e-3, -20e-3, 2.0}) {
-            law.settle(mps(v));
-            for (int k = 0; k < 10; ++k)
-                CHECK(law(mps(v)).value() == doctest::Approx(curve(mps(v)).value()).epsilon(1e-12));
-        }
-        const auto last = law(2_mmps);
-        auto twin = law;
-        CHECK(law(mps(bad)) == last);
-        CHECK(law.faulted());
-        for (int k = 0; k < 10; ++k) CHECK(law(-3_mmps) == twin(-3_mmps));
-        law.settle(0_mps);
-        CHECK_FALSE(law.faulted());
-        CHECK(law(0_mps) == 0_N);
-        law.settle(mps(bad));
-        CHECK(law.faulted());
-        law.reset();
-        CHECK_FALSE(law.faulted());
-        CHECK(law(mps(bad)) == 0_N);
+    lugre<> law{stage(), Ts};
+    for (const double v : {1e-3, -20e-3, 2.0}) {
+        law.settle(mps(v));
+        for (int k = 0; k < 10; ++k)
+            CHECK(law(mps(v)).value() == doctest::Approx(curve(mps(v)).value()).epsilon(1e-12));
     }
+    check_bad_velocities(law);
 }
 TEST_CASE("lugre: in float it follows double to 1e-4 of the largest force over a path of reversals") {
     lugre<signal::velocity, signal::force, float> rough{

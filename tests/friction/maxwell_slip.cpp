@@ -383,23 +383,7 @@ TEST_CASE("maxwell_slip: settle is sliding at that speed, or relaxed at rest") {
 }
 TEST_CASE(
     "maxwell_slip: a bad velocity gives the last force, moves nothing and is told until reset or settle") {
-    for (const double bad : {bad_number, infinite, -infinite}) {
-        gms law{x_axis(), Ts};
-        const auto last = law(2_mmps);
-        auto twin = law;
-        CHECK(law(mps(bad)) == last);
-        CHECK(law.faulted());
-        CHECK_FALSE(twin.faulted());
-        for (int k = 0; k < 10; ++k) CHECK(law(-3_mmps) == twin(-3_mmps));
-        CHECK(law.faulted());
-        law.settle(1_mmps);
-        CHECK_FALSE(law.faulted());
-        law.settle(mps(bad));
-        CHECK(law.faulted());
-        law.reset();
-        CHECK_FALSE(law.faulted());
-        CHECK(law(mps(bad)) == 0_N);
-    }
+    check_bad_velocities(gms{x_axis(), Ts});
 }
 TEST_CASE("maxwell_slip: in float it follows double to 1e-4 of the level over a path of reversals") {
     maxwell_slip<4, signal::velocity, signal::force, float> rough{{.curve = {122_N, 177_N, 1_mps / 450.0, {}},

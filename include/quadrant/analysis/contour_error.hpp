@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "circular_test.hpp"
+#include "circle_fit.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace quadrant::analysis {
 

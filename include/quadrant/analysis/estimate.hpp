@@ -9,6 +9,9 @@
 
 namespace quadrant::analysis {
 
+/// A place or a way along an axis.
+using displacement = quantity_of<signal::position>;
+
 /// A number with its interval of 95 %.
 template <class Quantity> struct estimate {
     Quantity value, low, high;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "least_squares.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -45,67 +46,46 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
             "must be as many for the sensor as for the position (" + quadrant::detail::shortest(double(n)) +
                 ")");
     const double T = period.value(), end = T * double(n - 1);
-    // Columns 1, t, t^2/2 in units of the record's length, and the double integral: orthogonalized in this order.
-    constexpr std::size_t columns = 4;
-    std::array<std::vector<double>, columns> q;
-    for (auto& column : q) column.resize(n);
-    std::vector<double> rest(n);
-    double speed = 0, way = 0;
+    std::vector<double> way(n); // the double integral
+    double speed = 0, furthest = 0, squares = 0;
     for (std::size_t k = 0; k < n; ++k) {
         require_finite("calibrate_ferraris.position", position[k]);
         require_finite("calibrate_ferraris.sensor", sensor[k]);
-        if (k > 0) {
-            const double before = sensor[k - 1].value(), now = sensor[k].value();
-            way += T * speed + T * T * (before / 3 + now / 6);
-            speed += T * (before + now) / 2;
+        if (k == 0) continue;
+        const double before = sensor[k - 1].value(), now = sensor[k].value();
+        way[k] = way[k - 1] + T * speed + T * T * (before / 3 + now / 6);
+        speed += T * (before + now) / 2;
+        furthest = std::max(furthest, std::abs(way[k])), squares += way[k] * way[k];
+    }
+    // Unknowns: p0, v0, Z in units of the record's length, G in units of the furthest way where it is one of them.
+    const auto fit = [&](bool with_gain, const auto& of) {
+        least_squares equations(with_gain ? 4 : 3);
+        for (std::size_t k = 0; k < n; ++k) {
+            const double t = double(k) / double(n - 1);
+            std::vector<double> row{1, t, t * t / 2};
+            if (with_gain) row.push_back(way[k] / furthest);
+            equations.add(row, of(k));
         }
-        const double t = double(k) / double(n - 1);
-        q[0][k] = 1, q[1][k] = t, q[2][k] = t * t / 2, q[3][k] = way;
-        rest[k] = position[k].value();
-    }
-    const auto dot = [n](const std::vector<double>& a, const std::vector<double>& b) {
-        double sum = 0;
-        for (std::size_t k = 0; k < n; ++k) sum += a[k] * b[k];
-        return sum;
+        return equations.solve();
     };
-    const auto subtract = [n](std::vector<double>& a, double factor, const std::vector<double>& b) {
-        for (std::size_t k = 0; k < n; ++k) a[k] -= factor * b[k];
-    };
-    std::array<std::array<double, columns>, columns> r{}; // columns = q r
-    std::array<double, columns> x{};
-    const double as_recorded = std::sqrt(dot(q[3], q[3]));
-    for (std::size_t j = 0; j < columns; ++j) {
-        for (int twice = 0; twice < 2; ++twice) // the second time removes the rounding of the first
-            for (std::size_t i = 0; i < j; ++i) {
-                const double c = dot(q[i], q[j]);
-                r[i][j] += c;
-                subtract(q[j], c, q[i]);
-            }
-        r[j][j] = std::sqrt(dot(q[j], q[j]));
-        if (j == 3 && !(r[j][j] > 1e-10 * as_recorded)) r[j][j] = 0; // a parabola, to rounding
-        for (double& each : q[j]) each = r[j][j] > 0 ? each / r[j][j] : 0;
-        x[j] = dot(q[j], rest);
-        subtract(rest, x[j], q[j]);
-    }
-    const double variance = dot(rest, rest) / double(n - columns), share = x[3];
-    for (std::size_t i = columns; i-- > 0;) {
-        for (std::size_t j = i + 1; j < columns; ++j) x[i] -= r[i][j] * x[j];
-        x[i] = r[i][i] > 0 ? x[i] / r[i][i] : 0;
-    }
+    const bool parabola = // the integral too, to rounding: no gain is to be told
+        !(furthest > 0) || !(fit(false, [&](std::size_t k) { return way[k]; }).residual > 1e-20 * squares);
+    const auto found = fit(!parabola, [&](std::size_t k) { return position[k].value(); });
+    const double deviation = std::sqrt(found.residual / double(n - 4));
     ferraris_calibration c;
     using boost::units::si::meter;
-    c.gain = decltype(c.gain)::from_value(x[3]);
-    c.offset = decltype(c.offset)::from_value(x[2] / (end * end));
-    c.start_velocity = decltype(c.start_velocity)::from_value(x[1] / end);
-    c.start_position = x[0] * meter;
-    c.residual = std::sqrt(variance) * meter;
-    c.excitation = std::abs(share) / std::sqrt(double(n)) * meter;
-    if (r[3][3] > 0) {
-        const double deviation = std::sqrt(variance) / r[3][3], across = r[2][3] / r[2][2] * deviation,
-                     alone = std::sqrt(variance) / r[2][2];
-        c.gain_deviation = decltype(c.gain)::from_value(deviation);
-        c.offset_deviation = decltype(c.offset)::from_value(std::hypot(alone, across) / (end * end));
-    }
+    c.start_position = found.x[0] * meter;
+    c.start_velocity = decltype(c.start_velocity)::from_value(found.x[1] / end);
+    c.offset = decltype(c.offset)::from_value(found.x[2] / (end * end));
+    c.residual = deviation * meter;
+    if (parabola) return c;
+    const double spread =
+        std::sqrt(found.inverse_diagonal[3]); // its inverse: length of what no parabola explains
+    c.gain = decltype(c.gain)::from_value(found.x[3] / furthest);
+    c.excitation = std::abs(found.x[3]) / (spread * std::sqrt(double(n))) * meter;
+    c.gain_deviation = decltype(c.gain)::from_value(deviation * spread / furthest);
+    c.offset_deviation =
+        decltype(c.offset)::from_value(deviation * std::sqrt(found.inverse_diagonal[2]) / (end * end));
     return c;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "circular_test.hpp"
 #include "estimate.hpp"
 
 #include <string>

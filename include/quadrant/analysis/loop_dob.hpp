@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../observer/disturbance_observer.hpp"
+#include "../observer/q_filter.hpp"
 #include "loop.hpp"
 #include "margins.hpp"
 
@@ -13,12 +13,8 @@ template <std::size_t Order = 2, std::size_t NumeratorOrder = 0> struct q_model 
 
     complex operator()(frequency f) const {
         const auto q = q_filter<Order, NumeratorOrder>(corner);
-        return value(q.numerator, laplace(f)) / value(q.denominator, laplace(f));
-    }
-    template <std::size_t Size> static complex value(const std::array<double, Size>& c, complex s) {
-        complex sum = 0;
-        for (std::size_t i = Size; i-- > 0;) sum = sum * s + c[i];
-        return sum;
+        return quadrant::detail::polynomial(q.numerator, laplace(f)) /
+               quadrant::detail::polynomial(q.denominator, laplace(f));
     }
 };
 /// Q/Gn; Nominal any response, an `axis_model` without delay.

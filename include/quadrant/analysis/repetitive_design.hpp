@@ -210,7 +210,7 @@ repetitive_performance performance(const Loop& t, const Learning& l, const Smoot
             if (const double now = off(f); now > out.periodic) out.periodic = now, out.worst_harmonic = f;
         }
     double most = 0;
-    const auto lines = std::size_t(std::ceil(200 * (c.bandwidth * c.cycle).value())) + 200;
+    const auto lines = std::size_t(std::ceil(200 * (c.bandwidth * c.cycle).value()));
     for (std::size_t i = 1; i <= lines; ++i) { // 200 a harmonic: half-way between two of them is one
         const frequency f = std::min(c.bandwidth, (double(i) / 200) / c.cycle);
         if (const double now = off(f); now > most) most = now, out.worst_between = f;

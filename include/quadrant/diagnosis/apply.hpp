@@ -36,8 +36,11 @@ public:
                     file_, fmt::format("axes.{}: is missing; the diagnosis is of another machine", a.name));
         for (const cause& c : d.causes) {
             if (c.probability < at_least_)
-                out_.notes.push_back(fmt::format("{} of axis {} is left out: probability {:.2f}, below {:g}",
-                                                 c.effect, c.axis, c.probability, at_least_));
+                out_.notes.push_back(fmt::format(
+                    "{} of axis {} is left out: probability {:.2f}, below {:g}; the forecast gap_after "
+                    "counts on it, which took the force from {:.3g} N to {:.3g} N",
+                    c.effect, c.axis, c.probability, at_least_, c.gap_before_force_rms_N.value,
+                    c.gap_after_force_rms_N.value));
             else if (c.parameters.empty())
                 out_.notes.push_back(fmt::format(
                     "{} of axis {} is left out: the diagnosis gives no value for it", c.effect, c.axis));
@@ -115,11 +118,7 @@ private:
 
     void set(const std::string& axis, const std::string& box, const std::string& key, const json& value,
              const std::string& reason) {
-        json* place = &out_.machine["axes"][axis][box];
-        std::string_view rest = key;
-        for (std::size_t dot; (dot = rest.find('.')) != rest.npos; rest.remove_prefix(dot + 1))
-            place = &(*place)[std::string(rest.substr(0, dot))];
-        json& old = (*place)[std::string(rest)];
+        json& old = place_in(out_.machine["axes"][axis][box], key);
         if (old == value) return;
         out_.changes.push_back({fmt::format("axes.{}.{}.{}", axis, box, key), old.is_null() ? "" : old.dump(),
                                 value.dump(), reason});

@@ -44,16 +44,20 @@ inline std::vector<parameter> calibration(const plant_description& d, const tole
     within(
         "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
-    // Every contact gives way by some tenths of a micrometre before it slips; up to 2 um it is no cause.
-    out.push_back({.key = "presliding_length_m",
-                   .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
-                   .start = 2e-7,
-                   .low = 1e-8,
-                   .high = 2e-6,
-                   .logarithmic = true,
-                   .step = 1e-2,
-                   .expected = std::log(2e-7),
-                   .spread = 1.5});
+    // Every contact gives way by some tenths of a micrometre before it slips; up to 2 um it is no cause. One that is
+    // described as giving way further, or element by element, stays as described.
+    constexpr double most = 2e-6;
+    const friction_contact contact = plant_model(d).friction.contact;
+    if (contact.elements == 1 && contact.length <= most)
+        out.push_back({.key = "presliding_length_m",
+                       .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
+                       .start = contact.length,
+                       .low = std::min(1e-8, contact.length),
+                       .high = most,
+                       .logarithmic = true,
+                       .step = 1e-2,
+                       .expected = std::log(contact.length),
+                       .spread = 1.5});
     return out;
 }
 

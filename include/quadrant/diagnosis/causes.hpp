@@ -112,9 +112,10 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
         named.effect = e.name;
         named.exciting_motion = e.exciting_motion;
         named.parameters = estimates(c.best(), e, c.record.score);
-        plant_model as_given = c.models.given().fit.plant;
+        plant_model as_given = c.models.given().fit.plant, nothing_described;
         for (const parameter& p : c.best().fit.parameters)
-            if (p.key == named.parameters.front().key && p.of(as_given) != 0) named.described = true;
+            if (p.key == named.parameters.front().key && p.of(as_given) != p.of(nothing_described))
+                named.described = true;
         for (const auto& r : rivals[i]) {
             if (r.name == &e) {
                 named.probability = r.weight;

@@ -4,6 +4,7 @@
 #include "init_fields.hpp"
 #include "read_machine.hpp"
 #include "sensor_box.hpp"
+#include "write_machine.hpp"
 
 #include <map>
 
@@ -69,16 +70,11 @@ private:
     }
     void put(const std::string& axis, const init_field& f, const std::string& key, double value,
              std::string_view from) {
-        nlohmann::ordered_json* place = &json_["axes"][axis][f.box];
-        std::string_view last = key;
-        if (const auto dot = last.find('.'); dot != last.npos) {
-            place = &(*place)[std::string(last.substr(0, dot))];
-            last.remove_prefix(dot + 1);
-        }
+        nlohmann::ordered_json& place = place_in(json_["axes"][axis][f.box], key);
         if (f.whole && value == std::floor(value))
-            (*place)[std::string(last)] = static_cast<std::int64_t>(value);
+            place = static_cast<std::int64_t>(value);
         else
-            (*place)[std::string(last)] = value;
+            place = value;
         row(fmt::format("axes.{}.{}.{}", axis, f.box, key), value, f.meaning, from);
         if (value != 0 && (std::abs(value) < f.low || std::abs(value) > f.high))
             out_.notes.push_back(

@@ -99,13 +99,18 @@ private:
         return {period.value_or(0), {*size}, {phase.value_or(0)}};
     }
     void describe_contact(const plant_description& d) {
+        const double level = friction.coulomb + friction.excess;
+        if (!(level > 0)) return; // no friction that could give way
         auto& c = friction.contact;
         c.elements = std::min(d.gms_weights.size(), friction_contact::most);
+        double logarithm = 0;
         for (std::size_t i = 0; i < c.elements; ++i) {
             c.weights[i] = d.gms_weights[i];
-            c.lengths_as_described[i] =
-                d.gms_weights[i] * (friction.coulomb + friction.excess) / d.gms_stiffness_N_per_m[i];
+            c.lengths_as_described[i] = d.gms_weights[i] * level / d.gms_stiffness_N_per_m[i];
+            logarithm += std::log(c.lengths_as_described[i]) / static_cast<double>(c.elements);
         }
+        c.length = std::exp(logarithm);
+        if (c.elements == 1) c.lengths_as_described = {}; // the length says it
     }
 };
 

@@ -12,8 +12,8 @@ namespace quadrant::diagnosis {
 /// correction had to be. One pass, no drift of the double integrator, and a right model leaves only the encoder's
 /// rounding: the innovation
 ///   e[k] = y[k] - reading(x(t_k));  x += L1 e, v += L2 e;  then one period of the plant
-/// with both observer poles at exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
-/// A constant force error d shows as e = d / (M (2 pi corner)^2) about.
+/// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
+/// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
 struct predictor {
     double period;         ///< T [s]
     double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep

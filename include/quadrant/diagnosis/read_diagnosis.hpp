@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "effect_names.hpp"
-#include "read/json_node.hpp"
+#include "read/json_keys.hpp"
 #include "result.hpp"
 
 namespace quadrant::diagnosis {
@@ -16,8 +16,7 @@ public:
         : root_(parse_json(text, file)), top_{&root_, "", file} {}
 
     diagnosis_result read() const {
-        if (const auto given = top_.object().need("schema"); given.text() != "quadrant.diagnosis/1")
-            given.refuse("must be \"quadrant.diagnosis/1\"");
+        need_schema(top_, "quadrant.diagnosis/1");
         diagnosis_result out;
         out.verdict = verdict_of(top_.need("verdict"));
         const json_node axes = top_.need("axes").object();

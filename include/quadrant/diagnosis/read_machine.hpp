@@ -2,8 +2,7 @@
 #pragma once
 #include "effect_names.hpp"
 #include "plant_model.hpp"
-#include "read/axis_name.hpp"
-#include "read/json_keys.hpp"
+#include "read/machine_keys.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -16,20 +15,14 @@ public:
         : root_(parse_json(text, file)), top_{&root_, "", file} {}
 
     machine_description read() {
-        top_.object();
-        constexpr const char* schema = "must be \"quadrant.machine/1\"";
-        if (const auto given = top_.need("schema"); given.text() != "quadrant.machine/1") given.refuse(schema);
-        refuse_unknown_keys(top_, {}, machine_file_keys);
+        need_schema(top_, "quadrant.machine/1");
+        refuse_unknown_keys(top_, machine_file_keys);
         out_.file = one_line(top_.file);
         out_.sample_period_s = top_.need("sample_period_s").number(rule::positive);
         if (const auto excluded = top_.find("excluded_effects")) read_excluded(*excluded);
-        const json_node axes = top_.need("axes").object();
-        if (axes.value->empty()) axes.refuse("must name at least one axis");
-        for (const auto& [name, axis] : axes.value->items()) {
-            if (!is_axis_name(name))
-                axes.refuse(fmt::format("{}: an axis is named by letters, digits, _ and -", in_quotes(name)));
-            out_.axes.push_back(read_axis(name, axes.at(name, axis).object()));
-        }
+        each_axis(top_, [&](const std::string& name, const json_node& axis) {
+            out_.axes.push_back(read_axis(name, axis));
+        });
         return std::move(out_);
     }
 
@@ -48,7 +41,7 @@ private:
     }
 
     axis_description read_axis(const std::string& name, const json_node& node) {
-        refuse_unknown_keys(node, {}, axis_keys);
+        refuse_unknown_keys(node, axis_keys);
         axis_description axis;
         axis.name = name;
         read_plant(node.need("plant"), axis);
@@ -139,7 +132,7 @@ private:
     }
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
-        refuse_unknown_keys(node.object(), names_of(tolerance_keys), {});
+        refuse_unknown_keys(node.object(), names_of(tolerance_keys));
         for (const auto& [key, value] : node.value->items())
             tolerance.given[key] = node.at(key, value).number(rule::relative);
     }

@@ -14,6 +14,7 @@ struct axis_record {
     std::vector<std::size_t> segment{};             ///< motion segment of every row
     std::size_t segments = 0;
     double bandwidth_Hz = 0; ///< of the residual force
+    double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
     predictor observer;
     scoring score{};
 };
@@ -69,6 +70,16 @@ inline double residual_force_floor(double mass, double sigma, double period, dou
     return sigma * std::sqrt(sum);
 }
 
+/// White noise of the position in the innovations of a model, robust against what the model does not explain; not below the
+/// rounding of `resolution` [m].
+inline double position_noise(const std::vector<double>& innovation, const scoring& s, double resolution) {
+    std::vector<double> half_difference(innovation.size());
+    for (std::size_t k = 1; k < half_difference.size(); ++k)
+        half_difference[k] = (innovation[k] - innovation[k - 1]) * std::numbers::sqrt2 / 2;
+    const auto ms = detail::block_ms(half_difference, s.skip, s.block);
+    return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
+}
+
 inline axis_record prepare(const axis_log& log, double period, double resolution) {
     axis_record r{.period = period,
                   .reference = log.reference,
@@ -85,14 +96,13 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
     r.bandwidth_Hz = residual_bandwidth_Hz(period);
 
-    // A position's step is at least the rounding of its column.
-    const double q = std::max({resolution, log.position_step, 1e-12});
+    r.resolution = std::max({resolution, log.position_step, 1e-12});
     auto& s = r.score;
     s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.01 / period)));
     s.block = 5 * s.mean;
     s.skip = s.block;
-    s.floor = 0.4 * q;
-    s.floor_mean = 0.2 * q;
+    s.floor = 0.4 * r.resolution;
+    s.floor_mean = 0.2 * r.resolution;
     for (std::size_t k = s.skip; k + s.block <= log.position.size(); k += s.block)
         s.segment_of_block.push_back(r.segment[k + s.block / 2]);
     s.segments = r.segments;

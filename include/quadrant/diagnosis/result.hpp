@@ -85,7 +85,7 @@ struct axis_signals {
 struct axis_result {
     std::string name;
     quadrant::diagnosis::verdict verdict = verdict::no_gap;
-    gap_numbers gap, gap_after; ///< as described; with every named cause and calibration added
+    gap_numbers gap, gap_after; ///< as described; with calibration and every cause added, suspects too
     std::vector<place> where;
     std::vector<parameter_estimate> calibrated; ///< what moved inside the owner's tolerance, as machine keys
     std::string evaluated_on;                   ///< "held-out segments of LOG" or the hold-out file

@@ -113,14 +113,9 @@ public:
         return out;
     }
 
-    /// White noise of the position as the best model sees it, robust against what it does not explain [m].
-    double noise(const candidate& best) const {
-        std::vector<double> half_difference(best.fit.innovation.size());
-        for (std::size_t k = 1; k < half_difference.size(); ++k)
-            half_difference[k] =
-                (best.fit.innovation[k] - best.fit.innovation[k - 1]) * std::numbers::sqrt2 / 2;
-        const auto ms = detail::block_ms(half_difference, record_.score.skip, record_.score.block);
-        return std::sqrt(std::max(quantile(ms, 0.3), square(resolution_()) / 12));
+    /// White noise of the position as a model sees it [m].
+    double noise(const candidate& c) const {
+        return position_noise(c.fit.innovation, record_.score, record_.resolution);
     }
 
     /// Structure that a model leaves: log-score of the blocks above twice the rms of noise and half a count. Below
@@ -129,7 +124,7 @@ public:
         const auto over = [&](const std::vector<double>& blocks, double noise2, double nu) {
             double sum = 0;
             for (double ms : blocks)
-                sum += 0.5 * nu * std::max(0.0, std::log(ms / (4 * (noise2 + square(resolution_()) / 4))));
+                sum += 0.5 * nu * std::max(0.0, std::log(ms / (4 * (noise2 + square(record_.resolution) / 4))));
             return sum;
         };
         return over(c.fit.ms, sigma * sigma, record_.score.nu) +
@@ -233,7 +228,6 @@ public:
 
 private:
     static double square(double x) { return x * x; }
-    double resolution_() const { return record_.score.floor / 0.4; }
     const candidate* tried(const candidate& from, const effect* added) const {
         for (const candidate& c : tried_)
             if (c.effects.size() == from.effects.size() + 1 && has(c, added) &&

@@ -26,15 +26,6 @@ struct simulation_result {
 
 namespace detail {
 
-/// White noise of the position in the innovations of a model, robust against what it does not explain [m].
-inline double white_noise(const std::vector<double>& innovation, const scoring& s, double resolution) {
-    std::vector<double> difference(innovation.size());
-    for (std::size_t k = 1; k < difference.size(); ++k)
-        difference[k] = (innovation[k] - innovation[k - 1]) / std::numbers::sqrt2;
-    return std::sqrt(
-        std::max(quantile(block_ms(difference, s.skip, s.block), 0.3), resolution * resolution / 12));
-}
-
 inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period) {
     const double resolution = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
@@ -52,7 +43,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz);
     out.gap.force_rms_N = scored_rms(out.force);
     out.gap.noise_floor_force_rms_N = residual_force_floor(
-        plant.mass, white_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
+        plant.mass, position_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
     out.gap.bandwidth_Hz = record.bandwidth_Hz;
     out.where = regimes(out.force, record);
     for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);

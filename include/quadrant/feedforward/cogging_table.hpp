@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../memory/cubic_weights.hpp"
 
 #include <array>
 #include <cmath>
@@ -76,9 +77,8 @@ private:
             return a + (b - a) * t;
         else {
             const value &before = points_[(i + Points - 1) % Points], &after = points_[(i + 2) % Points];
-            const Real left = t + Real(1), right = Real(1) - t, far = Real(2) - t;
-            return (a * (left * right * far) + b * (left * t * far)) * Real(0.5) -
-                   (before * (t * right * far) + after * (left * t * right)) * (Real(1) / Real(6));
+            const auto weight = detail::cubic_weights(t);
+            return before * weight[0] + a * weight[1] + b * weight[2] + after * weight[3];
         }
     }
 

@@ -51,43 +51,32 @@ public:
         require_not_negative("dahl.viscous", p.viscous);
     }
 
-    value operator()(argument v) noexcept {
-        const outcome to = after(v, period_);
-        if (!finite(v, to.force)) return out_.hold();
-        state_ = to.next;
-        return out_.keep(to.force);
-    }
-    void reset() noexcept {
-        state_ = {};
-        out_.reset();
-    }
+    value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }
+    void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
         const state to{v > argument() ? coulomb_ : v < argument() ? -coulomb_ : value()};
-        const value y = to.force + viscous_ * v;
-        if (!finite(v, y)) return out_.raise();
-        state_ = to;
-        out_.reset(y);
+        memory_.settle(v, to.force + viscous_ * v, to);
     }
 
     /// The force after moving at v for h; changes nothing.
     outcome after(argument v, time h) const noexcept {
         const bool forward = v >= argument();
-        const value along = forward ? state_.force : -state_.force; // positive: bent the way the axis goes
-        const Real gap = Real(1) - Real(along / coulomb_);          // r: 0 slides, 2 bent the other way
+        const value along = forward ? now().force : -now().force; // positive: bent the way the axis goes
+        const Real gap = Real(1) - Real(along / coulomb_);        // r: 0 slides, 2 bent the other way
         const Real way = Real(stiffness_ * (forward ? v : -v) * h / coulomb_);
         const Real left = remaining(gap, way);
         const value bent = along + coulomb_ * (gap - left);
         outcome to;
         to.next.force = forward ? bent : -bent;
         to.force = to.next.force + viscous_ * v;
-        to.slope = viscous_ + stiffness_ * h * power(left, Real(given_.shape));
+        to.slope = viscous_ + stiffness_ * h * (given_.shape == 1 ? left : power(left, Real(given_.shape)));
         return to;
     }
-    void become(const state& next) noexcept { state_ = next; }
+    void become(const state& next) noexcept { memory_.become(next); }
 
-    bool faulted() const noexcept { return out_.faulted(); }
+    bool faulted() const noexcept { return memory_.faulted(); }
     const parameters& given() const noexcept { return given_; }
-    const state& now() const noexcept { return state_; }
+    const state& now() const noexcept { return memory_.now(); }
 
 private:
     /// r^p for 0 <= r, with 0^0 = 0: a spring at its level pushes back no further.
@@ -112,8 +101,7 @@ private:
     gain_rate_of<Out, In, Real> stiffness_;
     gain_of<Out, In, Real> viscous_;
     time period_;
-    state state_;
-    held_output<value> out_;
+    detail::friction_memory<outcome, argument> memory_;
 };
 
 } // namespace quadrant

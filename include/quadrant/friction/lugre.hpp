@@ -53,23 +53,12 @@ public:
         require_not_negative("lugre.damping_velocity", p.damping_velocity);
     }
 
-    value operator()(argument v) noexcept {
-        const outcome to = after(v, period_);
-        if (!finite(v, to.force)) return out_.hold();
-        state_ = to.next;
-        return out_.keep(to.force);
-    }
-    void reset() noexcept {
-        state_ = {};
-        out_.reset();
-    }
+    value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }
+    void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
         const value level = curve_.slip(v);
         const state to{v > argument() ? level : v < argument() ? -level : value()};
-        const value y = to.force + curve_.viscous() * v;
-        if (!finite(v, y)) return out_.raise();
-        state_ = to;
-        out_.reset(y);
+        memory_.settle(v, to.force + curve_.viscous() * v, to);
     }
 
     /// The force after moving at v for h; changes nothing.
@@ -77,9 +66,9 @@ public:
         using std::exp;
         const bool forward = v >= argument();
         const argument speed = forward ? v : -v;
-        const value along = forward ? state_.force : -state_.force; // positive: bent the way the axis goes
+        const value along = forward ? now().force : -now().force; // positive: bent the way the axis goes
         const value level = curve_.slip(v);
-        const auto fall = detail::slip_slope(curve_, v); // of the level by the speed, <= 0
+        const auto fall = detail::slip_slope(curve_, v, level); // of the level by the speed, <= 0
         const gain_of<Out, In, Real> stiff = stiffness_ * h;
         const Real way(stiff * speed / level);
         const Real kept = exp(-way);
@@ -92,23 +81,23 @@ public:
         const gain_of<Out, In, Real> s1 = damping(v);
         outcome to;
         to.next.force = forward ? bent : -bent;
-        to.force = to.next.force + s1 * ((to.next.force - state_.force) / stiff) + curve_.viscous() * v;
+        to.force = to.next.force + s1 * ((to.next.force - now().force) / stiff) + curve_.viscous() * v;
         to.slope = bends + s1 * Real(bends / stiff) + curve_.viscous();
         if (damping_velocity_ > argument()) // and s1 falls
             to.slope -= s1 * (Real(2) * Real(speed / damping_velocity_) *
                               Real((bent - along) / stiff / damping_velocity_));
         return to;
     }
-    void become(const state& next) noexcept { state_ = next; }
+    void become(const state& next) noexcept { memory_.become(next); }
 
     /// True when no motion gets energy out of friction, bristle energy counted: for all speeds and bends
     ///   y^2/v - s1(v) y + (s1(v) + viscous) g(v) >= 0 for 0 <= y <= Fs; constant damping: viscous >= damping (Fs - Fc)/Fc
     /// For damping that falls, on 60 speeds a decade. Allocates nothing, but is no step.
     static bool passive(const parameters& p);
 
-    bool faulted() const noexcept { return out_.faulted(); }
+    bool faulted() const noexcept { return memory_.faulted(); }
     const parameters& given() const noexcept { return given_; }
-    const state& now() const noexcept { return state_; }
+    const state& now() const noexcept { return memory_.now(); }
 
 private:
     gain_of<Out, In, Real> damping(argument v) const noexcept {
@@ -124,8 +113,7 @@ private:
     gain_of<Out, In, Real> damping_;
     argument damping_velocity_;
     time period_;
-    state state_;
-    held_output<value> out_;
+    detail::friction_memory<outcome, argument> memory_;
 };
 
 template <signal_tag In, signal_tag Out, class Real> bool lugre<In, Out, Real>::passive(const parameters& p) {

@@ -65,16 +65,8 @@ public:
         require_positive("maxwell_slip.attraction", p.attraction);
     }
 
-    value operator()(argument v) noexcept {
-        const outcome to = after(v, period_);
-        if (!finite(v, to.force)) return out_.hold();
-        state_ = to.next;
-        return out_.keep(to.force);
-    }
-    void reset() noexcept {
-        state_ = {};
-        out_.reset();
-    }
+    value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }
+    void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
         state to;
         value y = curve_.viscous() * v;
@@ -83,9 +75,7 @@ public:
             to.elements[i] = {weights_[i] * level, v != argument()};
             y += to.elements[i].force;
         }
-        if (!finite(v, y)) return out_.raise();
-        state_ = to;
-        out_.reset(y);
+        memory_.settle(v, y, to);
     }
 
     /// The force after moving at v for h; changes nothing.
@@ -94,11 +84,11 @@ public:
         const bool forward = v >= argument(), moves = v != argument();
         const argument speed = forward ? v : -v;
         const value level = curve_.slip(v);
-        const auto fall = detail::slip_slope(curve_, v); // of the level by the speed, <= 0
+        const auto fall = detail::slip_slope(curve_, v, level); // of the level by the speed, <= 0
         const Real relaxes(attraction_ * h / level), kept = exp(-relaxes);
         outcome to{.force = curve_.viscous() * v, .slope = curve_.viscous(), .next = {}};
         for (std::size_t i = 0; i < N; ++i) {
-            const element& now = state_.elements[i];
+            const element& now = memory_.now().elements[i];
             const value along = forward ? now.force : -now.force; // positive: bent the way the axis goes
             const value share = weights_[i] * level;
             const gain_of<Out, In, Real> stiff = stiffness_[i] * h;
@@ -122,13 +112,13 @@ public:
         }
         return to;
     }
-    void become(const state& next) noexcept { state_ = next; }
+    void become(const state& next) noexcept { memory_.become(next); }
 
     /// Shares of the level as they are used, sum 1.
     const std::array<Real, N>& weights() const noexcept { return weights_; }
-    bool faulted() const noexcept { return out_.faulted(); }
+    bool faulted() const noexcept { return memory_.faulted(); }
     const parameters& given() const noexcept { return given_; }
-    const state& now() const noexcept { return state_; }
+    const state& now() const noexcept { return memory_.now(); }
 
 private:
     static std::array<Real, N> normalised(const parameters& p) {
@@ -167,8 +157,7 @@ private:
     quantity<unit_quotient<typename Out::unit, si::time>, Real> attraction_;
     time period_;
     std::array<gain_rate_of<Out, In, Real>, N> stiffness_{};
-    state state_;
-    held_output<value> out_;
+    detail::friction_memory<outcome, argument> memory_;
 };
 
 } // namespace quadrant

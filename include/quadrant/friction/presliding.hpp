@@ -12,14 +12,16 @@ namespace detail {
 template <class Real> inline constexpr double newton_accuracy = 2e-14;
 template <> inline constexpr double newton_accuracy<float> = 3e-7;
 
-/// d slip/d|v| of a Stribeck curve, never above zero; at rest, where an exponent below one is infinitely steep, as for one.
+/// d slip/d|v| of a Stribeck curve that has the level slip(v) at v, never above zero; at rest, where an exponent below one is
+/// infinitely steep, as for one.
 template <signal_tag In, signal_tag Out, class Real>
-gain_of<Out, In, Real> slip_slope(const stribeck<In, Out, Real>& curve, quantity_of<In, Real> v) noexcept {
+gain_of<Out, In, Real> slip_slope(const stribeck<In, Out, Real>& curve, quantity_of<In, Real> v,
+                                  quantity_of<Out, Real> level) noexcept {
     using std::abs, std::exp, std::log;
     const auto& given = curve.given();
     const Real delta = Real(given.shape);
     const quantity_of<In, Real> scale = in_real<Real>(given.stribeck_velocity);
-    const quantity_of<Out, Real> excess = curve.slip(v) - in_real<Real>(given.coulomb);
+    const quantity_of<Out, Real> excess = level - in_real<Real>(given.coulomb);
     if (given.shape == 1) return -(excess / scale);
     const Real ratio = abs((v / scale).value());
     if (ratio == Real(0)) return given.shape > 1 ? gain_of<Out, In, Real>() : -(excess / scale);
@@ -33,6 +35,37 @@ template <signal_tag In, signal_tag Out, class State, class Real> struct frictio
     gain_of<Out, In, Real> slope{}; ///< of that force by v
     State next{};                   ///< the memory then
 };
+
+namespace detail {
+/// Memory and last good output of a block that is a law with a memory; an outcome is taken over when it is finite.
+template <class Outcome, class Argument> class friction_memory {
+    using value = decltype(Outcome::force);
+    using state = decltype(Outcome::next);
+
+public:
+    value step(Argument v, const Outcome& to) noexcept {
+        if (!finite(v, to.force)) return out_.hold();
+        state_ = to.next;
+        return out_.keep(to.force);
+    }
+    void settle(Argument v, value force, const state& at) noexcept {
+        if (!finite(v, force)) return out_.raise();
+        state_ = at;
+        out_.reset(force);
+    }
+    void reset() noexcept {
+        state_ = {};
+        out_.reset();
+    }
+    void become(const state& next) noexcept { state_ = next; }
+    const state& now() const noexcept { return state_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+
+private:
+    state state_;
+    held_output<value> out_;
+};
+} // namespace detail
 
 /// A friction law that remembers where the axis came from: bristles, or elements that stick and slip. after(v, h) asks
 /// and changes nothing, become(next) lets it happen. The force at v = 0 is that of the memory; it does not fall with v

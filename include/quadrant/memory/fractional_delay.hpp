@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "cubic_weights.hpp"
 
 #include <array>
 #include <cmath>
@@ -84,9 +85,10 @@ public:
         const number u = periods - number(whole); // 0 ... 1 between the two samples around the instant
         if constexpr (Order == 1)
             weight_ = {Real(1 - u), Real(u)};
-        else // Lagrange at 1 + u on 0, 1, 2, 3
-            weight_ = {Real(-u * (1 - u) * (2 - u) / 6), Real((1 + u) * (1 - u) * (2 - u) / 2),
-                       Real((1 + u) * u * (2 - u) / 2), Real(-(1 + u) * u * (1 - u) / 6)};
+        else {
+            const auto cubic = detail::cubic_weights(u);
+            for (std::size_t i = 0; i <= Order; ++i) weight_[i] = Real(cubic[i]);
+        }
     }
 
     std::complex<double> response(frequency f) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "cubic_weights.hpp"
 
 #include <array>
 #include <cmath>
@@ -20,7 +21,8 @@ namespace quadrant {
 /// Ports: error in, what to add to it out, the same signal; y[k] does not depend on e[k].
 /// State: Order cycles of Q (e + r) and the taps of L and Q; `reset` leaves zeros and the cycle of the parameters;
 /// `settle(x)` the state of a constant x. With sum w Q(1) = 1 (integrates(), the usual case) no such state exists:
-/// `settle(x, y)`, where the next step gives y; settle(x) then takes the last output for y.
+/// `settle(x, y)`, where the next step gives y; settle(x) then takes the last output for y. A memory that gives constants
+/// no way out (weights, Q or L of sum zero) has no state for a y but zero: settle(x, y) then leaves that of a constant x.
 /// `cycle(d)` changes N between two steps; the memory is read in the old and the new way and one is faded into the other
 /// during `fade`, so y never jumps. A change asked for during a fade starts after it; the last one asked for wins.
 /// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates, and
@@ -125,8 +127,9 @@ public:
     }
     void settle(argument x, value y) noexcept {
         const Real gain = sum(learning_), g = sum(smoothing_) * sum(weights_);
+        if (!finite(x, y)) return out_.raise();
+        if (gain == Real(0) || g == Real(0)) return integrates() ? fill({}, {}, {}) : settle(x);
         const value r = y / gain;
-        if (!finite(x)) return out_.raise();
         fill(r / g, r, y);
     }
 
@@ -189,9 +192,7 @@ private:
         for (std::size_t i = 0; i < Order; ++i) {
             const number delay = number(double(i + 1)) * periods;
             const double whole = std::floor(detail::plain(delay));
-            const number u = delay - number(whole); // Lagrange at 1 + u on 0, 1, 2, 3
-            const std::array<number, 4> cubic = {-u * (1 - u) * (2 - u) / 6, (1 + u) * (1 - u) * (2 - u) / 2,
-                                                 (1 + u) * u * (2 - u) / 2, -(1 + u) * u * (1 - u) / 6};
+            const auto cubic = detail::cubic_weights(number(delay - number(whole)));
             out.first[i] = std::size_t(whole) - given_.ahead - half - 2;
             for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(given_.weights[i] * cubic[j]);
         }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 /// The steady state of a Kalman filter or of a quadratic regulator.
 namespace quadrant {

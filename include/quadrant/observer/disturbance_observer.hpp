@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
-#include "../filter/discretize.hpp"
 #include "../finite.hpp"
 #include "nominal_plant.hpp"
+#include "q_filter.hpp"
 
 #include <array>
 #include <cmath>
@@ -12,72 +12,6 @@
 #include <numbers>
 
 namespace quadrant {
-
-namespace detail {
-
-template <std::size_t A, std::size_t B, class Number>
-constexpr std::array<Number, A + B - 1> product(const std::array<Number, A>& a,
-                                                const std::array<Number, B>& b) {
-    std::array<Number, A + B - 1> c{};
-    for (std::size_t i = 0; i < A; ++i)
-        for (std::size_t j = 0; j < B; ++j) c[i + j] += a[i] * b[j];
-    return c;
-}
-
-/// (s + wc)^n by rising powers: its first m + 1 coefficients are the numerator of Q, eq. (4.7).
-template <std::size_t Order, class Number> std::array<Number, Order + 1> binomial(const Number& wc) {
-    std::array<Number, Order + 1> p{};
-    p[0] = 1;
-    for (std::size_t k = 0; k < Order; ++k)
-        for (std::size_t i = k + 2; i-- > 0;) p[i] = wc * p[i] + (i > 0 ? p[i - 1] : Number(0));
-    return p;
-}
-
-/// k^-Size' sum_i c_i s^i with s = k (1-w)/(1+w), w = z^-1, times (1+w)^Order: the bilinear form of one polynomial of a
-/// common fraction. `differences` factors (1-w) are left out: c_0 ... are then zero and the caller feeds differences.
-template <std::size_t Order, std::size_t Size, class Number>
-std::array<Number, Order + 1> bilinear_polynomial(const std::array<Number, Size>& c, double k,
-                                                  std::size_t differences) {
-    static_assert(Size <= Order + 1);
-    std::array<Number, Order + 1> sum{};
-    for (std::size_t i = differences; i < Size; ++i) {
-        std::array<Number, Order + 1> p{};
-        p[0] = 1;
-        for (std::size_t j = differences; j < Order; ++j) multiply(p, j < i ? -1.0 : 1.0);
-        const double power = std::pow(k, double(i) - double(Order));
-        for (std::size_t j = 0; j <= Order; ++j) sum[j] += c[i] * power * p[j];
-    }
-    return sum;
-}
-
-/// All roots of 1 + a[1] z^-1 + ... inside the unit circle, by Schur and Cohn's step-down.
-template <std::size_t Size, class Number> bool roots_inside_circle(std::array<Number, Size> a) {
-    for (std::size_t n = Size - 1; n > 0; --n) {
-        const double k = plain(a[n]) / plain(a[0]);
-        if (!(std::abs(k) < 1)) return false;
-        const auto old = a;
-        for (std::size_t i = 0; i < n; ++i) a[i] = old[i] - k * old[n - i];
-    }
-    return true;
-}
-
-} // namespace detail
-
-/// The low-pass of a disturbance observer: n equal poles at wc = 2 pi corner, the first m + 1 terms of the denominator above,
-/// so that 1 - Q has m + 1 zeros at s = 0 (m = 0 forgets a constant disturbance, m = 1 a ramp). [Jamaludin2008] (4.6), (4.7).
-template <std::size_t Order, std::size_t NumeratorOrder, class Number>
-continuous<Order, Number> q_filter(const quantity<si::frequency, Number>& corner) {
-    static_assert(NumeratorOrder < Order, "Q must be a low-pass: its numerator needs a lower order");
-    continuous<Order, Number> q{.denominator =
-                                    detail::binomial<Order>(Number(2 * std::numbers::pi * corner.value()))};
-    for (std::size_t i = 0; i <= NumeratorOrder; ++i) q.numerator[i] = q.denominator[i];
-    return q;
-}
-
-/// Q is a low-pass and Q/Gn does not differentiate: m < n and n - m >= relative degree.
-template <std::size_t Order, std::size_t NumeratorOrder, std::size_t RelativeDegree>
-concept q_is_not_below_the_relative_degree = (NumeratorOrder < Order) &&
-                                             (Order - NumeratorOrder >= RelativeDegree);
 
 /// What pushes the axis beside the command, as a command: subtract it and the axis behaves as its nominal plant.
 ///   d = Q (Gn^-1 z - u),   u = what is applied;   Q(s) = sum_{i=0..m} q_i s^i / (s + wc)^n,   wc = 2 pi corner
@@ -204,17 +138,17 @@ public:
     /// Q as it runs.
     std::complex<double> q(frequency f) const {
         const auto back = shift(f);
-        return sum(from_command_, back) / under(back);
+        return detail::polynomial(from_command_, back) / under(back);
     }
     /// Q/Gn as it runs.
     std::complex<double> inverse(frequency f) const {
         const auto back = shift(f);
-        return sum(from_measured_, back) / under(back) * (integrates_ ? 1.0 - back : 1.0);
+        return detail::polynomial(from_measured_, back) / under(back) * (integrates_ ? 1.0 - back : 1.0);
     }
     /// Gn(j w), continuous.
     std::complex<double> nominal(frequency f) const {
         const std::complex<double> s(0, 2 * std::numbers::pi * f.value());
-        return sum(given_.plant.numerator, s) / sum(given_.plant.denominator, s);
+        return detail::polynomial(given_.plant.numerator, s) / detail::polynomial(given_.plant.denominator, s);
     }
     value disturbance() const noexcept { return out_.last(); } ///< with what was applied, if that has been told
     bool faulted() const noexcept { return out_.faulted(); }
@@ -236,13 +170,9 @@ private:
     std::complex<double> shift(frequency f) const {
         return std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
     }
-    template <class Coefficients>
-    static std::complex<double> sum(const Coefficients& c, std::complex<double> x) {
-        std::complex<double> y = 0;
-        for (std::size_t i = c.size(); i-- > 0;) y = y * x + detail::plain(c[i]);
-        return y;
+    std::complex<double> under(std::complex<double> back) const {
+        return 1.0 + back * detail::polynomial(feedback_, back);
     }
-    std::complex<double> under(std::complex<double> back) const { return 1.0 + back * sum(feedback_, back); }
 
     parameters given_;
     duration period_;

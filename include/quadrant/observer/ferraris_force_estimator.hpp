@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../filter/transfer_function.hpp"
-#include "disturbance_observer.hpp"
+#include "../finite.hpp"
+#include "q_filter.hpp"
 
 #include <complex>
 #include <cstddef>

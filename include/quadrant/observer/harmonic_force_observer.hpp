@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../finite.hpp"
-#include "dare.hpp"
+#include "harmonic_design.hpp"
 #include "nominal_plant.hpp"
 
 #include <array>
@@ -12,35 +12,6 @@
 #include <numbers>
 
 namespace quadrant {
-
-/// Design by eigenvalues: where the errors of the 2 + 2 Harmonics states die out, as poles in s [1/s].
-template <std::size_t Harmonics> struct placed_poles {
-    std::array<std::complex<double>, 2 + 2 * Harmonics> poles{}; ///< left of the axis, in conjugate pairs
-
-    /// All at -decay. Gains grow with the power 2 + 2 Harmonics of it: for one or two harmonics.
-    static placed_poles equal(frequency decay) {
-        placed_poles p;
-        p.poles.fill(-decay.value());
-        return p;
-    }
-    /// Each at its own frequency, shifted left by decay; position and velocity at -decay. For any number of harmonics.
-    static placed_poles shifted(const std::array<frequency, Harmonics>& harmonics, frequency decay) {
-        placed_poles p = equal(decay);
-        for (std::size_t i = 0; i < Harmonics; ++i) {
-            const double w = 2 * std::numbers::pi * harmonics[i].value();
-            p.poles[2 + 2 * i] = {-decay.value(), w};
-            p.poles[3 + 2 * i] = {-decay.value(), -w};
-        }
-        return p;
-    }
-};
-/// Design by noise (LQE): a steady Kalman filter.
-template <signal_tag Command> struct expected_noise {
-    quantity_of<signal::position> encoder; ///< standard deviation of a reading; > 0
-    quantity_of<Command> drift;            ///< that each amplitude gathers in one second; > 0
-};
-template <class D, class Command, std::size_t Harmonics>
-concept harmonic_design = std::same_as<D, placed_poles<Harmonics>> || std::same_as<D, expected_noise<Command>>;
 
 /// Cutting forces of known frequencies, from the position and the command applied, as a command: subtract their sum.
 ///   dx/dt = v, dv/dt = -A v + B (u + sum q_i),  q_i[k+1] = cos(w_i T) q_i + sin(w_i T) r_i,  r_i[k+1] = cos r_i - sin q_i
@@ -97,51 +68,38 @@ public:
                 require(p.harmonics[i] != p.harmonics[j], "harmonic_force_observer.harmonics", p.harmonics[i],
                         "must not be there twice");
         }
-        // In units of one metre, the period, and the command that moves by one in the other: all of order one.
-        const double T = period.value(), slow = p.plant.damping.value() * T,
-                     thrust = p.plant.gain.value() * T * T;
-        const auto axis = sampled<2, double>({{{0, 1}, {0, -slow}}}, {0, 1}, {}, 1.0);
-        matrix<order> noise{};
-        column<order> read{1};
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t j = 0; j < 2; ++j) step_[i][j] = axis.step[i][j];
-            for (std::size_t j = 2; j < order; j += 2) step_[i][j] = axis.from_input[i];
-            from_command_[i] = axis.from_input[i];
-        }
+        const double T = period.value(), thrust = p.plant.gain.value() * T * T;
+        std::array<double, Harmonics> angles{};
         for (std::size_t i = 0; i < Harmonics; ++i) {
-            const double angle = 2 * std::numbers::pi * p.harmonics[i].value() * T;
-            const std::size_t q = 2 + 2 * i;
-            step_[q][q] = step_[q + 1][q + 1] = std::cos(angle);
-            step_[q][q + 1] = std::sin(angle);
-            step_[q + 1][q] = -std::sin(angle);
-            ahead_[q] = std::cos(angle * p.lead.value() / T);
-            ahead_[q + 1] = std::sin(angle * p.lead.value() / T);
+            angles[i] = 2 * std::numbers::pi * p.harmonics[i].value() * T;
+            ahead_[2 + 2 * i] = std::cos(angles[i] * p.lead.value() / T);
+            ahead_[3 + 2 * i] = std::sin(angles[i] * p.lead.value() / T);
         }
+        model_ = detail::harmonic_model<Harmonics>::of(p.plant.damping.value() * T, angles);
         if constexpr (std::same_as<Design, expected_noise<Command>>) {
             require_positive("harmonic_force_observer.design.encoder", p.design.encoder);
             require_positive("harmonic_force_observer.design.drift", p.design.drift);
             const double wander = p.design.drift.value() * thrust / p.design.encoder.value();
-            for (std::size_t i = 2; i < order; ++i) noise[i][i] = wander * wander * T;
-            scaled_gain_ = kalman_gain(step_, read, noise, 1.0).gain;
+            scaled_gain_ = model_.gain_for(wander * wander * T);
         } else {
-            scaled_gain_ = placed(p, T);
+            require(p.plant.damping.value() > 0, "harmonic_force_observer.plant.damping", p.plant.damping,
+                    "must be above 0 for placed poles (or use expected_noise)");
+            scaled_gain_ = model_.gain_for(p.design.poles, T);
         }
-        auto rest = detail::identity<order>();
-        for (std::size_t i = 0; i < order; ++i) rest[i][0] -= scaled_gain_[i];
-        radius_ = spectral_radius(detail::multiplied(step_, rest));
+        radius_ = model_.radius(scaled_gain_);
         require(radius_ < 1 - 1e-7, "harmonic_force_observer.design", radius_,
                 "leaves an eigenvalue at or outside the unit circle (in rounding, if the poles are many and "
                 "equal)");
 
         const std::array unit{1.0, 1 / T, 1 / thrust}; // of position, velocity, command
-        position_from_velocity_ = Real(step_[0][1] * T);
-        position_from_command_ = Real(from_command_[0] * thrust);
-        velocity_from_velocity_ = Real(step_[1][1]);
-        velocity_from_command_ = Real(from_command_[1] * thrust / T);
+        position_from_velocity_ = Real(model_.step[0][1] * T);
+        position_from_command_ = Real(model_.from_command[0] * thrust);
+        velocity_from_velocity_ = Real(model_.step[1][1]);
+        velocity_from_command_ = Real(model_.from_command[1] * thrust / T);
         for (std::size_t i = 0; i < order; ++i) gain_[i] = Real(scaled_gain_[i] * unit[i < 2 ? i : 2]);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             const std::size_t q = 2 + 2 * i;
-            turn_[i] = {Real(step_[q][q]), Real(step_[q][q + 1])};
+            turn_[i] = {Real(model_.step[q][q]), Real(model_.step[q][q + 1])};
             lead_[i] = {Real(ahead_[q]), Real(ahead_[q + 1])};
         }
         thrust_ = thrust;
@@ -187,8 +145,8 @@ public:
     /// From the position to the sum; and from the command, as the second argument, to the sum.
     std::complex<double> response(frequency f) const { return through(f, scaled_gain_) / thrust_; }
     std::complex<double> response_to_command(frequency f) const {
-        auto b = from_command_;
-        for (std::size_t i = 0; i < order; ++i) b[i] -= scaled_gain_[i] * from_command_[0];
+        auto b = model_.from_command;
+        for (std::size_t i = 0; i < order; ++i) b[i] -= scaled_gain_[i] * model_.from_command[0];
         return through(f, b);
     }
     bool faulted() const noexcept { return out_.faulted(); }
@@ -199,49 +157,6 @@ private:
     struct rotation {
         Real cosine, sine;
     };
-    /// det(z - F (1 - L C)) = prod(z - p_j): residues at the eigenvalues of F, carried back by its eigenvectors.
-    column<order> placed(const parameters& p, double T) const {
-        using complex = std::complex<double>;
-        require(p.plant.damping.value() > 0, "harmonic_force_observer.plant.damping", p.plant.damping,
-                "must be above 0 for placed poles (or use expected_noise)");
-        std::array<complex, order> pole, mode; // wanted; of F
-        for (std::size_t i = 0; i < order; ++i) {
-            const complex s = p.design.poles[i];
-            require(std::isfinite(s.real()) && s.real() < 0, "harmonic_force_observer.design.poles", s.real(),
-                    "must be finite and left of the imaginary axis");
-            std::size_t pairs = 0, same = 0;
-            for (const complex& other : p.design.poles) pairs += other == std::conj(s), same += other == s;
-            require(pairs == same, "harmonic_force_observer.design.poles", s.imag(),
-                    "must come in conjugate pairs");
-            pole[i] = std::exp(s * T);
-        }
-        mode[0] = 1;
-        mode[1] = step_[1][1];
-        for (std::size_t i = 0; i < Harmonics; ++i) {
-            mode[2 + 2 * i] = {step_[2 + 2 * i][2 + 2 * i], step_[2 + 2 * i][3 + 2 * i]};
-            mode[3 + 2 * i] = std::conj(mode[2 + 2 * i]);
-        }
-        const auto residue = [&](std::size_t i) {
-            complex product = 1.0;
-            for (std::size_t j = 0; j < order; ++j)
-                product *= (mode[i] - pole[j]) / (j == i ? mode[i] : mode[i] - mode[j]);
-            return product;
-        };
-        column<order> gain{};
-        const double at_rest = residue(0).real(), coasting = residue(1).real();
-        gain[0] = at_rest + coasting; // all eigenvectors are scaled to a position of one
-        gain[1] = coasting * (step_[1][1] - 1) / step_[0][1];
-        for (std::size_t i = 0; i < Harmonics; ++i) {
-            const complex z = mode[2 + 2 * i], v = from_command_[1] / (z - step_[1][1]); // of q = 1, r = j
-            const complex x = (step_[0][1] * v + from_command_[0]) / (z - 1.0),
-                          q = 2.0 * residue(2 + 2 * i) / x;
-            gain[0] += (q * x).real();
-            gain[1] += (q * v).real();
-            gain[2 + 2 * i] = q.real();
-            gain[3 + 2 * i] = -q.imag();
-        }
-        return gain;
-    }
     std::complex<double> through(frequency f, const column<order>& entering) const {
         using complex = std::complex<double>;
         const complex back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
@@ -251,7 +166,7 @@ private:
         for (std::size_t i = 0; i < order; ++i) {
             b[i][0] = entering[i];
             for (std::size_t j = 0; j < order; ++j)
-                a[i][j] -= back * (step_[i][j] - scaled_gain_[i] * step_[0][j]);
+                a[i][j] -= back * (model_.step[i][j] - scaled_gain_[i] * model_.step[0][j]);
         }
         const auto x = detail::solved(a, b);
         complex sum = 0;
@@ -265,8 +180,8 @@ private:
         velocity_from_command_{};
     std::array<rotation, Harmonics> turn_{}, lead_{};
     column<order, Real> gain_{};
-    column<order> scaled_gain_{}, from_command_{}, ahead_{}; ///< the design, for response()
-    matrix<order> step_{};
+    detail::harmonic_model<Harmonics> model_{}; ///< and the design, for response()
+    column<order> scaled_gain_{}, ahead_{};
     double thrust_ = 1, radius_ = 0;
     state state_;
     argument innovation_{};

@@ -16,8 +16,8 @@ inline constexpr effect backlash{
         return {{{.key = "backlash_m",
                   .of = of,
                   .start = detail::best_start(s, of, {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}),
-                  .low = s.record.score.floor / 0.4,
-                  .high = std::max(1e-3, s.record.score.floor * 100),
+                  .low = s.record.resolution,
+                  .high = std::max(1e-3, 40 * s.record.resolution),
                   .logarithmic = true,
                   .step = 1e-2}}};
     },

@@ -21,7 +21,7 @@ inline constexpr effect encoder_cyclic_error{
         s.record.observer.run(s.leader, innovation);
         std::vector<std::vector<parameter>> out;
         // Coarse and fine periods apart: at constant speed the rows themselves are a grating, and alias one into the other.
-        const double shortest = std::max(8 * s.record.score.floor / 0.4, travel / 1e5);
+        const double shortest = std::max(8 * s.record.resolution, travel / 1e5);
         for (double longest = 0.5 * travel; longest > shortest; longest /= 20)
             for (double period : spatial_peaks(innovation, s.record.position, longest,
                                                std::max(shortest, longest / 20), 1, s.record.score.skip))

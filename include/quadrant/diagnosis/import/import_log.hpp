@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../log.hpp"
-#include "../read/decimal.hpp"
 #include "../read/sample_clock.hpp"
-#include "map.hpp"
+#include "foreign_lines.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -19,7 +18,7 @@ namespace detail {
 class importer {
 public:
     importer(const import_map& map, std::string_view text, std::string_view file)
-        : map_(map), file_(file), rest_(without_byte_order_mark(text)) {}
+        : map_(map), file_(file), lines_(map, text, file) {}
 
     imported_log take() {
         if (map_.named()) find_header();
@@ -42,54 +41,12 @@ private:
         written_step step{};
     };
 
-    [[noreturn]] void refuse(std::size_t offset, std::string_view message) const {
-        throw bad_input(file_, line_, characters(current_.substr(0, offset)) + 1, message);
-    }
-    bool next_line() {
-        if (rest_.empty()) return false;
-        const std::size_t end = rest_.find('\n');
-        current_ = rest_.substr(0, end);
-        rest_.remove_prefix(end == rest_.npos ? rest_.size() : end + 1);
-        if (current_.ends_with('\r')) current_.remove_suffix(1);
-        ++line_;
-        return true;
-    }
-    static bool blank(char c) { return c == ' ' || c == '\t'; }
-
-    /// Cells of the current line with their offsets; quotes around a cell are taken off.
-    void split() {
-        cells_.clear();
-        std::size_t at = 0;
-        const std::string_view line = current_;
-        const bool runs = map_.separator == ' ';
-        while (at <= line.size()) {
-            while (at < line.size() && line[at] != map_.separator && blank(line[at])) ++at;
-            if (runs)
-                while (at < line.size() && blank(line[at])) ++at;
-            std::size_t end = at;
-            if (at < line.size() && line[at] == '"') {
-                end = line.find('"', at + 1);
-                if (end == line.npos) refuse(at, "a quote is not closed before the end of the line");
-                cells_.emplace_back(at, line.substr(at + 1, end - at - 1));
-                while (end < line.size() && line[end] != map_.separator) ++end;
-            } else {
-                while (end < line.size() && (runs ? !blank(line[end]) : line[end] != map_.separator)) ++end;
-                std::string_view cell = line.substr(at, end - at);
-                cell = cell.substr(0, cell.find_last_not_of(" \t") + 1);
-                if (!(runs && cell.empty())) cells_.emplace_back(at, cell);
-            }
-            at = end + 1;
-        }
-    }
-
     void find_header() {
-        while (next_line()) {
-            split();
-            const bool here = map_.header_line > 0
-                                  ? line_ == map_.header_line
-                                  : !cells_.empty() && cells_[0].second == map_.header_begins_with;
+        while (lines_.next()) {
+            const bool here = map_.header_line > 0 ? lines_.number() == map_.header_line
+                                                   : lines_.begins_with(map_.header_begins_with);
             if (!here) continue;
-            for (const auto& cell : cells_) names_.emplace_back(cell.second);
+            for (const auto& cell : lines_.cells()) names_.emplace_back(cell.text);
             return;
         }
         throw bad_input(file_,
@@ -105,64 +62,56 @@ private:
         if (!s.column.empty()) {
             const auto found = std::find(names_.begin(), names_.end(), s.column);
             if (found == names_.end())
-                throw bad_input(file_, line_, 1,
-                                fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
-                                            suggestion(s.column, names_), s.place, map_.file));
+                lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
+                                             suggestion(s.column, names_), s.place, map_.file));
             if (std::find(found + 1, names_.end(), s.column) != names_.end())
-                throw bad_input(file_, line_, 1,
-                                fmt::format("column {} is there twice: give its number in {} of {}",
-                                            in_quotes(s.column), s.place, map_.file));
+                lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
+                                             in_quotes(s.column), s.place, map_.file));
             index = static_cast<std::size_t>(found - names_.begin());
         }
         columns_.push_back({name, index, s.factor});
     }
 
-    const char* parse(std::string_view cell, double& value) const {
-        if (map_.decimal == '.') return parse_number(cell, value);
-        if (cell.find('.') != cell.npos) return "has a decimal point where the map has a comma";
-        std::string with_point(cell);
-        std::replace(with_point.begin(), with_point.end(), ',', '.');
-        return parse_number(with_point, value);
-    }
-
     void read_rows() {
         std::size_t skipped = 0;
         bool blank_line = false;
-        while (next_line()) {
-            split();
-            const bool empty = current_.find_first_not_of(" \t") == current_.npos;
-            if (!map_.end.empty() && !cells_.empty() && cells_[0].second == map_.end) break;
+        while (lines_.next()) {
+            const auto& cells = lines_.cells();
+            if (!map_.end.empty() && lines_.begins_with(map_.end)) break;
             if (first_lines_.empty()) { // units, types and the like stand between the names and the rows
                 double number = 0;
                 const std::size_t look = columns_.front().index;
-                if (empty || (map_.named() && (look >= cells_.size() || parse(cells_[look].second, number)))) {
+                if (lines_.blank() ||
+                    (map_.named() && (look >= cells.size() || lines_.parse(cells[look].text, number)))) {
                     ++skipped;
                     continue;
                 }
-            } else if (empty) {
+            } else if (lines_.blank()) {
                 blank_line = true;
                 continue;
             }
-            if (blank_line) refuse(0, "the line before is blank, inside the log");
-            first_lines_.push_back(line_);
-            for (auto& c : columns_) {
-                if (c.index >= cells_.size())
-                    refuse(current_.size(), fmt::format("the row has {} cells; {} is number {}", cells_.size(),
-                                                        c.name, c.index + 1));
-                const auto [offset, cell] = cells_[c.index];
-                double value = 0;
-                if (const char* fault = parse(cell, value))
-                    refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(cell), fault));
-                c.values.push_back(value);
-                std::string as_written(cell);
-                std::replace(as_written.begin(), as_written.end(), ',', '.');
-                c.step.add(as_written, value);
-            }
+            if (blank_line) lines_.refuse(0, "the line before is blank, inside the log");
+            first_lines_.push_back(lines_.number());
+            for (auto& c : columns_) read_cell(c, cells);
         }
         if (first_lines_.size() < 2) throw bad_input(file_, "holds no rows of numbers that the map can read");
         if (skipped > 0)
             out_.notes.push_back(fmt::format(
                 "{} lines between the names of the columns and the first row are skipped", skipped));
+    }
+
+    void read_cell(column& c, const std::vector<foreign_lines::cell>& cells) const {
+        if (c.index >= cells.size())
+            lines_.refuse(lines_.length(), fmt::format("the row has {} cells; {} is number {}", cells.size(),
+                                                       c.name, c.index + 1));
+        const auto [offset, text] = cells[c.index];
+        double value = 0;
+        if (const char* fault = lines_.parse(text, value))
+            lines_.refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(text), fault));
+        c.values.push_back(value);
+        std::string as_written(text);
+        std::replace(as_written.begin(), as_written.end(), ',', '.');
+        c.step.add(as_written, value);
     }
 
     /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so that its
@@ -177,64 +126,72 @@ private:
     }
 
     imported_log assemble() {
-        const std::size_t rows = first_lines_.size();
-        std::vector<double> t(rows);
-        if (map_.time) {
-            const auto& c = columns_.front();
-            for (std::size_t k = 0; k < rows; ++k) t[k] = (c.values[k] - c.values[0]) * c.factor;
-            const auto clock = read_clock(t, [&](std::size_t row, const std::string& message) {
-                throw bad_input(file_, first_lines_[row], 1, message);
-            });
-            out_.log.sample_period_s = clock.period;
-        } else {
-            for (std::size_t k = 0; k < rows; ++k) t[k] = static_cast<double>(k) * map_.period_s;
-            out_.log.sample_period_s = map_.period_s;
-            out_.notes.push_back(fmt::format(
-                "no time column: the rows are taken to be {:g} s apart, none missing", map_.period_s));
-        }
         out_.log.file = one_line(file_);
-        out_.log.samples = rows;
-        const std::size_t first = map_.time ? 1 : 0;
-        out_.text = "t_s";
-        for (std::size_t i = first; i < columns_.size(); ++i) out_.text += ',' + columns_[i].name;
-        out_.text += '\n';
-        std::vector<int> digits;
-        for (std::size_t i = first; i < columns_.size(); ++i) {
-            const auto [d, exact] = decimals(columns_[i]);
-            digits.push_back(d);
-            if (!exact && columns_[i].step.step() > 0)
-                out_.notes.push_back(fmt::format("{} is written with {} decimals; its own rounding is {:.3g}",
-                                                 columns_[i].name, d,
-                                                 columns_[i].step.step() * std::abs(columns_[i].factor)));
-        }
-        for (std::size_t k = 0; k < rows; ++k) {
-            out_.text += fmt::format("{:.9f}", t[k]);
-            for (std::size_t i = first; i < columns_.size(); ++i)
-                out_.text +=
-                    fmt::format(",{:.{}f}", columns_[i].values[k] * columns_[i].factor, digits[i - first]);
-            out_.text += '\n';
-        }
-        for (std::size_t i = 0; i < map_.axes.size(); ++i) {
-            const auto in_si = [&](std::size_t which) {
-                auto& c = columns_[first + 3 * i + which];
-                for (double& x : c.values) x *= c.factor;
-                return std::move(c.values);
-            };
+        out_.log.samples = first_lines_.size();
+        write(stamps());
+        std::size_t next = first_signal();
+        const auto in_si = [&] {
+            column& c = columns_[next++];
+            for (double& x : c.values) x *= c.factor;
+            return std::move(c.values);
+        };
+        for (const auto& axis : map_.axes) {
             axis_log a;
-            a.name = map_.axes[i].name;
-            a.command_unit = map_.axes[i].command.si;
-            a.reference = in_si(0);
-            a.position = in_si(1);
-            a.command = in_si(2);
+            a.name = axis.name;
+            a.command_unit = axis.command.si;
+            a.reference = in_si();
+            a.position = in_si();
+            a.command = in_si();
             out_.log.axes.push_back(std::move(a));
         }
         return std::move(out_);
     }
 
+    std::size_t first_signal() const { return map_.time ? 1 : 0; }
+
+    /// Time of each row from the first; sets the sample period.
+    std::vector<double> stamps() {
+        std::vector<double> t(first_lines_.size());
+        if (map_.time) {
+            const auto& c = columns_.front();
+            for (std::size_t k = 0; k < t.size(); ++k) t[k] = (c.values[k] - c.values[0]) * c.factor;
+            const auto clock = read_clock(t, [&](std::size_t row, const std::string& message) {
+                throw bad_input(file_, first_lines_[row], 1, message);
+            });
+            out_.log.sample_period_s = clock.period;
+        } else {
+            for (std::size_t k = 0; k < t.size(); ++k) t[k] = static_cast<double>(k) * map_.period_s;
+            out_.log.sample_period_s = map_.period_s;
+            out_.notes.push_back(fmt::format(
+                "no time column: the rows are taken to be {:g} s apart, none missing", map_.period_s));
+        }
+        return t;
+    }
+
+    void write(const std::vector<double>& t) {
+        const std::span signals = std::span(columns_).subspan(first_signal());
+        std::vector<int> digits;
+        out_.text = "t_s";
+        for (const column& c : signals) {
+            out_.text += ',' + c.name;
+            const auto [d, exact] = decimals(c);
+            digits.push_back(d);
+            if (!exact && c.step.step() > 0)
+                out_.notes.push_back(fmt::format("{} is written with {} decimals; its own rounding is {:.3g}",
+                                                 c.name, d, c.step.step() * std::abs(c.factor)));
+        }
+        out_.text += '\n';
+        for (std::size_t k = 0; k < t.size(); ++k) {
+            out_.text += fmt::format("{:.9f}", t[k]);
+            for (std::size_t i = 0; i < signals.size(); ++i)
+                out_.text += fmt::format(",{:.{}f}", signals[i].values[k] * signals[i].factor, digits[i]);
+            out_.text += '\n';
+        }
+    }
+
     const import_map& map_;
-    std::string_view file_, rest_, current_{};
-    std::size_t line_ = 0;
-    std::vector<std::pair<std::size_t, std::string_view>> cells_{};
+    std::string_view file_;
+    foreign_lines lines_;
     std::vector<std::string> names_{};
     std::vector<column> columns_{};
     std::vector<std::size_t> first_lines_{}; ///< line of each row

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/axis_name.hpp"
-#include "../read/json_node.hpp"
+#include "../read/json_keys.hpp"
 #include "units.hpp"
 
 namespace quadrant::diagnosis {
@@ -41,9 +40,8 @@ public:
     import_map read() {
         constexpr std::string_view keys[] = {"schema", "comment", "separator", "decimal",
                                              "header", "end",     "time",      "axes"};
-        known(top_.object(), keys);
-        if (const auto given = top_.need("schema"); given.text() != "quadrant.import/1")
-            given.refuse("must be \"quadrant.import/1\"");
+        refuse_unknown_keys(top_.object(), keys);
+        need_schema(top_, "quadrant.import/1");
         out_.file = one_line(top_.file);
         if (const auto given = top_.find("separator")) out_.separator = separator(*given);
         if (const auto given = top_.find("decimal")) {
@@ -55,22 +53,13 @@ public:
         if (const auto given = top_.find("header")) read_header(*given);
         if (const auto given = top_.find("end")) out_.end = given->text();
         read_time(top_.need("time").object());
-        const json_node axes = top_.need("axes").object();
-        if (axes.value->empty()) axes.refuse("must name at least one axis");
-        for (const auto& [name, axis] : axes.value->items()) {
-            if (!is_axis_name(name))
-                axes.refuse(fmt::format("{}: an axis is named by letters, digits, _ and -", in_quotes(name)));
-            out_.axes.push_back(read_axis(name, axes.at(name, axis).object()));
-        }
+        each_axis(top_, [&](const std::string& name, const json_node& axis) {
+            out_.axes.push_back(read_axis(name, axis));
+        });
         return std::move(out_);
     }
 
 private:
-    static void known(const json_node& node, std::span<const std::string_view> keys) {
-        for (const auto& [key, value] : node.value->items())
-            if (std::find(keys.begin(), keys.end(), key) == keys.end())
-                node.at(key, value).refuse("unknown key" + suggestion(key, keys));
-    }
     static char separator(const json_node& node) {
         const std::string& text = node.text();
         if (text == "tab") return '\t';
@@ -89,11 +78,10 @@ private:
         out_.header_line = static_cast<std::size_t>(node.number(line));
     }
     void read_time(const json_node& node) {
-        constexpr number_rule positive{"must be a number > 0", [](double x) { return x > 0; }};
         if (const auto period = node.find("period_s")) {
             constexpr std::string_view keys[] = {"period_s"};
-            known(node, keys);
-            out_.period_s = period->number(positive);
+            refuse_unknown_keys(node, keys);
+            out_.period_s = period->number(rule::positive);
         } else {
             out_.time = read_source(node);
             if (out_.time->si != "s") node.need("unit").refuse("must be a unit of time");
@@ -104,7 +92,7 @@ private:
         constexpr number_rule index{"must be the name of a column, or its number from 1",
                                     [](double x) { return x >= 1 && x <= 1e4 && x == std::floor(x); }};
         constexpr number_rule not_zero{"must be a number, not 0", [](double x) { return x != 0; }};
-        known(node.object(), keys);
+        refuse_unknown_keys(node.object(), keys);
         import_map::source s;
         s.place = node.path;
         const json_node column = node.need("column");
@@ -128,7 +116,7 @@ private:
     }
     import_map::axis read_axis(const std::string& name, const json_node& node) const {
         constexpr std::string_view keys[] = {"reference", "position", "command"};
-        known(node, keys);
+        refuse_unknown_keys(node, keys);
         import_map::axis a{name, read_source(node.need("reference")), read_source(node.need("position")),
                            read_source(node.need("command"))};
         const bool rotary = a.position.si == "rad";

@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "machine_keys.hpp"
+#include "axis_name.hpp"
+#include "json_node.hpp"
 
+#include <variant>
+
+/// What the readers of JSON files share: schema, axes, unknown keys, and tables of numbers.
 namespace quadrant::diagnosis::detail {
+
+namespace rule {
+inline constexpr number_rule positive{"must be a number > 0", [](double x) { return x > 0; }};
+inline constexpr number_rule not_negative{"must be a number >= 0", [](double x) { return x >= 0; }};
+inline constexpr number_rule any_number{"must be a number", [](double) { return true; }};
+inline constexpr number_rule up_to_a_second{"must be a number from 0 to 1 (seconds)",
+                                            [](double x) { return x >= 0 && x <= 1; }};
+inline constexpr number_rule asymmetry{"must be a number between -1 and 1 (relative)",
+                                       [](double x) { return x > -1 && x < 1; }};
+inline constexpr number_rule above_minus_one{"must be a number above -1 (relative)",
+                                             [](double x) { return x > -1; }};
+inline constexpr number_rule relative{"must be a number from 0 to below 1 (relative: 0.05 is 5 %)",
+                                      [](double x) { return x >= 0 && x < 1; }};
+inline constexpr number_rule bits{"must be a whole number from 1 to 32",
+                                  [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }};
+} // namespace rule
 
 using key_names = std::span<const std::string_view>;
 
-inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_names others) {
+inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_names others = {}) {
     std::vector<std::string_view> known(numbers.begin(), numbers.end());
     known.insert(known.end(), others.begin(), others.end());
     for (const auto& [key, value] : node.value->items()) {
@@ -16,13 +36,48 @@ inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_na
     }
 }
 
+inline void need_schema(const json_node& top, std::string_view name) {
+    if (const auto given = top.object().need("schema"); given.text() != name)
+        given.refuse(fmt::format("must be \"{}\"", name));
+}
+
+/// Each of the axes that a machine file or a map must name: use(name, node).
+template <class Use> void each_axis(const json_node& top, Use use) {
+    const json_node axes = top.need("axes").object();
+    if (axes.value->empty()) axes.refuse("must name at least one axis");
+    for (const auto& [name, axis] : axes.value->items()) {
+        if (!is_axis_name(name))
+            axes.refuse(fmt::format("{}: an axis is named by letters, digits, _ and -", in_quotes(name)));
+        use(name, axes.at(name, axis).object());
+    }
+}
+
+/// One number of a file and the member that holds it; an optional one is absent where the file has no such key, another
+/// one is 0 there.
+template <class Target> struct number_key {
+    const char* name;
+    number_rule rule;
+    std::variant<double Target::*, std::optional<double> Target::*> place;
+    bool needed = false;
+
+    void set(Target& target, double value) const {
+        std::visit([&](auto member) { target.*member = value; }, place);
+    }
+    std::optional<double> get(const Target& target) const { // nothing: no key says the same
+        const auto value =
+            std::visit([&](auto member) -> std::optional<double> { return target.*member; }, place);
+        const bool zero_if_absent = place.index() == 0 && !needed;
+        return zero_if_absent && value == 0.0 ? std::nullopt : value;
+    }
+};
+
 template <class Target, std::size_t N>
 void read_numbers(const json_node& node, const std::array<number_key<Target>, N>& keys, key_names others,
                   Target& target) {
     refuse_unknown_keys(node.object(), names_of(keys), others);
     for (const auto& key : keys) {
         if (key.needed) node.need(key.name);
-        if (const auto given = node.find(key.name)) key.of(target) = given->number(key.rule);
+        if (const auto given = node.find(key.name)) key.set(target, given->number(key.rule));
     }
 }
 
