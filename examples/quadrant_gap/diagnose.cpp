@@ -20,6 +20,7 @@ namespace {
 
 struct diagnose_options {
     std::string machine, log, holdout, json, report;
+    std::size_t threads = 0;
     terminal say;
 };
 
@@ -55,8 +56,8 @@ void run(const diagnose_options& o) {
         check_match(machine, *holdout);
     }
     progress_line tell(o);
-    const auto result =
-        diagnose(machine, log, holdout ? &*holdout : nullptr, [&](const std::string& s) { tell(s); });
+    const auto result = diagnose(machine, log, holdout ? &*holdout : nullptr,
+                                 [&](const std::string& s) { tell(s); }, {.threads = o.threads});
     tell.clear();
     if (!o.json.empty())
         write_aside(o.json,
@@ -78,6 +79,8 @@ void add_diagnose(CLI::App& app) {
                         "log of another motion of the same machine, to judge the forecast on");
     command->add_option("--json", o->json, "write the diagnosis (JSON)");
     command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    command->add_option("--threads", o->threads,
+                        "at most; 0: as many as there are cores. The answer is the same");
     add_terminal_options(*command, o->say, "every model tried, with its gain");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }

@@ -5,6 +5,7 @@
 #include <quadrant/diagnosis/diagnose.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 /// What the tests ask of a diagnosis.
 namespace workshop {
@@ -24,6 +25,13 @@ inline std::vector<std::string> claims(const diagnosis_result& d) {
     return out;
 }
 
+/// For a message: the verdict and every suspect with its probability.
+inline std::string said(const diagnosis_result& d) {
+    std::string out = name_of(d.verdict);
+    for (const cause& c : d.causes) out += fmt::format(" {} {:.2f}", c.effect, c.probability);
+    return out + "; " + d.remaining_structure;
+}
+
 inline const estimate& value_of(const cause& c, const std::string& key) {
     for (const auto& p : c.parameters)
         if (p.key == key) return p.values.at(0);
@@ -36,6 +44,7 @@ inline const estimate& value_of(const cause& c, const std::string& key) {
 inline void named(const diagnosis_result& d, const std::string& effect, const std::string& key, double truth,
                   double within) {
     CAPTURE(effect);
+    CAPTURE(said(d));
     CHECK(std::string(name_of(d.verdict)) == "explained");
     REQUIRE(claims(d) == std::vector{effect});
     const cause& c = d.causes.front();
@@ -50,6 +59,7 @@ inline void named(const diagnosis_result& d, const std::string& effect, const st
 
 /// Something is wrong and no name is claimed for it.
 inline void abstains(const diagnosis_result& d) {
+    CAPTURE(said(d));
     CHECK(d.verdict >= verdict::partly_explained);
     CHECK(claims(d).empty());
     CHECK(!d.remaining_structure.empty());

@@ -291,8 +291,8 @@ TEST_CASE("read_machine: keys that belong together come together") {
           "machine.json: axes.x.plant.cogging_N: must be an array of numbers");
     CHECK(refused_value(plant + "/cogging_N", "[3, \"a\"]") ==
           "machine.json: axes.x.plant.cogging_N[1]: must be a number");
-    CHECK(refused_value(plant + "/cogging_N", "[1, 2, 3, 4, 5]") ==
-          "machine.json: axes.x.plant.cogging_N: this version simulates 4 harmonics at most");
+    CHECK(refused_value(plant + "/cogging_N", "[1, 2, 3, 4, 5, 6, 7, 8, 9]") ==
+          "machine.json: axes.x.plant.cogging_N: this version simulates 8 harmonics at most");
     CHECK(refused_value(plant + "/force_constant_N_per_A", "1") ==
           "machine.json: axes.x.plant.force_constant_N_per_A: contradicts force_constant_N_per_V: give one of "
           "them");

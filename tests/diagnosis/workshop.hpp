@@ -32,9 +32,10 @@ struct machine {
     double friction_drift = 0, friction_drift_time = 3;             ///< of the Coulomb level
     double mode_mass = 0, mode_frequency = 70, mode_damping = 0.03; ///< second mass; not part of `mass` here
     double cyclic = 0, cyclic_period = 0.0004;                      ///< of the encoder [m]
-    double cutting = 0, cutting_frequency = 23.3;                   ///< [N], its second harmonic half as large
-    double coupling = 0;                                            ///< of `other_acceleration`
+    double cutting = 0, cutting_frequency = 23.3, cutting_second = 0.5; ///< [N], [Hz], share of the first
+    double coupling = 0;                                                ///< of `other_acceleration`
     std::function<double(double)> other_acceleration = [](double) { return 0.0; };
+    std::function<double(double, double, double)> stranger; ///< a force over position, velocity and time [N]
     double bristle = 2e-7;
     double noise = 8e-8; ///< of the encoder, white [m]
     controller control;
@@ -150,7 +151,8 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
                            m.cogging_second * std::sin(2 * angle) +
                            m.mass * m.coupling * m.other_acceleration(now);
             const double turn = 2 * std::numbers::pi * m.cutting_frequency * now;
-            force += m.cutting * (std::sin(turn + 0.4) + 0.5 * std::sin(2 * turn));
+            force += m.cutting * (std::sin(turn + 0.4) + m.cutting_second * std::sin(2 * turn));
+            if (m.stranger) force += m.stranger(x, v, now);
             if (m.mode_mass > 0) {
                 const double w0 = 2 * std::numbers::pi * m.mode_frequency;
                 const double pull =

@@ -198,3 +198,33 @@ TEST_CASE("diagnose: the acceleration of the other axis, on the axis that feels 
     CHECK(d.causes.front().axis == "x");
     CHECK(near(value_of(d.causes.front(), "coupling").value, 0.05, 0.03));
 }
+
+TEST_CASE("diagnose: a single line in time is its own fundamental, not a harmonic of a slower one") {
+    machine real;
+    const auto file = described(real);
+    real.cutting = 12;
+    real.cutting_second = 0;
+    real.cutting_frequency = 71.7;
+    named(diagnosed(file, real, strokes), "cutting_force", "process.fundamental_Hz", 71.7, 0.002);
+}
+
+// Forces that are in no list: a form over the same quantity predicts better than the nearest name.
+const rules one_cause{.most_causes = 1};
+TEST_CASE("diagnose: a force with the square of the position is no spring") {
+    machine real;
+    const auto file = described(real);
+    real.stranger = [](double x, double, double) { return -9000 * x * x; };
+    const auto d = diagnose(
+        file, as_log(run(real)), nullptr, [](const std::string&) {}, one_cause);
+    abstains(d);
+    CHECK(d.remaining_structure.find("follows the position") != std::string::npos);
+}
+TEST_CASE("diagnose: a force that grows with time is no offset") {
+    machine real;
+    const auto file = described(real);
+    real.stranger = [](double, double, double t) { return 30 * t; };
+    const auto d = diagnose(
+        file, as_log(run(real)), nullptr, [](const std::string&) {}, one_cause);
+    abstains(d);
+    CHECK(d.remaining_structure.find("follows time") != std::string::npos);
+}

@@ -24,9 +24,7 @@ public:
             coarse() && std::find(excluded.begin(), excluded.end(), "encoder_quantization") != excluded.end();
         noise = models.noise(path.back());
         structure = models.structure(path.back(), noise);
-        const double left = rms(models.held_out_residual(path.back())), floor = floor_force();
-        immaterial =
-            std::sqrt(std::max(0.0, left * left - floor * floor)) < r.immaterial * models.tolerance_cloud();
+        immaterial = models.immaterial(path.back());
     }
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -50,6 +48,15 @@ public:
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
     bool at_floor() const { return structure < limits.structure || immaterial; }
+    /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
+    double takes_off(const candidate& to, const candidate& from) const {
+        const auto energy = [&](const candidate& m) {
+            const double force = rms(models.held_out_residual(m));
+            return force * force;
+        };
+        const double left = energy(from), floor = floor_force() * floor_force();
+        return left > floor ? (left - energy(to)) / (left - floor) : 0;
+    }
     bool controller_differs() const { return controller && controller->differs; }
     bool controller_open() const { return controller_differs() && !controller->mended; }
     double floor_force() const {

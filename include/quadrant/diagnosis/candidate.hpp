@@ -33,6 +33,14 @@ template <class Each> void each_channel(const fit_result& f, const scoring& s, E
     each(f.quadratic_mean, s.nu_mean, s.floor_mean);
 }
 
+/// 1/2 ln(blocks) for each parameter that no owner knows.
+inline double flexibility(const fit_result& f) {
+    const auto free = std::count_if(f.parameters.begin(), f.parameters.end(),
+                                    [](const parameter& p) { return !(p.spread > 0); });
+    return 0.5 * static_cast<double>(free) *
+           std::log(static_cast<double>(std::max<std::size_t>(2, f.ms.size())));
+}
+
 } // namespace detail
 
 /// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by one
@@ -74,10 +82,7 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
             c.held_out[segment] -= 0.5 * nu * std::log(blocks[b].at(step[fold_of(segment)]) + floor * floor);
         }
     });
-    double unknown = 0;
-    for (const auto& p : c.fit.parameters) unknown += p.spread > 0 ? 0 : 1;
-    c.penalty = 0.5 * unknown * std::log(static_cast<double>(std::max<std::size_t>(2, c.fit.ms.size())));
-    c.penalty += c.fit.choices;
+    c.penalty = detail::flexibility(c.fit) + c.fit.choices;
     c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }
@@ -90,7 +95,7 @@ inline std::vector<parameter> resumed(const fit_result& f) {
 }
 
 /// A first look at `from` with one more effect: two steps from every start that the effect offers, the slopes of the
-/// parameters that `from` has taken from there; the best kept. No score yet. An effect that offers no start leaves an
+/// parameters that `from` has taken from there; the best kept, less what its parameters cost. No score yet. An effect that offers no start leaves an
 /// infinite objective.
 inline candidate sketch(const axis_record& record, const candidate& from, const effect& added,
                         const screening& look, const std::vector<std::vector<double>>& slopes) {
@@ -99,9 +104,10 @@ inline candidate sketch(const axis_record& record, const candidate& from, const 
     best.effects.push_back(&added);
     best.total = -std::numeric_limits<double>::infinity();
     const auto resumed_from = resumed(from.fit);
+    double least = std::numeric_limits<double>::infinity(); // a start that frees more must earn it
     for (const auto& start : added.starts(look)) {
         plant_model plant = from.fit.plant;
-        added.join(plant);
+        added.join(plant, look);
         std::vector<parameter> ps;
         std::vector<const std::vector<double>*> known;
         for (std::size_t i = 0; i < resumed_from.size();
@@ -114,8 +120,11 @@ inline candidate sketch(const axis_record& record, const candidate& from, const 
             known.push_back(&slopes[i]);
         }
         ps.insert(ps.end(), start.begin(), start.end());
-        if (auto trial = fit.fit(plant, ps, 2, known); trial.objective < best.fit.objective)
+        auto trial = fit.fit(plant, ps, 2, known);
+        if (const double cost = trial.objective + detail::flexibility(trial); cost < least) {
+            least = cost;
             best.fit = std::move(trial);
+        }
     }
     return best;
 }

@@ -14,6 +14,8 @@ struct rival {
     const effect* name = nullptr;
     double weight = 0;
     bool same = false; ///< not told apart from the cause by this record
+
+    bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
 };
 
 inline double square(double x) { return x * x; }
@@ -51,6 +53,11 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
                 // The same model by another name is fitted as well as the first, whenever it was met.
                 if (e->name == own->equivalent) finish(c.record, out.back().model);
             }
+    if (!c.at_floor())
+        for (const auto& model :
+             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}))
+            if (c.takes_off(model, c.best()) > 0.3)
+                out.push_back({.model = model, .name = model.effects.back()});
     weigh(out, c);
 
     const double energy = square(rms(c.models.held_out_residual(c.best())));
@@ -62,29 +69,46 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         // not told apart by it, nor are two that are one model (gap/FORMAT.md) while their predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within =
-            pays && leaner && excess < unexplained; // more flexible and no better: no second reading
+        const bool within = pays && leaner && !r.unlisted() &&
+                            excess < unexplained; // more flexible and no better: no second reading
         const bool equivalent = r.name->name == own->equivalent && excess < 0.2 * energy;
         if (within) r.weight = std::max(r.weight, std::exp(-excess / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
-        r.same = within || equivalent || (pays && r.weight > 0.01);
+        r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
         sum += r.weight;
     }
     for (auto& r : out) r.weight /= sum;
     return out;
 }
 
-/// The probability that the cause is none of the suspects. At the floor nothing is left that could speak for it. While
-/// structure is left, whatever leaves it may also be what the name stands in for: as probable as what is left is large
-/// beside what the name explained.
-inline double unknown(const axis_case& c, std::size_t which) {
-    constexpr double least = 0.03;
-    if (c.at_floor()) return least;
+/// What is left above the floor beside what the cause number `which` explained, in force on held-out motion; 0 at the floor.
+inline double left_beside(const axis_case& c, std::size_t which) {
+    if (c.at_floor()) return 0;
     const double before = rms(c.models.held_out_residual(c.path[which]));
     const double after = rms(c.models.held_out_residual(c.best()));
     const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
     const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
-    return std::clamp(least + left / explained, least, 0.95);
+    return left / explained;
+}
+
+/// The probability that the cause is none of the suspects. At the floor nothing is left that could speak for it. While
+/// structure is left, whatever leaves it may also be what the name stands in for: as probable as what is left is large
+/// beside what the name explained.
+inline double unknown(const axis_case& c, std::size_t which) {
+    return std::min(0.03 + left_beside(c, which), 0.95);
+}
+
+/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, and none
+/// better than what is left beside what its effect explains: a pull as large as the rest, all of it along this value. An angle
+/// moves by as much in radian.
+inline void add_model_error(std::vector<parameter_estimate>& values, double left) {
+    const double relative = std::min(1.0, std::hypot(0.01, left));
+    for (auto& p : values)
+        for (estimate& e : p.values) {
+            const double error = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(e.value));
+            e.low = e.value - std::hypot(e.value - e.low, error);
+            e.high = e.value + std::hypot(e.high - e.value, error);
+        }
 }
 
 inline void widen(std::vector<parameter_estimate>& mine, const std::vector<parameter_estimate>& other) {
@@ -125,6 +149,8 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
                 named.group_probability += r.weight;
                 named.readings.push_back(
                     {std::string(r.name->name), estimates(r.model, *r.name, c.record.score)});
+            } else if (r.unlisted() && r.weight > 0.5) {
+                named.better_form = r.name->name;
             }
         }
         // Where another cause has a second reading, this one's values under that reading belong to its interval.
@@ -132,6 +158,8 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
             for (const auto& r : rivals[j])
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
+        detail::add_model_error(named.parameters, detail::left_beside(c, i));
+        for (auto& other : named.readings) detail::add_model_error(other.parameters, detail::left_beside(c, i));
         const double known = 1 - detail::unknown(c, i);
         named.probability *= known;
         named.group_probability *= known;

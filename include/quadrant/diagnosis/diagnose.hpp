@@ -25,7 +25,8 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
 }
 
 /// What is left when every cause is added: how large, and in which regimes.
-inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_result& result) {
+inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_result& result,
+                          const std::vector<cause>& causes) {
     const double floor = square(c.floor_force());
     double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
     double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
@@ -55,6 +56,16 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
                          [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
+        for (const candidate& with_form :
+             c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}))
+            if (const double share = c.takes_off(with_form, c.best());
+                share > 0.5 && c.models.pays(with_form, c.best()))
+                text += worded("; a force that follows %s and is in no list takes %.0f %% off",
+                               std::string(with_form.effects.back()->name).c_str(), 100 * share);
+        for (const cause& x : causes)
+            if (!x.better_form.empty())
+                text += worded("; a force that follows %s and is in no list predicts better than %s",
+                               x.better_form.c_str(), x.effect.c_str());
     }
     out.share_unexplained =
         std::max(out.share_unexplained, before > 0 ? std::clamp(after / before, 0.0, 1.0) : 0);
@@ -96,7 +107,7 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
-        describe_rest(out, c, result);
+        describe_rest(out, c, result, causes);
         propose(out, causes);
     }
     out.axes.push_back(std::move(result));

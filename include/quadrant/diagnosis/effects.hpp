@@ -22,6 +22,7 @@
 #include "effect/stribeck_friction.hpp"
 #include "effect/structural_resonance.hpp"
 #include "effect/time_delay.hpp"
+#include "effect/unlisted.hpp"
 #include "effect/viscous_friction.hpp"
 
 namespace quadrant::diagnosis {

@@ -12,7 +12,7 @@ namespace quadrant::diagnosis {
 /// sum of cosine_i cos(2 pi i z / period) + sine_i sin(2 pi i z / period), i = 1, 2, ...: what repeats along z, a
 /// position or a time. In the files size_i sin(2 pi i z / period + phase_i).
 struct harmonics {
-    static constexpr std::size_t most = 4;
+    static constexpr std::size_t most = 8;
     double period = 0;     ///< in the unit of z
     std::size_t count = 0; ///< 0: none
     std::array<double, most> cosine{}, sine{};
@@ -38,15 +38,23 @@ struct harmonics {
         }
         return sum;
     }
+    /// Up to the last harmonic that has a size.
     std::vector<double> sizes() const {
         std::vector<double> out;
-        for (std::size_t i = 0; i < count; ++i) out.push_back(std::hypot(sine[i], cosine[i]));
+        for (std::size_t i = 0; i < used(); ++i) out.push_back(std::hypot(sine[i], cosine[i]));
         return out;
     }
     std::vector<double> phases() const {
         std::vector<double> out;
-        for (std::size_t i = 0; i < count; ++i) out.push_back(std::atan2(cosine[i], sine[i]));
+        for (std::size_t i = 0; i < used(); ++i) out.push_back(std::atan2(cosine[i], sine[i]));
         return out;
+    }
+
+private:
+    std::size_t used() const {
+        std::size_t n = count;
+        while (n > 1 && sine[n - 1] == 0 && cosine[n - 1] == 0) --n;
+        return n;
     }
 };
 

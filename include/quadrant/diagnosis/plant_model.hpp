@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "free_curve.hpp"
 #include "friction_contact.hpp"
 #include "harmonics.hpp"
 #include "machine.hpp"
@@ -38,6 +39,7 @@ struct plant_model {
     double spring = 0;         ///< [N/m], about position 0
     double coupling = 0;       ///< of the other axis' acceleration
     harmonics cogging;         ///< [N] over position
+    free_curve unlisted;       ///< a force that no effect of the list names
     struct mode_box {          ///< a second mass on a spring, not seen by the encoder
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
     } mode;

@@ -27,14 +27,20 @@ struct predictor {
         double choices = 0;
         if (plant.loss > 0) {
             pass(plant, command, innovation, nullptr);
-            const auto held = commands_with_loss(command, innovation, loss_response(plant),
-                                                 whole_periods(plant.delay), plant.loss);
+            const auto held = commands_with_loss(plant, innovation, plant.loss);
             pass(plant, held.applied, innovation, acceleration);
             choices = held.choices;
         } else {
             pass(plant, command, innovation, acceleration);
         }
         return choices;
+    }
+
+    /// The commands that the drive acted on when it lost each with probability p, as the innovations of `plant` tell it.
+    lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
+                                      double p) const {
+        return diagnosis::commands_with_loss(command, innovation, loss_response(plant),
+                                             whole_periods(plant.delay), p);
     }
 
 private:
@@ -44,6 +50,29 @@ private:
     double l1() const { return 1 - pole() * pole(); }
     double l2() const { return (1 - pole()) * (1 - pole()) / period; }
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
+
+    /// Innovations after one volt too much in one period, on a free axis.
+    std::vector<double> loss_response(const plant_model& plant) const {
+        const double to_position = l1(), to_velocity = l2();
+        const double late =
+            std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
+        const double per_volt = plant.force_constant / plant.mass;
+        std::vector<double> out;
+        double x = 0, v = 0;
+        const auto rows = static_cast<std::size_t>(1.5 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
+        for (std::size_t k = 0; k <= rows; ++k) {
+            if (k > 0) out.push_back(x);
+            const double e = x, length = k == 0   ? period - late
+                                         : k == 1 ? late
+                                                  : 0; // of the volt in this period
+            x -= to_position * e;
+            v -= to_velocity * e;
+            const double rise = per_volt * length;
+            x += period * v + (k == 0 ? 0.5 * length : period - 0.5 * length) * rise;
+            v += rise;
+        }
+        return out;
+    }
 
     void pass(const plant_model& plant, std::span<const double> u, std::vector<double>& innovation,
               std::vector<double>* acceleration) const {
@@ -68,29 +97,6 @@ private:
             newer(s, past(k, whole), now);
             if (acceleration) (*acceleration)[k] = (s.load_velocity - before) / period;
         }
-    }
-
-    /// Innovations after one volt too much in one period, on a free axis.
-    std::vector<double> loss_response(const plant_model& plant) const {
-        const double to_position = l1(), to_velocity = l2();
-        const double late =
-            std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
-        const double per_volt = plant.force_constant / plant.mass;
-        std::vector<double> out;
-        double x = 0, v = 0;
-        const auto rows = static_cast<std::size_t>(1.5 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
-        for (std::size_t k = 0; k <= rows; ++k) {
-            if (k > 0) out.push_back(x);
-            const double e = x, length = k == 0   ? period - late
-                                         : k == 1 ? late
-                                                  : 0; // of the volt in this period
-            x -= to_position * e;
-            v -= to_velocity * e;
-            const double rise = per_volt * length;
-            x += period * v + (k == 0 ? 0.5 * length : period - 0.5 * length) * rise;
-            v += rise;
-        }
-        return out;
     }
 };
 

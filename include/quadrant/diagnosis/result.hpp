@@ -70,6 +70,8 @@ struct cause {
     estimate gap_before_command_rms_V, gap_after_command_rms_V;
     estimate shrink; ///< 1 - after/before in force, on samples not used for the fit
     std::string exciting_motion;
+    std::string
+        better_form; ///< of what a force that no list names predicts better as a function; empty: of nothing
 };
 
 /// Signals for the pictures, one entry a sample (t, ...), or a bin (frequency, ...).

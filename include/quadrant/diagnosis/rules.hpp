@@ -16,6 +16,7 @@ struct rules {
     double immaterial =
         0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
     std::size_t most_causes = 4, beam = 2;
+    std::size_t threads = 0; ///< 0: as many as there are cores; the result is the same
     std::size_t finalists =
         4; ///< of each round are fitted to the end; the others showed little at a first look
 };

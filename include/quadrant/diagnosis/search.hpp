@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "candidate.hpp"
+#include "on_all_cores.hpp"
 #include "rules.hpp"
 
 #include <deque>
+#include <optional>
 #include <random>
 
 namespace quadrant::diagnosis {
@@ -63,41 +65,45 @@ public:
     /// others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
     std::vector<candidate> with_each(const candidate& from) const {
         std::vector<candidate> out;
-        std::vector<std::size_t> fresh;
-        const auto left = residual(from);
-        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
-        std::vector<std::vector<double>> slopes; // of `from`, found when the first suspect asks
+        std::vector<std::size_t> rank; // of those that were not met before
         for (const effect* e : suspects()) {
             if (has(from, e)) continue;
-            if (const candidate* known = tried(from, e)) {
-                out.push_back(*known);
-            } else {
-                fresh.push_back(out.size());
-                if (slopes.empty()) slopes = fitter(record_.observer, record_.score).slopes(from.fit);
-                out.push_back(sketch(record_, from, *e, look, slopes));
-            }
+            const candidate* known = tried(from, e);
+            if (!known) rank.push_back(out.size());
+            out.push_back(known ? *known : joined(from, e));
         }
-        auto rank = fresh;
+        sketch_each(from, rank, out);
         std::stable_sort(rank.begin(), rank.end(),
                          [&](auto a, auto b) { return out[a].fit.objective < out[b].fit.objective; });
-        for (std::size_t i = 0; i < rank.size(); ++i) {
-            candidate& c = out[rank[i]];
-            i < rules_.finalists ? finish(record_, c) : judge(record_, c);
-            tell_(describe(c));
-            tried_.push_back(c);
+        on_all_cores(rank.size(), rules_.threads, [&](std::size_t i) {
+            i < rules_.finalists ? finish(record_, out[rank[i]]) : judge(record_, out[rank[i]]);
+        });
+        for (std::size_t i : rank) {
+            tell_(describe(out[i]));
+            tried_.push_back(out[i]);
         }
         std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
         return out;
     }
     candidate with(const candidate& from, const effect* added) const {
-        if (const candidate* known = tried(from, added)) return *known;
-        const auto left = residual(from);
-        auto c = sketch(record_, from, *added, {axis_.plant, axis_.tolerance, record_, from.fit.plant, left},
-                        fitter(record_.observer, record_.score).slopes(from.fit));
-        finish(record_, c);
-        tell_(describe(c));
-        tried_.push_back(c);
-        return c;
+        return with_these(from, {added}).front();
+    }
+    /// `from` with each of these added, all of them fitted to the end.
+    std::vector<candidate> with_these(const candidate& from, const std::vector<const effect*>& added) const {
+        std::vector<candidate> out;
+        std::vector<std::size_t> fresh;
+        for (const effect* e : added) {
+            const candidate* known = tried(from, e);
+            if (!known) fresh.push_back(out.size());
+            out.push_back(known ? *known : joined(from, e));
+        }
+        sketch_each(from, fresh, out);
+        on_all_cores(fresh.size(), rules_.threads, [&](std::size_t i) { finish(record_, out[fresh[i]]); });
+        for (std::size_t i : fresh) {
+            tell_(describe(out[i]));
+            tried_.push_back(out[i]);
+        }
+        return out;
     }
     /// The described machine with these effects, fitted one after the other.
     candidate with(const std::vector<const effect*>& effects) const {
@@ -165,13 +171,21 @@ public:
         return quantile(sizes, 0.95);
     }
 
+    /// What a model leaves above the floor is small beside that cloud: nobody would call it a gap.
+    bool immaterial(const candidate& c) const {
+        const double left = square(rms(held_out_residual(c))) - square(floor_force(c));
+        if (!cloud_) cloud_ = tolerance_cloud();
+        return std::sqrt(std::max(0.0, left)) < rules_.immaterial * *cloud_;
+    }
+
     /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; then takes out what
     /// is no longer needed. Returns the calibrated machine and the models with one cause more each, the cause that
     /// matters most first.
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
-        while (best.effects.size() < rules_.most_causes && !at_noise(best)) {
+        while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
+               (best.effects.empty() || !immaterial(best))) {
             std::vector<candidate> next;
             for (const candidate& from : beam)
                 for (auto& c : with_each(from))
@@ -228,6 +242,23 @@ public:
 
 private:
     static double square(double x) { return x * x; }
+    static candidate joined(const candidate& from, const effect* added) {
+        candidate c{.effects = from.effects};
+        c.effects.push_back(added);
+        return c;
+    }
+    /// A first look at each of these: `from` and the effect that it names last.
+    void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
+                     std::vector<candidate>& models) const {
+        if (which.empty()) return;
+        const auto left = residual(from);
+        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
+        const auto slopes = fitter(record_.observer, record_.score).slopes(from.fit);
+        on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
+            candidate& c = models[which[i]];
+            c = sketch(record_, from, *c.effects.back(), look, slopes);
+        });
+    }
     const candidate* tried(const candidate& from, const effect* added) const {
         for (const candidate& c : tried_)
             if (c.effects.size() == from.effects.size() + 1 && has(c, added) &&
@@ -250,6 +281,7 @@ private:
     progress tell_;
     candidate given_, calibrated_;
     mutable std::deque<candidate> tried_;
+    mutable std::optional<double> cloud_; ///< found when it is asked for
 };
 
 } // namespace quadrant::diagnosis

@@ -70,9 +70,10 @@ public:
     }
 
     void operator()(plant_state& s, double command, const surroundings& now = {}) const {
-        const double drive = motor(s, command) + plant_.constant_force - plant_.spring * s.x +
-                             plant_.cogging.at(s.x) + plant_.cutting.at(now.time + plant_.cutting_start) +
-                             plant_.cutting_mean + plant_.mass * plant_.coupling * now.other_acceleration;
+        double drive = motor(s, command) + plant_.constant_force - plant_.spring * s.x +
+                       plant_.cogging.at(s.x) + plant_.cutting.at(now.time + plant_.cutting_start) +
+                       plant_.cutting_mean + plant_.mass * plant_.coupling * now.other_acceleration;
+        if (plant_.unlisted.of != free_curve::over::nothing) drive += unlisted(s, command, now.time);
         double push = inertia_ * s.v + h_ * drive; // momentum before friction
         if (plant_.mode.mass > 0) push -= plant_.mode.mass * (wq_ * s.q + (ww_ - 1) * s.w);
         const double v = behind_friction(s, push, now.time);
@@ -105,6 +106,15 @@ private:
             command += from * lag_mean_;
         }
         return plant_.force_constant * (1 + plant_.ripple.at(s.x)) * command;
+    }
+
+    double unlisted(const plant_state& s, double command, double time) const {
+        using over = free_curve::over;
+        const auto& curve = plant_.unlisted;
+        return curve.at(curve.of == over::position   ? s.x
+                        : curve.of == over::velocity ? s.v
+                        : curve.of == over::time     ? time
+                                                     : command);
     }
 
     /// Velocity at the end of the step. An element that would leave its share of the level slips, and the others are

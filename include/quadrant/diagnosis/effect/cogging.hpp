@@ -19,10 +19,19 @@ inline constexpr effect cogging{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
         std::vector<std::vector<parameter>> out;
-        for (double period : spatial_peaks(s.residual, s.record.position, 0.5 * travel,
-                                           std::max(travel / 400, 2e-4), 2, s.record.score.skip))
-            out.push_back(detail::repeating<detail::cogging_harmonics, 3>(
-                "cogging_period_m", "cogging_N", period, travel, 2 * s.leader.force_constant));
+        const double shortest = std::max(travel / 400, 2e-4);
+        const auto& x = s.record.position;
+        for (double period :
+             detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
+            const auto power = detail::comb<8>(s.residual, x, period);
+            const double most = *std::max_element(power.begin(), power.end());
+            const bool many = std::any_of(power.begin() + 3, power.end(),
+                                          [&](double p) { return p > 0.01 * most; }); // a tenth in force
+            const auto repeats = many ? detail::repeating<detail::cogging_harmonics, 8>
+                                      : detail::repeating<detail::cogging_harmonics, 3>;
+            out.push_back(
+                repeats("cogging_period_m", "cogging_N", period, travel, 2 * s.leader.force_constant));
+        }
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
@@ -30,6 +39,6 @@ inline constexpr effect cogging{
                 {"cogging_N", p.cogging.sizes()},
                 {"cogging_phase_rad", p.cogging.phases()}};
     },
-    .join = [](plant_model& p) { p.cogging.count = 3; }};
+    .join = [](plant_model& p, const screening&) { p.cogging.count = harmonics::most; }};
 
 } // namespace quadrant::diagnosis::suspect

@@ -33,7 +33,7 @@ struct effect {
     /// The machine file's keys with the values of a fitted model.
     std::vector<key_value> (*read)(const plant_model&);
     /// What the plant model needs before the parameters mean anything; most effects need nothing.
-    void (*join)(plant_model&) = [](plant_model&) {};
+    void (*join)(plant_model&, const screening&) = [](plant_model&, const screening&) {};
 };
 
 namespace detail {

@@ -35,6 +35,6 @@ inline constexpr effect encoder_cyclic_error{
                 {"encoder.cyclic_period_m", {p.cyclic.period}},
                 {"encoder.cyclic_phase_rad", p.cyclic.phases()}};
     },
-    .join = [](plant_model& p) { p.cyclic.count = 1; }};
+    .join = [](plant_model& p, const screening&) { p.cyclic.count = 1; }};
 
 } // namespace quadrant::diagnosis::suspect

@@ -32,6 +32,6 @@ inline constexpr effect force_ripple{
                 {"ripple_period_m", {p.ripple.period}},
                 {"ripple_phase_rad", p.ripple.phases()}};
     },
-    .join = [](plant_model& p) { p.ripple.count = 1; }};
+    .join = [](plant_model& p, const screening&) { p.ripple.count = 1; }};
 
 } // namespace quadrant::diagnosis::suspect

@@ -37,6 +37,6 @@ inline constexpr effect position_dependent_friction{
                 {"friction_position_period_m", {p.friction.along.period}},
                 {"friction_position_phase_rad", p.friction.along.phases()}};
     },
-    .join = [](plant_model& p) { p.friction.along.count = 1; }};
+    .join = [](plant_model& p, const screening&) { p.friction.along.count = 1; }};
 
 } // namespace quadrant::diagnosis::suspect

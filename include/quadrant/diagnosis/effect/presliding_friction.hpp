@@ -52,7 +52,7 @@ inline constexpr effect presliding_friction{
                 stiffness};
     },
     .join =
-        [](plant_model& p) {
+        [](plant_model& p, const screening&) {
             p.friction.contact.exponential(p.friction.contact.length);
             p.friction.contact.lengths_as_described = {};
         }};

@@ -3,6 +3,8 @@
 #include "../spatial_spectrum.hpp"
 #include "effect.hpp"
 
+#include <complex>
+
 /// What the effects share whose force, friction or reading repeats along the travel or in time.
 namespace quadrant::diagnosis::detail {
 
@@ -33,6 +35,65 @@ std::vector<parameter> repeating(const char* period_key, const char* size_key, d
     [&]<std::size_t... I>(std::index_sequence<I...>) { (add_harmonic<Box, I>(ps, size_key, size), ...); }
     (std::make_index_sequence<Count>());
     return ps;
+}
+
+/// Power of a signal at each of the first multiples of 1/period along z.
+template <std::size_t Count>
+std::array<double, Count> comb(std::span<const double> signal, std::span<const double> z, double period) {
+    std::array<std::complex<double>, Count> sum{};
+    for (std::size_t k = 0; k < signal.size(); ++k) {
+        const auto turn = std::polar(1.0, 2 * std::numbers::pi * z[k] / period);
+        auto phasor = turn;
+        for (auto& of : sum) {
+            of += signal[k] * phasor;
+            phasor *= turn;
+        }
+    }
+    std::array<double, Count> power{};
+    for (std::size_t i = 0; i < Count; ++i) power[i] = std::norm(sum[i]);
+    return power;
+}
+
+/// The two periods whose harmonics, down to `shortest`, gather most of the signal. A peak of the spectrum may be any harmonic,
+/// but a longer period gathers a line's own power again and must find more of its own, else it is the same line under a name
+/// that repeats.
+template <std::size_t Count>
+std::vector<double> comb_periods(std::span<const double> signal, std::span<const double> z, double longest,
+                                 double shortest, std::size_t skip) {
+    struct found {
+        double period, power;
+    };
+    std::vector<found> all;
+    for (double peak : spatial_peaks(signal, z, longest, shortest, 4, skip)) {
+        double gathered = 0;
+        for (double order = 1; order <= 4 && order * peak <= longest; ++order) {
+            const auto powers = comb<Count>(signal.subspan(skip), z.subspan(skip), order * peak);
+            double power = 0;
+            for (std::size_t i = 0; i < Count && order * peak >= static_cast<double>(i + 1) * shortest; ++i)
+                power += powers[i];
+            if (power < 1.1 * gathered) continue;
+            gathered = power;
+            all.push_back({order * peak, power});
+        }
+    }
+    if (all.empty()) return {};
+    std::stable_sort(all.begin(), all.end(), [](const found& a, const found& b) { return a.power > b.power; });
+    const auto [low, high] = std::minmax_element(z.begin(), z.end());
+    const auto is = [line = all.front().period / (*high - *low)](double ratio) { // a whole number
+        return std::abs(ratio / std::round(ratio) - 1) < line;
+    };
+    // Beside the one that gathers most the shortest that it may be a multiple of; where there is none, the next best.
+    const found* second = nullptr;
+    for (const found& f : all)
+        if (const double ratio = all.front().period / f.period; ratio > 1.5 && is(ratio) &&
+                                                                f.power > 0.7 * all.front().power &&
+                                                                (!second || f.period < second->period))
+            second = &f;
+    for (const found& f : all)
+        if (!second && !is(all.front().period / f.period)) second = &f;
+    std::vector<double> out{all.front().period};
+    if (second) out.push_back(second->period);
+    return out;
 }
 
 inline double travel(const screening& s) {

@@ -5,18 +5,31 @@
 namespace quadrant::diagnosis::suspect {
 
 /// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator. Shows as
-/// pulses whose size is what the command changed by in that period; see sample_loss.hpp for how they are found.
+/// pulses whose size is what the command changed by in that period; see sample_loss.hpp for how they are found. Its
+/// probability is counted where a loss would stand out of the noise, by expectation and maximisation. A
+/// lost command leaves a pulse of known sign: what merely looks like pulses, at reversals say, has either.
 inline constexpr effect sample_loss{
     .name = "sample_loss",
     .box = "actuator",
     .exciting_motion = "multi-sine of 50 to 200 Hz: the command must change much in each period",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.loss; };
+        plant_model plant = s.leader;
+        plant.loss = 0;
+        std::vector<double> innovation;
+        s.record.observer.run(plant, innovation);
+        double p = 0.05;
+        lossy_commands found;
+        for (int round = 0; round < 4; ++round) {
+            found = s.record.observer.commands_with_loss(plant, innovation, p);
+            if (found.told < 50) return {};
+            p = std::clamp(found.lost / found.told, 1e-3, 0.5);
+        }
+        if (found.lost < 5 || found.lost < found.mirrored) return {};
         return {{{.key = "actuator.loss_probability",
-                  .of = of,
-                  .start = detail::best_start(s, of, {0.005, 0.02, 0.06, 0.12, 0.2, 0.35}),
-                  .low = 1e-3,
-                  .high = 0.6,
+                  .of = [](plant_model& q) -> double& { return q.loss; },
+                  .start = p,
+                  .low = p / 1.5,
+                  .high = std::min(0.6, 1.5 * p),
                   .logarithmic = true,
                   .step = 1e-2}}};
     },
