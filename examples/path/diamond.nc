@@ -1,0 +1,10 @@
+%
+(Square of side 50 mm on its corner, from rest to rest, 200 mm/s)
+G21 G17 G90 G61
+F12000
+G1 X35.355339 Y-35.355339
+G1 X0.000000 Y-70.710678
+G1 X-35.355339 Y-35.355339
+G1 X0.000000 Y0.000000
+M30
+%
