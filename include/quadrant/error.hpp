@@ -1,26 +1,83 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "digits.hpp"
 #include "signal.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <cstddef>
+#ifdef __cpp_exceptions
+#    include <optional>
+#    include <stdexcept>
+#    include <string>
+#else
+#    include <csetjmp>
+#endif
 
+/// Parameters that no machine could have. With exceptions a constructor throws invalid_parameter. Without them
+/// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does neither.
 namespace quadrant {
 
-/// A parameter that no machine could have. what() reads "notch.centre = 1200: must lie between 0 and half the
-/// sampling rate (1000)"; values in SI. Thrown by constructors only, never by a step.
-struct invalid_parameter : std::invalid_argument {
-    using std::invalid_argument::invalid_argument;
+namespace detail {
+/// Words and numbers into a buffer that is never overrun; `used` counts what there was to write.
+struct text_buffer {
+    char* out;
+    std::size_t size, used = 0;
+    void add(const char* words) {
+        for (; *words != '\0'; ++words, ++used)
+            if (used < size) out[used] = *words;
+    }
+    void add(double number) { add(digits(number).text.data()); }
 };
 
-namespace detail {
-inline std::string shortest(double value) {
-    std::array<char, 40> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+#ifdef __cpp_exceptions
+template <class Written> std::string written(const Written& what) {
+    text_buffer counted{nullptr, 0};
+    what.write(counted);
+    std::string out(counted.used, ' ');
+    text_buffer text{out.data(), out.size()};
+    what.write(text);
+    return out;
 }
+#endif
+
+/// What must hold, words with numbers between them: "must not exceed the capacity (" + shortest(8) + ")". Nothing is
+/// written, copied or allocated before the rule is broken; the words are literals. Nine pieces at most.
+class rule {
+public:
+    constexpr rule() = default;
+    constexpr rule(const char* words) : pieces_{{{words, 0}}}, count_(1) {}
+    constexpr explicit rule(double number) : pieces_{{{nullptr, number}}}, count_(1) {}
+    constexpr friend rule operator+(rule left, const rule& right) {
+        for (std::size_t i = 0; i < right.count_ && left.count_ < left.pieces_.size(); ++i)
+            left.pieces_[left.count_++] = right.pieces_[i];
+        return left;
+    }
+    void write(text_buffer& text) const {
+        for (std::size_t i = 0; i < count_; ++i)
+            pieces_[i].words != nullptr ? text.add(pieces_[i].words) : text.add(pieces_[i].number);
+    }
+#ifdef __cpp_exceptions
+    operator std::string() const { return written(*this); }
+#endif
+
+private:
+    struct piece {
+        const char* words; // null: the number
+        double number;
+    };
+    std::array<piece, 9> pieces_{};
+    std::size_t count_ = 0;
+};
+constexpr rule shortest(double value) { return rule(value); }
+
+/// "notch.centre", or a block's name and ".period" where several blocks share the check.
+struct field_name {
+    constexpr field_name() = default;
+    constexpr field_name(const char* name, const char* rest = "") : block(name), field(rest) {}
+    const char *block = nullptr, *field = nullptr;
+};
+
 constexpr double plain(double x) noexcept { return x; }
 template <class Dual>
 requires requires(const Dual& d) {
@@ -33,28 +90,88 @@ template <class Unit, class Real> constexpr double plain(const boost::units::qua
 }
 } // namespace detail
 
+/// Why a block was not made: literals and numbers, free to copy.
+struct refused_parameter {
+    detail::field_name field{};
+    double value = 0;
+    detail::rule must{};
+
+    /// Writes "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)", values in SI, cut off to
+    /// fit `size` with its final zero. Returns the length of the whole.
+    std::size_t write(char* out, std::size_t size) const {
+        detail::text_buffer text{out, size > 0 ? size - 1 : 0};
+        write(text);
+        if (size > 0) out[text.used < size ? text.used : size - 1] = '\0';
+        return text.used;
+    }
+    void write(detail::text_buffer& text) const {
+        if (field.block == nullptr) return text.add("nothing was made yet");
+        for (const char* words : {field.block, field.field, " = "}) text.add(words);
+        text.add(value);
+        text.add(": ");
+        must.write(text);
+    }
+};
+
+#ifdef __cpp_exceptions
+/// what() reads as refused_parameter::write. Thrown by constructors only, never by a step.
+struct invalid_parameter : std::invalid_argument {
+    using std::invalid_argument::invalid_argument;
+    explicit invalid_parameter(const refused_parameter& r)
+        : std::invalid_argument(detail::written(r)), why(r) {}
+    std::optional<refused_parameter> why; ///< none when thrown as text, which no block does
+};
+#else
+/// Called with what a constructor refused outside of make(); then, or without one, the program traps. Set it once at
+/// the start; it may reset the processor, or never return.
+inline void (*on_refusal)(const refused_parameter&) = nullptr;
+
+namespace detail {
+/// Where a constructor that refuses goes back to while make() runs. One thread at a time makes blocks.
+struct attempt {
+    std::jmp_buf back;
+    refused_parameter why;
+    static inline attempt* running = nullptr;
+};
+} // namespace detail
+#endif
+
+namespace detail {
+[[noreturn]] inline void refuse(const refused_parameter& why) {
+#ifdef __cpp_exceptions
+    throw invalid_parameter(why);
+#else
+    if (attempt* const a = attempt::running) {
+        a->why = why;
+        std::longjmp(a->back, 1); // as a throw would: nothing that a block holds has a destructor
+    }
+    if (on_refusal != nullptr) on_refusal(why);
+    __builtin_trap();
+#endif
+}
+} // namespace detail
+
 /// Refuses `value` unless `holds`, naming block, field, value and rule.
 template <class Value>
-void require(bool holds, const char* field, const Value& value, const std::string& rule) {
-    if (!holds)
-        throw invalid_parameter(std::string(field) + " = " + detail::shortest(detail::plain(value)) + ": " +
-                                rule);
+void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
+    if (!holds) detail::refuse({field, detail::plain(value), must});
 }
 
 /// The rules that come up everywhere.
-template <class Value> void require_finite(const char* field, const Value& value) {
+template <class Value> void require_finite(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)), field, value, "must be finite");
 }
-template <class Value> void require_positive(const char* field, const Value& value) {
+template <class Value> void require_positive(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)) && detail::plain(value) > 0, field, value,
             "must be finite and above 0");
 }
-template <class Value> void require_not_negative(const char* field, const Value& value) {
+template <class Value> void require_not_negative(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)) && detail::plain(value) >= 0, field, value,
             "must be finite and not below 0");
 }
 /// A corner or centre frequency of a block that runs every `period`.
-template <class Value> void require_below_nyquist(const char* field, const Value& value, duration period) {
+template <class Value>
+void require_below_nyquist(const detail::field_name& field, const Value& value, duration period) {
     const double nyquist = 0.5 / period.value(), f = detail::plain(value);
     require(f > 0 && f < nyquist, field, value,
             "must lie between 0 and half the sampling rate (" + detail::shortest(nyquist) + ")");

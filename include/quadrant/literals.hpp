@@ -25,6 +25,9 @@ constexpr auto operator""_Hz(long double v) { return detail::of<si::frequency>(v
 constexpr auto operator""_kHz(long double v) { return detail::of<si::frequency>(v * 1e3L); }
 constexpr auto operator""_kg(long double v) { return detail::of<si::mass>(v); }
 constexpr auto operator""_N(long double v) { return detail::of<si::force>(v); }
+constexpr auto operator""_Nm(long double v) { return detail::of<si::torque>(v); }
+constexpr auto operator""_radps(long double v) { return detail::of<si::angular_velocity>(v); }
+constexpr auto operator""_kgm2(long double v) { return detail::of<si::moment_of_inertia>(v); }
 constexpr auto operator""_V(long double v) { return detail::of<si::electric_potential>(v); }
 constexpr auto operator""_A(long double v) { return detail::of<si::current>(v); }
 
@@ -44,6 +47,9 @@ constexpr auto operator""_Hz(unsigned long long v) { return operator""_Hz(static
 constexpr auto operator""_kHz(unsigned long long v) { return operator""_kHz(static_cast<long double>(v)); }
 constexpr auto operator""_kg(unsigned long long v) { return operator""_kg(static_cast<long double>(v)); }
 constexpr auto operator""_N(unsigned long long v) { return operator""_N(static_cast<long double>(v)); }
+constexpr auto operator""_Nm(unsigned long long v) { return operator""_Nm(static_cast<long double>(v)); }
+constexpr auto operator""_radps(unsigned long long v) { return operator""_radps(static_cast<long double>(v)); }
+constexpr auto operator""_kgm2(unsigned long long v) { return operator""_kgm2(static_cast<long double>(v)); }
 constexpr auto operator""_V(unsigned long long v) { return operator""_V(static_cast<long double>(v)); }
 constexpr auto operator""_A(unsigned long long v) { return operator""_A(static_cast<long double>(v)); }
 

@@ -26,6 +26,14 @@ struct force {
     using unit = si::force;
     static constexpr const char* text = "N";
 };
+struct torque { // the radian is a unit of its own: N m/rad
+    using unit = si::torque;
+    static constexpr const char* text = "N m";
+};
+struct angular_velocity {
+    using unit = si::angular_velocity;
+    static constexpr const char* text = "rad/s";
+};
 struct voltage {
     using unit = si::electric_potential;
     static constexpr const char* text = "V";

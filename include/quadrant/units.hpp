@@ -2,6 +2,7 @@
 #pragma once
 #include <boost/units/quantity.hpp>
 #include <boost/units/systems/si/acceleration.hpp>
+#include <boost/units/systems/si/angular_velocity.hpp>
 #include <boost/units/systems/si/current.hpp>
 #include <boost/units/systems/si/dimensionless.hpp>
 #include <boost/units/systems/si/electric_potential.hpp>
@@ -9,10 +10,13 @@
 #include <boost/units/systems/si/frequency.hpp>
 #include <boost/units/systems/si/length.hpp>
 #include <boost/units/systems/si/mass.hpp>
+#include <boost/units/systems/si/moment_of_inertia.hpp>
+#include <boost/units/systems/si/plane_angle.hpp>
 #include <boost/units/systems/si/time.hpp>
+#include <boost/units/systems/si/torque.hpp>
 #include <boost/units/systems/si/velocity.hpp>
 
-/// Physical quantities, SI throughout. `frequency` is in hertz everywhere, never in rad/s.
+/// Physical quantities, SI throughout. `frequency` is in hertz everywhere, never in rad/s: that is an angular velocity.
 namespace quadrant {
 
 namespace si = boost::units::si;

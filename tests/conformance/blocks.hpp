@@ -72,6 +72,77 @@ inline const std::tuple blocks{
               return proportional_integral<s::velocity, s::voltage, back_calculation, R>(
                   {p(60_V / 1_mps), p(450_V / 1_m), p.fixed(10_V), {2_ms}}, T);
           }},
+    entry{"pid", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<pid<R>>({.gain = p(701_V / 1_m),
+                                     .integral_gain = p(8000.0 * 1_V / (1_m * 1_s)),
+                                     .derivative_gain = p(3.1_V / 1_mps),
+                                     .derivative_corner = 200_Hz,
+                                     .position_weight = p(0.7),
+                                     .velocity_weight = p(0.9)},
+                                    T);
+          }},
+    entry{"pid, derivative of positions", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<pid<R>>({.gain = p(701_V / 1_m),
+                                     .integral_gain = p(8000.0 * 1_V / (1_m * 1_s)),
+                                     .derivative_gain = p(3.1_V / 1_mps),
+                                     .derivative = derivative_from::positions,
+                                     .derivative_corner = 200_Hz,
+                                     .velocity_weight = p(0.9)},
+                                    T);
+          }},
+    entry{"sliding_mode", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<sliding_mode<R>>({.plant = {p(0.63_mps2 / 1_V), p(2.5 / 1_s)},
+                                              .sliding = p(201.0 / 1_s),
+                                              .gain = p(302_V / 1_mps),
+                                              .adaptation = p(30001_V / 1_m)},
+                                             T);
+          }},
+    entry{"predictive", 0.125,
+          []<class R>(values<R>& p) {
+              const auto cross = p(2.1e5);
+              return law_on<predictive<10, R>>(
+                  {.plant = {p(4.526_mps2 / 1_V), p(28.57 / 1_s)},
+                   .weights = {{{{p(1.1e10), cross}, {cross, p(1.3e4)}}}, p(121.0)}},
+                  T);
+          }},
+    entry{"p_pi", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<p_pi<R>>({.position_gain = p(41.0 / 1_s),
+                                      .gain = p(252_V / 1_mps),
+                                      .integral_gain = p(9001_V / 1_m),
+                                      .velocity_weight = p(0.9),
+                                      .acceleration_gain = p(1.6_V / 1_mps2)},
+                                     T);
+          }},
+    entry{"rst, pole placement", 0.125,
+          []<class R>(values<R>& p) {
+              const axis_model<s::voltage, parameter_real<R>> axis{p(0.63_mps2 / 1_V), p(25.0 / 1_s)};
+              return law_on<pole_placement<R>>(place_rst(axis, {.natural = 150_Hz, .observer = 200_Hz}, T), T);
+          }},
+    entry{"rst, zero phase", 0.125,
+          []<class R>(values<R>& p) {
+              const axis_model<s::voltage, parameter_real<R>> axis{p(0.63_mps2 / 1_V), p(25.0 / 1_s)};
+              return law_on<zero_phase_tracking<R>>(
+                  zero_phase_rst(axis, {.natural = 150_Hz, .observer = 200_Hz}, T), T);
+          }},
+    entry{"rst, generalized predictive", 0.125,
+          []<class R>(values<R>& p) {
+              const axis_model<s::voltage, parameter_real<R>> axis{p(0.63_mps2 / 1_V), p(25.0 / 1_s)};
+              return law_on<generalized_predictive_law<8, R>>(
+                  generalized_predictive<8, 2>(axis, predictive_costs<>{1e-6 * 1_m / 1_V}, T), T);
+          }},
+    entry{"state_feedback", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<state_feedback<R>>({.plant = {p(0.63_mps2 / 1_V), p(2.5 / 1_s)},
+                                                .position_gain = p(30001_V / 1_m),
+                                                .velocity_gain = p(302_V / 1_mps),
+                                                .encoder_noise = p(0.35_um),
+                                                .drift = p(10_V)},
+                                               T);
+          }},
     entry{"limiter", 8,
           []<class R>(values<R>& p) {
               return limiter<s::voltage, R>({p(-3.01_V), p(5.01_V)}, T);
@@ -140,6 +211,14 @@ inline const std::tuple blocks{
     entry{"stribeck", 0.125,
           []<class R>(values<R>& p) {
               return stribeck<s::velocity, s::force, R>({p(122_N), p(177_N), p(2.2_mmps), p(850_N / 1_mps)}, T);
+          }},
+    entry{"asymmetric_stribeck", 8,
+          []<class R>(values<R>& p) {
+              return asymmetric_stribeck<s::angular_velocity, s::torque, R>(
+                  {{p(2.6_Nm), p(2.1_Nm), p(3.9_radps), p(4.2_radps)},
+                   {p(1.9_Nm), p(1.5_Nm), p(3.5_radps), p(3.6_radps)},
+                   p.fixed(0.02_Nm / 1_radps)},
+                  T);
           }},
     entry{"dahl", 0.125,
           []<class R>(values<R>& p) {
@@ -234,6 +313,33 @@ inline const std::tuple blocks{
                    .delay = p(0.41_ms)},
                   T);
           }},
+    entry{"ball_screw_drive", 8,
+          []<class R>(values<R>& p) {
+              return ball_screw_drive<asymmetric_stribeck<s::angular_velocity, s::torque, R>, R>(
+                  {.inertia = p(0.0078_kgm2),
+                   .viscous = p(0.02_Nm / 1_radps),
+                   .torque_constant = p(0.48_Nm / 1_A),
+                   .pitch = p(10_mm),
+                   .friction = {{p(0.26_Nm), p(0.21_Nm), p(3.9_radps), p(4.2_radps)},
+                                {p.fixed(0.19_Nm), p.fixed(0.15_Nm), p.fixed(3.5_radps), p.fixed(3.6_radps)},
+                                {}}},
+                  T);
+          }},
+    entry{"three_phase_drive", 8,
+          []<class R>(values<R>& p) {
+              return three_phase_drive<R>({.force_constant = p(40_N / 1_A),
+                                           .resistance = p(2_V / 1_A),
+                                           .time_constant = p(4_ms),
+                                           .pole_pair = p.fixed(30_mm),
+                                           .bus = p(151_V),
+                                           .current_limit = p(5.01_A),
+                                           .bandwidth = 300_Hz,
+                                           .steps = 4,
+                                           .commutation_offset = p(0.3),
+                                           .gain_error = p(0.05)},
+                                          T);
+          }},
+    entry{"backlash", 0.125, []<class R>(values<R>& p) { return backlash<s::position, R>({p(31_mm)}, T); }},
     entry{
         "table_axis", 8,
         []<class R>(values<R>& p) {
@@ -291,6 +397,15 @@ inline const std::tuple blocks{
                                             .drift = p(20_N)},
                                            T);
           }},
+    entry{"lugre_observer", 0.125,
+          []<class R>(values<R>& p) {
+              return lugre_observer<s::force, R>({{{p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps), 2},
+                                                   p(3.1e6 * 1_N / 1_m),
+                                                   p(310_N / 1_mps),
+                                                   p(103_mmps)},
+                                                  p.fixed(20.0 / 1_s)},
+                                                 T);
+          }},
     entry{"harmonic_force_observer", 0.125,
           []<class R>(values<R>&) {
               const std::array tones{46_Hz, 69_Hz};
@@ -331,6 +446,10 @@ inline const std::tuple sources{
                                           .harmonics = {{p(101), p(-52), p(13)}, {p(23), p.fixed(0), p(31)}},
                                           .entry = 20_ms},
                                          T);
+          }},
+    entry{"white_noise", 0,
+          []<class R>(values<R>& p) {
+              return white_noise<s::velocity, R>({p(0.3_mmps), 7}, T);
           }},
     entry{"milling_force", 0,
           []<class R>(values<R>& p) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <quadrant/control/axis_law.hpp>
 #include <quadrant/feedforward/inverse_model.hpp>
 #include <quadrant/feedforward/preview.hpp>
 
@@ -56,6 +57,29 @@ template <class Command, class Real> struct inverted : quadrant::inverse_model<C
     std::complex<double> response(quadrant::frequency) const {
         const auto& p = this->given();
         return (1 + quadrant::detail::plain(p.damping)) / quadrant::detail::plain(p.gain);
+    }
+};
+
+/// Any control law (`axis_law`): the trajectory is x in all three, the encoder says x/4, the tachometer -x/2.
+template <class Law> struct law_on : Law {
+    using input = quadrant::signal::position;
+    using position = quadrant::quantity<quadrant::si::length, quadrant::real_of<Law>>;
+    using velocity = quadrant::quantity<quadrant::si::velocity, quadrant::real_of<Law>>;
+    using Law::Law;
+    using typename Law::value;
+
+    value operator()(position x) noexcept {
+        using Real = quadrant::real_of<Law>;
+        return Law::operator()(as_motion(x), Real(0.25) * x, velocity::from_value(Real(-0.5) * x.value()));
+    }
+    void settle(value u) noexcept { Law::settle(position(), u); }
+    std::complex<double> response(quadrant::frequency f) const requires requires(const Law& l) {
+        l.Law::response(f);
+    }
+    {
+        const quadrant::law_response r = Law::response(f);
+        return r.to_position + r.to_velocity + r.to_acceleration - 0.25 * r.from_position +
+               0.5 * r.from_velocity;
     }
 };
 

@@ -173,6 +173,43 @@ TEST_CASE("kalman: at rest far from zero nothing moves, to the last bit; a bad c
     CHECK(f.now().position == before.position);
     CHECK(f.now().disturbance == before.disturbance);
 }
+TEST_CASE("kalman: with half_step a reading within half a step of the prediction changes nothing, one outside "
+          "counts from "
+          "there") {
+    auto p = x_axis;
+    filter noisy(p, T);
+    p.half_step = 0.125_um;
+    filter bounded(p, T);
+    CHECK(bounded(0.12_um) == 0_mps);
+    CHECK(bounded.position() == 0_m);
+    CHECK(bounded.innovation() == 0_m);
+    for (const double way : {1.0, -1.0}) {
+        bounded.reset(), noisy.reset();
+        CHECK(bounded(way * 0.525_um).value() == Approx(noisy(way * 0.4_um).value()).scale(0));
+        CHECK(bounded.disturbance().value() == Approx(noisy.disturbance().value()).scale(0));
+    }
+    bounded.settle(1_um);
+    CHECK(bounded(std::nan("") * 1_m) == 0_mps); // not taken for a reading inside
+    CHECK(bounded.faulted());
+    CHECK(bounded.position() == 1_um);
+}
+TEST_CASE("kalman: with half_step an axis that stands anywhere is told to stand still; with noise every "
+          "reading shakes it") {
+    auto p = x_axis;
+    filter noisy(p, T);
+    p.half_step = 0.125_um;
+    filter bounded(p, T);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> jitter(-0.02e-6, 0.02e-6); // at the edge of two counts
+    double shaken = 0, still = 0;
+    for (int k = 0; k < 4000; ++k) {
+        const auto reading = 0.25_um * std::floor((10.25e-6 + jitter(random)) / 0.25e-6) + 0.125_um;
+        const double a = noisy(reading).value(), b = bounded(reading).value();
+        if (k >= 3000) shaken = std::max(shaken, std::abs(a)), still = std::max(still, std::abs(b));
+    }
+    CHECK(shaken > 5e-6);
+    CHECK(still < 0.02 * shaken);
+}
 TEST_CASE("kalman: refuses noise that is none, and a mass that is none") {
     const auto with = [](auto change) {
         auto p = x_axis;
@@ -183,6 +220,8 @@ TEST_CASE("kalman: refuses noise that is none, and a mass that is none") {
                          "kalman.encoder_noise = 0: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS(with([](auto& p) { p.drift = -1_N; }), "kalman.drift = -1: must be finite and above 0",
                          invalid_parameter);
+    CHECK_THROWS_WITH_AS(with([](auto& p) { p.half_step = -1_um; }),
+                         "kalman.half_step = -1e-06: must be finite and not below 0", invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.mass = 0_kg; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.force_constant = 0_N / 1_V; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.viscous = -1_N / 1_mps; }), invalid_parameter);

@@ -14,7 +14,7 @@ struct wanted_margins {
 /// What stops a gain from being higher.
 enum class gain_limit { gain_margin, phase_margin, modulus_margin, stability, band };
 /// In words, for a message.
-inline std::string text(gain_limit l) {
+constexpr const char* text(gain_limit l) {
     switch (l) {
     case gain_limit::gain_margin:
         return "gain margin";
@@ -100,8 +100,8 @@ template <class Broken> highest_gain highest(const char* field, const Broken& ju
         return {good, last};
     }
     require(false, field, low,
-            "no gain keeps all margins; the lowest tried still breaks: " + text(last.what) + " (at " +
-                quadrant::detail::shortest(last.at.value()) + " Hz)");
+            quadrant::detail::rule("no gain keeps all margins; the lowest tried still breaks: ") +
+                text(last.what) + " (at " + quadrant::detail::shortest(last.at.value()) + " Hz)");
     return {};
 }
 } // namespace detail

@@ -100,7 +100,9 @@ private:
     place placed(time d) const noexcept {
         const number periods = d.value() / number(period_.value());
         if (!(periods >= number(0))) return {0, Real(0), true};
-        if (periods >= number(double(Capacity))) return {Capacity, Real(0), periods > number(double(Capacity))};
+        // Capacity * period is no more than that, however its quotient rounds.
+        if (periods >= number(double(Capacity)))
+            return {Capacity, Real(0), d.value() > number(double(Capacity) * period_.value())};
         const double whole = std::floor(detail::plain(periods));
         return {std::size_t(whole), Real(periods - number(whole)), false};
     }

@@ -65,7 +65,7 @@ public:
         require_positive("maxwell_slip.attraction", p.attraction);
     }
 
-    value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }
+    value operator()(argument v) noexcept { return memory_.step(v, moved<false>(v, period_)); }
     void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
         state to;
@@ -79,12 +79,24 @@ public:
     }
 
     /// The force after moving at v for h; changes nothing.
-    outcome after(argument v, time h) const noexcept {
+    outcome after(argument v, time h) const noexcept { return moved<true>(v, h); }
+    void become(const state& next) noexcept { memory_.become(next); }
+
+    /// Shares of the level as they are used, sum 1.
+    const std::array<Real, N>& weights() const noexcept { return weights_; }
+    bool faulted() const noexcept { return memory_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return memory_.now(); }
+
+private:
+    /// The slope only for those who ask: the step of a feedforward does not.
+    template <bool Slope> outcome moved(argument v, time h) const noexcept {
         using std::exp;
         const bool forward = v >= argument(), moves = v != argument();
         const argument speed = forward ? v : -v;
         const value level = curve_.slip(v);
-        const auto fall = detail::slip_slope(curve_, v, level); // of the level by the speed, <= 0
+        gain_of<Out, In, Real> fall{}; // of the level by the speed, <= 0
+        if constexpr (Slope) fall = detail::slip_slope(curve_, v, level);
         const Real relaxes(attraction_ * h / level), kept = exp(-relaxes);
         outcome to{.force = curve_.viscous() * v, .slope = curve_.viscous(), .next = {}};
         for (std::size_t i = 0; i < N; ++i) {
@@ -96,31 +108,25 @@ public:
             if (moves && now.slips && along > value()) { // slips on
                 const value off = along - share;
                 next = {share + off * kept, true};
-                to.slope += fall * (weights_[i] * (Real(1) - kept) + Real(off / level) * kept * relaxes);
+                if constexpr (Slope)
+                    to.slope += fall * (weights_[i] * (Real(1) - kept) + Real(off / level) * kept * relaxes);
             } else if (const value reached = along + stiff * speed; !moves || reached < share) { // sticks
                 next = {reached, false};
-                to.slope += stiff;
+                if constexpr (Slope) to.slope += stiff;
             } else { // breaks away, with what it holds where the level has fallen below that
                 const value off = along > share ? value(along - share) : value();
                 next = {share + off * kept, true};
-                to.slope += off > value() ? gain_of<Out, In, Real>(fall * (weights_[i] * (Real(1) - kept) +
-                                                                           Real(off / level) * kept * relaxes))
-                                          : gain_of<Out, In, Real>(fall * weights_[i]);
+                if constexpr (Slope)
+                    to.slope += off > value()
+                                    ? gain_of<Out, In, Real>(fall * (weights_[i] * (Real(1) - kept) +
+                                                                     Real(off / level) * kept * relaxes))
+                                    : gain_of<Out, In, Real>(fall * weights_[i]);
             }
             if (!forward) next.force = -next.force;
             to.force += next.force;
         }
         return to;
     }
-    void become(const state& next) noexcept { memory_.become(next); }
-
-    /// Shares of the level as they are used, sum 1.
-    const std::array<Real, N>& weights() const noexcept { return weights_; }
-    bool faulted() const noexcept { return memory_.faulted(); }
-    const parameters& given() const noexcept { return given_; }
-    const state& now() const noexcept { return memory_.now(); }
-
-private:
     static std::array<Real, N> normalised(const parameters& p) {
         number weights(0), forces(0);
         bool by_force = true; // no weight given

@@ -13,9 +13,12 @@ namespace quadrant {
 /// of a filtered derivative, and what pushes.
 ///   dx/dt = v, M dv/dt = kf u - viscous v + d, dd/dt = white noise; encoder = x + white noise; steady Kalman gain K
 ///   x = p + K (encoder - p_x),   next p = exp(F T) x + integral u   (exact for a held command)
+/// With `half_step` a reading is a bounded set instead, x within half_step of it: a prediction inside stays, one outside is
+/// corrected by what it is outside, with the same gain.
 /// The disturbance is a state because friction and cutting forces are not white: without it the speed is biased by what
 /// a constant force adds between two corrections.
-/// Source: [Franklin1998] ch. 9 (steady-state optimal estimation), gain by `dare`.
+/// Source: [Franklin1998] ch. 9 (steady-state optimal estimation), gain by `dare`; half_step: the dead zone of a
+/// set-membership update [Fogel1982].
 /// Ports: encoder in, velocity at the same sample out; the command `applied` since the sample before is the second argument,
 /// read before it is written (// z^-1, no loop to solve). Positive command, force and motion agree. With a delayed axis
 /// feed it the delayed command (`delay_line`).
@@ -24,7 +27,8 @@ namespace quadrant {
 /// Range: encoder_noise and drift > 0 (a quantizer's noise: step / sqrt(12), white while some steps are crossed per period);
 /// their ratio sets the bandwidth(). In float up to 0.1 m with steps of 0.1 um.
 /// NaN and infinities in encoder or command: holds the last velocity, keeps the state, raises faulted().
-/// Throws "kalman.<field> = ...: must be ..." for period, mass, force_constant, viscous, encoder_noise, drift.
+/// Throws "kalman.<field> = ...: must be ..." for period, mass, force_constant, viscous, encoder_noise, drift,
+/// half_step.
 /// Cost: 9 multiplications, 24 bytes of state. One constant corner and no model: `filtered_derivative`.
 template <signal_tag Command, class Real = double> class kalman {
 public:
@@ -42,6 +46,8 @@ public:
         gain_of<signal::force, signal::velocity, number> viscous{}; ///< >= 0
         quantity_of<signal::position, number> encoder_noise;        ///< standard deviation of a reading; > 0
         quantity_of<signal::force, number> drift; ///< deviation that d gathers in one second; > 0
+        quantity_of<signal::position, number>
+            half_step{}; ///< of a quantizer taken as a bounded set; >= 0; 0: as noise
     };
     struct state {
         argument position{};
@@ -56,6 +62,8 @@ public:
         require_not_negative("kalman.viscous", p.viscous);
         require_positive("kalman.encoder_noise", p.encoder_noise);
         require_positive("kalman.drift", p.drift);
+        require_not_negative("kalman.half_step", p.half_step);
+        half_step_ = Real(p.half_step.value());
         // In units of the encoder's noise, the period, and the force that moves the mass by one in the other: all of order one.
         const number T(period.value()), sigma = p.encoder_noise.value(), mass = p.mass.value();
         const number slow = p.viscous.value() * T / mass, thrust = T * T / (mass * sigma);
@@ -85,9 +93,9 @@ public:
                    u = applied.value();
         const Real px = x + (step_[0][1] * v + step_[0][2] * d + from_command_[0] * u);
         const Real pv = step_[1][1] * v + step_[1][2] * d + from_command_[1] * u;
-        const Real off = encoder.value() - px;
+        const Real off = outside(encoder.value() - px);
         const Real nx = px + gain_[0] * off, nv = pv + gain_[1] * off, nd = d + gain_[2] * off;
-        if (!finite(nx, nv, nd)) return out_.hold();
+        if (!finite(encoder, nx, nv, nd)) return out_.hold();
         state_ = {argument::from_value(nx), value::from_value(nv), force::from_value(nd)};
         innovation_ = argument::from_value(off);
         return out_.keep(state_.velocity);
@@ -105,7 +113,8 @@ public:
     const argument& position() const noexcept { return state_.position; }
     const value& velocity() const noexcept { return state_.velocity; }
     const force& disturbance() const noexcept { return state_.disturbance; }
-    const argument& innovation() const noexcept { return innovation_; } ///< encoder minus what was expected
+    /// Encoder minus what was expected; with half_step what of it lies outside.
+    const argument& innovation() const noexcept { return innovation_; }
     /// Standard deviations that the model expects: of the estimates (position, velocity, disturbance) and of the innovation.
     struct deviations {
         quantity_of<signal::position> position;
@@ -121,7 +130,7 @@ public:
     frequency bandwidth() const {
         return frequency::from_value(-std::log(radius_) / (2 * std::numbers::pi * period_.value()));
     }
-    /// From encoder to velocity, no command.
+    /// From encoder to velocity, no command, without half_step.
     std::complex<double> response(frequency f) const {
         using complex = std::complex<double>;
         const complex back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
@@ -140,8 +149,13 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
+    Real outside(Real off) const noexcept {
+        return off > half_step_ ? off - half_step_ : off < -half_step_ ? off + half_step_ : Real(0);
+    }
+
     parameters given_;
     duration period_;
+    Real half_step_{};
     matrix<3, 3, Real> step_{};
     column<3, Real> from_command_{}, gain_{};
     column<3> deviation_{};

@@ -135,7 +135,7 @@ private:
         require_not_negative("linear_motor.delay", p.delay);
         require(detail::plain(p.delay) / period.value() <= static_cast<double>(Capacity - 1),
                 "linear_motor.delay", p.delay,
-                "must not be beyond the capacity (" + std::to_string(Capacity - 1) + " periods)");
+                "must not be beyond the capacity (" + detail::shortest(double(Capacity - 1)) + " periods)");
         require_not_negative("linear_motor.limit", p.limit);
         require_not_negative("linear_motor.dac_step", p.dac_step);
         require_not_negative("linear_motor.encoder_step", p.encoder_step);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <string>
 
 namespace quadrant {
 
@@ -25,13 +24,13 @@ namespace detail {
 template <signal_tag Signal, std::size_t Harmonics, class Real> class periodic_sum {
 public:
     template <class Number>
-    periodic_sum(const std::string& block, const periodic<Signal, Harmonics, Number>& p)
+    periodic_sum(const char* block, const periodic<Signal, Harmonics, Number>& p)
         : period_(in_real<Real>(p.period)) {
         using std::cos, std::sin;
-        require_positive((block + ".period").c_str(), p.period);
+        require_positive({block, ".period"}, p.period);
         for (std::size_t i = 0; i < Harmonics; ++i) {
-            require_finite((block + ".size").c_str(), p.size[i]);
-            require_finite((block + ".phase").c_str(), p.phase[i]);
+            require_finite({block, ".size"}, p.size[i]);
+            require_finite({block, ".phase"}, p.phase[i]);
             sine_[i] = in_real<Real>(p.size[i] * Number(cos(p.phase[i])));
             cosine_[i] = in_real<Real>(p.size[i] * Number(sin(p.phase[i])));
         }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "margins.hpp"
+#include "step_test.hpp"
+
+namespace quadrant::analysis {
+
+/// What is usually asked of one axis under a control law.
+struct law_figures {
+    stability_margins margins;          ///< of the loop opened at the command
+    std::optional<double> gain_rise;    ///< by how much the gain may rise until the loop is unstable [dB]
+    std::optional<double> gain_fall;    ///< by how much it may fall [dB]
+    std::optional<margin> phase;        ///< the smallest phase margin [deg]
+    double sensitivity_peak = 0;        ///< max |1/(1 + L)|
+    std::optional<frequency> bandwidth; ///< where the sensitivity comes up through -3 dB
+    margin softest{}; ///< |1/disturbance| at its least: the command that moves the axis by 1 m
+    step_figures reference, disturbance; ///< a step of 1 mm; of a command of 1
+    bool settles = false; ///< both steps die out in the time of the test: a loop that is not stable does not
+};
+
+/// All of it at once, for any linear law in the port: frequency response, margins, bandwidth, steps.
+/// At half the sampling rate L is real: that counts as a crossing of the phase when it is negative there.
+/// Source: [Yeung2006] section 3 (analysis of the axis control), [Franklin1998].
+/// Throws for a band that is none; a law that is not stable is analysed and told by `settles`.
+template <class Law>
+law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
+                     const step_options<typename Law::output>& steps = {}) {
+    const frequency nyquist = 0.5 / loop.axis.period;
+    const band searched{from, 0.999 * nyquist};
+    const auto open = [&](frequency f) { return loop.open(f); };
+    law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};
+    const complex last = loop.open(nyquist);
+    auto crossings = y.margins.gain_crossings;
+    if (last.real() < 0) crossings.push_back({-decibel(std::abs(last)), nyquist});
+    for (const margin& m : crossings) {
+        if (m.value > 0 && (!y.gain_rise || m.value < *y.gain_rise)) y.gain_rise = m.value;
+        if (m.value < 0 && (!y.gain_fall || -m.value < *y.gain_fall)) y.gain_fall = -m.value;
+    }
+    y.phase = y.margins.smallest_phase();
+    y.sensitivity_peak = 1 / y.margins.modulus.value;
+    y.bandwidth = sensitivity_bandwidth([&](frequency f) { return loop.sensitivity(f); }, searched);
+    y.softest = least([&](frequency f) { return 1.0 / loop.disturbance(f); }, searched);
+    y.reference = reference_step(loop.law, loop.axis, quantity<si::length>::from_value(1e-3), steps);
+    y.disturbance =
+        disturbance_step(loop.law, loop.axis, quantity_of<typename Law::output>::from_value(1), steps);
+    y.settles = y.reference.settling && y.disturbance.settling;
+    return y;
+}
+
+} // namespace quadrant::analysis

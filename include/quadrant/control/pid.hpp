@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+#include "../observer/nominal_plant.hpp"
+#include "axis_law.hpp"
+#include "proportional_integral.hpp"
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace quadrant {
+
+/// Where a `pid` takes the velocity error of its derivative part from.
+enum class derivative_from {
+    tachometer, ///< velocity of the trajectory minus that of the tachometer
+    positions   ///< the difference of reference and measured position from sample to sample
+};
+
+/// A control law of a feed drive: P and I on the position error, D on the velocity error, each reference with its weight.
+///   u = Kp (b x_ref - x) + Ki T sum (x_ref - x) + Kd q,   q = lowpass(c v_ref - v)
+/// Source: [Yeung2006] Table 10 (derivative on the velocity error from the tachometer); weights and filter [Astrom1995] ch. 3.4.
+/// Ports: those of `axis_law`. The sum has the present sample in it. The acceleration of the reference is not used.
+/// State: the integral in units of the command, q, the last difference of positions; `reset` at rest at zero; `settle(x, u)`:
+/// the integral holds u.
+/// Range: gains >= 0, weights finite (b = c = 0: derivative and proportion on the measurement alone), derivative_corner > 0,
+/// infinite: no filter. limit is that of the amplifier, for the integral; what was applied is told by applied(u).
+/// NaN and infinities: holds the last command, keeps the state, raises faulted().
+/// Throws "pid.<field> = ...: must ..." for derivative_gain, weights, derivative_corner; the others as `proportional_integral`.
+/// Cost: 6 multiplications. Without derivative: `proportional_integral`; with the inverse of the plant: `sliding_mode`.
+template <class Real = double, signal_tag Command = signal::voltage,
+          anti_windup_rule AntiWindup = conditional_integration>
+class pid {
+    using loop_box = proportional_integral<signal::position, Command, AntiWindup, Real>;
+
+public:
+    using output = Command;
+    using value = quantity_of<Command, Real>;
+    using position = quantity_of<signal::position, Real>;
+    using velocity = quantity_of<signal::velocity, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        gain_of<Command, signal::position, number> gain;               ///< Kp; >= 0
+        gain_rate_of<Command, signal::position, number> integral_gain; ///< Ki; >= 0
+        gain_of<Command, signal::velocity, number> derivative_gain;    ///< Kd; >= 0
+        derivative_from derivative = derivative_from::tachometer;
+        frequency derivative_corner = frequency::from_value(std::numeric_limits<double>::infinity());
+        number position_weight = 1; ///< b
+        number velocity_weight = 1; ///< c
+        quantity_of<Command, number> limit =
+            quantity_of<Command, number>::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
+        AntiWindup anti_windup = {};
+    };
+    struct state {
+        velocity q{};
+        position past{}; ///< c x_ref - x of the last sample
+        value loop{};    ///< P and I of the last sample
+    };
+
+    pid(const parameters& p, duration period)
+        : given_(p), period_(period), loop_({p.gain, p.integral_gain, p.limit, p.anti_windup}, period),
+          derivative_gain_(in_real<Real>(p.derivative_gain)), weight_(Real(p.velocity_weight)) {
+        require_not_negative("pid.derivative_gain", p.derivative_gain);
+        require_finite("pid.position_weight", p.position_weight);
+        require_finite("pid.velocity_weight", p.velocity_weight);
+        require(p.derivative_corner > frequency(), "pid.derivative_corner", p.derivative_corner,
+                "must be above 0 (infinite: no filter)");
+        set_aside_ =
+            in_real<Real>(gain_of<Command, signal::position, number>(p.gain * (p.position_weight - number(1))));
+        share_ = 1 - std::exp(-2 * std::numbers::pi * p.derivative_corner.value() * period.value());
+    }
+
+    value operator()(const axis_motion<Real>& reference, position measured, velocity tachometer) noexcept {
+        const position past = weight_ * reference.position - measured;
+        const velocity error = given_.derivative == derivative_from::tachometer
+                                   ? velocity(weight_ * reference.velocity - tachometer)
+                                   : velocity((past - state_.past) / time());
+        const velocity q = state_.q + Real(share_) * (error - state_.q);
+        const value rest = set_aside_ * reference.position + derivative_gain_ * q;
+        if (!finite(reference.acceleration, reference.velocity, tachometer, past, rest)) return out_.hold();
+        const value loop = loop_(reference.position - measured);
+        if (!finite(loop + rest)) return out_.hold();
+        state_ = {q, past, loop};
+        return out_.keep(loop + rest);
+    }
+    /// What was applied of the last command.
+    void applied(value u) noexcept { loop_.applied(state_.loop + (u - out_.last())); }
+    void reset() noexcept {
+        loop_.reset();
+        state_ = {};
+        out_.reset();
+    }
+    void settle(position x, value u) noexcept {
+        const position past = weight_ * x - x;
+        const value loop = u - set_aside_ * x;
+        if (!finite(past, loop)) return out_.raise();
+        loop_.settle(position(), loop);
+        state_ = {velocity(), past, loop};
+        out_.reset(u);
+    }
+
+    /// Of the unlimited law.
+    law_response response(frequency f) const {
+        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value()),
+                                   filter = share_ / (1.0 - (1 - share_) * back),
+                                   derivative = detail::plain(derivative_gain_) * filter;
+        const double c = detail::plain(weight_);
+        law_response y;
+        y.from_position = loop_.response(f);
+        y.to_position = y.from_position + detail::plain(set_aside_);
+        if (given_.derivative == derivative_from::tachometer) {
+            y.from_velocity = derivative;
+            y.to_velocity = c * derivative;
+        } else {
+            const std::complex<double> rate = derivative * (1.0 - back) / period_.value();
+            y.from_position += rate;
+            y.to_position += c * rate;
+        }
+        return y;
+    }
+    bool limited() const noexcept { return loop_.limited(); } ///< the integral was restrained
+    bool faulted() const noexcept { return out_.faulted() || loop_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    quantity<si::time, Real> time() const noexcept { return in_real<Real>(period_); }
+
+    parameters given_;
+    duration period_;
+    loop_box loop_;
+    gain_of<Command, signal::velocity, Real> derivative_gain_;
+    gain_of<Command, signal::position, Real> set_aside_; ///< Kp (b - 1)
+    Real weight_;
+    double share_; ///< of a sample in q
+    state state_;
+    held_output<value> out_;
+};
+static_assert(axis_law<pid<>>);
+
+/// Where the poles of a `pid` loop shall lie: (s + real w)(s^2 + 2 damping w s + w^2), w = 2 pi natural.
+struct pid_poles {
+    frequency natural; ///< > 0
+    double damping = 1;
+    double real = 1; ///< third pole, as a multiple of w
+};
+
+/// Gains that put them there on x/u = B / (s (s + A)), weights one. In continuous time: the sampled loop is close to it while
+/// w is below about a twentieth of the sampling rate in rad/s. Gains that would be negative are refused by the block.
+template <signal_tag Command> auto place_pid(const axis_model<Command>& plant, const pid_poles& poles) {
+    require_positive("place_pid.plant.gain", plant.gain);
+    require_not_negative("place_pid.plant.damping", plant.damping);
+    require_positive("place_pid.natural", poles.natural);
+    require_positive("place_pid.damping", poles.damping);
+    require_positive("place_pid.real", poles.real);
+    const double w = 2 * std::numbers::pi * poles.natural.value(), B = plant.gain.value();
+    typename pid<double, Command>::parameters p;
+    p.gain = decltype(p.gain)::from_value(w * w * (1 + 2 * poles.damping * poles.real) / B);
+    p.integral_gain = decltype(p.integral_gain)::from_value(poles.real * w * w * w / B);
+    p.derivative_gain = decltype(p.derivative_gain)::from_value(
+        ((poles.real + 2 * poles.damping) * w - plant.damping.value()) / B);
+    return p;
+}
+
+} // namespace quadrant

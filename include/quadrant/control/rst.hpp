@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+#include "axis_law.hpp"
+#include "diophantine.hpp"
+
+namespace quadrant {
+
+namespace detail {
+/// lead() and most_lead of a law that previews Lead periods; nothing of one that does not.
+template <std::size_t Lead> struct previewing {
+    static constexpr std::size_t most_lead = Lead;
+    static constexpr std::size_t lead() noexcept { return Lead; }
+};
+template <> struct previewing<0> {};
+} // namespace detail
+
+/// What an `rst` is: polynomials in z^-1 by rising power, of the degrees R, S, T.
+template <std::size_t R, std::size_t S, std::size_t T, signal_tag Command = signal::voltage,
+          class Number = double>
+struct rst_polynomials {
+    z_polynomial<R, Number> r{};                                               ///< r[0] = 1
+    std::array<gain_of<Command, signal::position, Number>, S + 1> feedback{};  ///< s
+    std::array<gain_of<Command, signal::position, Number>, T + 1> reference{}; ///< t; the same sum as s
+    z_polynomial<R> recovery = {1}; ///< w, anti-windup: [0] = 1, roots inside the unit circle; 1 alone: at once
+};
+
+/// A control law of a feed drive of two degrees of freedom, any linear one on positions: what pole placement, zero phase error
+/// tracking, generalized predictive control and lead-lag compensation are.
+///   R u = T x_ref - S x,   R, S, T polynomials in z^-1
+///   under a limit: W u = T x_ref - S x + (W - R) u_applied
+/// Source: [Astrom1997] ch. 5 (two degrees of freedom), 3.5 (anti-windup by the observer polynomial W).
+/// Ports: those of `axis_law`; velocities and acceleration are not used. Designs: `place_rst`, `zero_phase_rst`,
+/// `generalized_predictive`, `design_lead_lag`; they check that the loop around their plant is stable.
+/// State: past references, positions, commands applied. `reset` at rest at zero; `settle(x, u)`: at rest at x, held by u when
+/// R has a root at z = 1 (integral); else the command starts from u and goes where the position asks.
+/// Range: S and T have the same sum (with an integral in axis or law a constant reference is reached); positions count from
+/// where the axis is, so that no digits are lost far from zero. With Lead > 0 the reference is taken so many periods ahead (`preview`).
+/// NaN and infinities in any input: holds the last command, keeps the state, raises faulted().
+/// Throws "rst.r[0] = ...: must be 1", "rst.reference = ...: must have the sum of feedback", "rst.recovery = ...: must ...".
+/// Cost: R + S + T + 2 multiplications, 8 (2 R + S + T) bytes of state. Of states instead: `state_feedback`.
+template <std::size_t R, std::size_t S, std::size_t T, std::size_t Lead = 0, class Real = double,
+          signal_tag Command = signal::voltage>
+requires(R > 0 && S > 0 && T > 0) class rst : public detail::previewing<Lead> {
+public:
+    using output = Command;
+    using value = quantity_of<Command, Real>;
+    using position = quantity_of<signal::position, Real>;
+    using velocity = quantity_of<signal::velocity, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+    using parameters = rst_polynomials<R, S, T, Command, number>;
+    struct state { ///< newest first
+        std::array<position, T> reference{};
+        std::array<position, S> measured{};
+        std::array<value, R> applied{}, excess{}; ///< excess: command minus applied
+    };
+
+    rst(const parameters& p, duration period) : given_(p), period_(period) {
+        require_positive("rst.period", period);
+        require(detail::plain(p.r[0]) == 1, "rst.r[0]", p.r[0], "must be 1");
+        require(p.recovery[0] == 1, "rst.recovery[0]", p.recovery[0], "must be 1");
+        double size = 0, difference = 0;
+        const auto take = [&](auto& own, const auto& from, const detail::field_name& name, double sign) {
+            for (std::size_t i = 0; i < from.size(); ++i) {
+                require_finite(name, from[i]);
+                own[i] = in_real<Real>(from[i]);
+                size += std::abs(detail::plain(from[i])), difference += sign * detail::plain(from[i]);
+            }
+        };
+        take(t_, p.reference, "rst.reference", 1);
+        take(s_, p.feedback, "rst.feedback", -1);
+        require(std::abs(difference) <= 1e-9 * size, "rst.reference", difference,
+                "must have the sum of feedback (difference)");
+        for (std::size_t i = 0; i <= R; ++i) {
+            require_finite("rst.r", p.r[i]);
+            require_finite("rst.recovery", p.recovery[i]);
+            r_[i] = Real(p.r[i]), w_[i] = Real(p.recovery[i]);
+        }
+        const double slowest = detail::largest_root(p.recovery);
+        require(slowest < 1, "rst.recovery", slowest, "must have its roots inside the unit circle (largest)");
+    }
+
+    value operator()(const axis_motion<Real>& reference, position measured, velocity tachometer) noexcept {
+        value u = t_[0] * (reference.position - measured);
+        for (std::size_t i = 1; i <= T; ++i) u += t_[i] * (state_.reference[i - 1] - measured);
+        for (std::size_t i = 1; i <= S; ++i) u -= s_[i] * (state_.measured[i - 1] - measured);
+        for (std::size_t i = 1; i <= R; ++i) u -= r_[i] * state_.applied[i - 1] + w_[i] * state_.excess[i - 1];
+        if (!finite(reference.velocity, reference.acceleration, tachometer, measured, u)) return out_.hold();
+        push(state_.reference, reference.position);
+        push(state_.measured, measured);
+        push(state_.applied, u);
+        push(state_.excess, value());
+        return out_.keep(u);
+    }
+    /// What was applied of the last command.
+    void applied(value u) noexcept {
+        const value excess = out_.last() - u;
+        if (!finite(excess)) return out_.raise();
+        state_.applied[0] = u, state_.excess[0] = excess;
+    }
+    void reset() noexcept { settle(position(), value()); }
+    void settle(position x, value u) noexcept {
+        if (!finite(x, u)) return out_.raise();
+        state_.reference.fill(x), state_.measured.fill(x);
+        state_.applied.fill(u), state_.excess.fill(value());
+        out_.reset(u);
+    }
+
+    /// Of the unlimited law; `to` of the reference as it is given, ahead by lead().
+    law_response response(frequency f) const {
+        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value()),
+                                   under = detail::polynomial(r_, back);
+        law_response y;
+        std::complex<double> power = 1;
+        for (std::size_t i = 0; i <= T; ++i, power *= back) {
+            y.to_position += detail::plain(t_[i]) * power / under;
+            y.from_position += detail::plain(t_[i]) / under;
+        }
+        power = back;
+        for (std::size_t i = 1; i <= S; ++i, power *= back)
+            y.from_position += detail::plain(s_[i]) * (power - 1.0) / under;
+        return y;
+    }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    template <class Value, std::size_t N> static void push(std::array<Value, N>& past, Value x) noexcept {
+        for (std::size_t i = N - 1; i > 0; --i) past[i] = past[i - 1];
+        past[0] = x;
+    }
+
+    parameters given_;
+    duration period_;
+    std::array<Real, R + 1> r_{}, w_{};
+    std::array<gain_of<Command, signal::position, Real>, S + 1> s_{};
+    std::array<gain_of<Command, signal::position, Real>, T + 1> t_{};
+    state state_;
+    held_output<value> out_;
+};
+static_assert(axis_law<rst<2, 2, 2>> && axis_law<rst<2, 2, 5, 2>>);
+
+/// Largest |pole| of the loop that the polynomials close around a plant: below 1 it is stable.
+template <std::size_t A, std::size_t B, std::size_t R, std::size_t S, std::size_t T, signal_tag Command,
+          class Number>
+double loop_radius(const sampled_plant<A, B, Number>& plant,
+                   const rst_polynomials<R, S, T, Command, Number>& law) {
+    z_polynomial<S, Number> s;
+    for (std::size_t i = 0; i <= S; ++i) s[i] = law.feedback[i].value();
+    const auto ar = detail::product(plant.a, law.r), bs = detail::product(plant.b, s);
+    z_polynomial<std::max(A + R, B + S), Number> c{};
+    for (std::size_t i = 0; i < ar.size(); ++i) c[i] += ar[i];
+    for (std::size_t i = 0; i < bs.size(); ++i) c[i] += bs[i];
+    return detail::largest_root(c);
+}
+
+} // namespace quadrant

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../signal.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace quadrant {
+
+/// Noise of a sensor, normally distributed and independent from sample to sample: what a tachometer or an interpolated
+/// encoder adds to its wire. The same seed gives the same noise on every machine.
+///   y[k] = deviation sqrt(-2 ln u) cos(2 pi v),  u and v in (0, 1] from `splitmix64` of seed and k
+/// Source: [Box1958] for the normal distribution, [Steele2014] for the generator, which is one of k: no state but a count.
+/// Ports: no input; noise of the coming sample out. Mean 0, variance deviation^2, never beyond 8.6 deviations.
+/// State: k; `reset`: k = 0; `settle(t)`: so long after that.
+/// Range: deviation >= 0; 0: none. Give every wire another seed, or their noise is the same.
+/// NaN: no input, so none; finite for ever.
+/// Throws "white_noise.deviation = ...: must be finite and not below 0", and for the period.
+/// Cost: one logarithm, one root, one cosine, 6 integer multiplications; nothing with deviation 0.
+template <signal_tag Signal, class Real = double> class white_noise {
+public:
+    using output = Signal;
+    using value = quantity_of<Signal, Real>;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity_of<Signal, number> deviation{}; ///< standard deviation; >= 0
+        std::uint64_t seed = 1;
+    };
+    struct state {
+        std::uint64_t k = 0; ///< of the coming sample
+    };
+
+    white_noise(const parameters& p, duration period)
+        : given_(p), deviation_(in_real<Real>(p.deviation)), period_(period) {
+        require_positive("white_noise.period", period);
+        require_not_negative("white_noise.deviation", p.deviation);
+    }
+
+    value operator()() noexcept {
+        const std::uint64_t k = state_.k++;
+        if (!(deviation_ > value())) return value();
+        const std::uint64_t at = mixed(given_.seed) + 2 * k;
+        const double u = uniform(at), v = uniform(at + 1);
+        return deviation_ * Real(std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v));
+    }
+    void reset() noexcept { state_ = {}; }
+    void settle(duration t) noexcept {
+        state_.k = static_cast<std::uint64_t>(std::llround(t.value() / period_.value()));
+    }
+
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static std::uint64_t mixed(std::uint64_t n) noexcept {
+        n = (n + 1) * 0x9e3779b97f4a7c15u;
+        n = (n ^ (n >> 30)) * 0xbf58476d1ce4e5b9u;
+        n = (n ^ (n >> 27)) * 0x94d049bb133111ebu;
+        return n ^ (n >> 31);
+    }
+    /// 2^-53 ... 1: its logarithm is finite.
+    static double uniform(std::uint64_t n) noexcept { return double((mixed(n) >> 11) + 1) * 0x1p-53; }
+
+    parameters given_;
+    value deviation_;
+    duration period_;
+    state state_;
+};
+
+} // namespace quadrant
