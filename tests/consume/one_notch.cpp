@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
-// What a project that uses quadrant might begin with. Built twice: by add_subdirectory and by find_package.
-#include <quadrant/filter/notch.hpp>
-#include <quadrant/literals.hpp>
+// What a project that uses quadrant might begin with. Built in every way in which one can get at the headers.
+#ifdef SINGLE_FILE
+#    include <quadrant_single.hpp>
+#else
+#    include <quadrant/filter/notch.hpp>
+#    include <quadrant/literals.hpp>
+#endif
 
 #include <cstdio>
 

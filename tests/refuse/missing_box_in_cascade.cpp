@@ -2,6 +2,7 @@
 // A set of boxes without friction: the message names the member.
 // MUST SAY: decltype (B::friction) | no member named 'friction'
 // MUST SAY: axis_boxes
+// AT MOST: gcc 1400, clang 800
 #include "quadrant/compose/cascade_p_pi.hpp"
 using namespace quadrant;
 

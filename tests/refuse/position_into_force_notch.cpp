@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // A notch for forces on a wire that carries a position.
 // MUST SAY: notch<quadrant::signal::force
+// AT MOST: gcc 3700, clang 1000
 #include "quadrant/filter/notch.hpp"
 #include "quadrant/literals.hpp"
 using namespace quadrant::literals;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Gain and integral gain exchanged: they differ by a second, so the compiler can tell.
 // MUST SAY: could not convert | no viable conversion
+// AT MOST: gcc 700, clang 14100
 #include "quadrant/control/proportional_integral.hpp"
 #include "quadrant/literals.hpp"
 using namespace quadrant::literals;

@@ -2,6 +2,7 @@
 // Two plain voltages: which is whose?
 // MUST SAY: along<quadrant::axis::x | along<axis::x
 // MUST SAY: could not convert | no viable conversion | chosen constructor is explicit
+// AT MOST: gcc 4600, clang 9500
 #include "quadrant/compose/xy_table.hpp"
 using namespace quadrant;
 

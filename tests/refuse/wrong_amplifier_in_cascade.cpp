@@ -2,6 +2,7 @@
 // Boxes whose amplifier carries another signal than the velocity loop puts out, without a static_assert under them.
 // MUST SAY: axis_boxes
 // MUST SAY: decltype (B::amplifier) | decltype(my_axis::amplifier)
+// AT MOST: gcc 1700, clang 1100
 #include "quadrant/compose/cascade_p_pi.hpp"
 using namespace quadrant;
 

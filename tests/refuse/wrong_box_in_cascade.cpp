@@ -3,6 +3,7 @@
 // MUST SAY: decltype (B::position_loop) | decltype(my_axis::position_loop)
 // MUST SAY: maps<
 // MUST SAY: axis_boxes
+// AT MOST: gcc 1400, clang 7500
 #include "quadrant/compose/cascade_p_pi.hpp"
 using namespace quadrant;
 

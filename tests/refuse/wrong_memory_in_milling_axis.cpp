@@ -3,6 +3,7 @@
 // MUST SAY: decltype (B::memory) | decltype(my_axis::memory)
 // MUST SAY: maps<
 // MUST SAY: milling_boxes
+// AT MOST: gcc 1400, clang 1100
 #include "quadrant/compose/milling_axis_boxes.hpp"
 #include "quadrant/memory/repetitive.hpp"
 using namespace quadrant;

@@ -1,0 +1,78 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# usage: compile_cost.sh >docs/compile_cost.md     what it costs to include each header, and to compile a full loop
+#        compile_cost.sh check                     fails when the headers read a tenth more lines than the page says
+# Environment: RUNS   compilations of each, of which the fastest counts (default 3)
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+page=$root/docs/compile_cost.md
+runs=${RUNS:-3}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export LC_ALL=C
+cd "$root/include"
+
+lines() { # FLAGS... FILE      what the compiler has to read
+    g++ -std=c++20 -I"$root/include" -E -P "$@" | wc -l
+}
+seconds() { # COMPILER ARGUMENTS...    processor time of the fastest run
+    for run in $(seq "$runs"); do
+        bash -c 'TIMEFORMAT="%U %S"; time "$@"' - "$@" 2>&1 | awk '{ print $1 + $2 }'
+    done | sort -n | head -n 1
+}
+row() { # NAME SOURCE FLAGS...
+    name=$1 source=$2
+    shift 2
+    printf '| %s | %s' "$name" "$(lines "$source")"
+    for compiler in g++ clang++; do
+        printf ' | %.2f' "$(seconds $compiler -std=c++20 -I"$root/include" "$@" "$source")"
+    done
+    printf ' |\n'
+}
+including() { # HEADER...
+    printf '#include <%s>\n' "$@" >"$work/source.cpp"
+    echo "$work/source.cpp"
+}
+
+if [ "${1-}" = check ]; then
+    now=$(lines "$(including quadrant/quadrant.hpp)")
+    before=$(sed -n 's/^| quadrant\.hpp | \([0-9]*\) .*/\1/p' "$page")
+    echo "quadrant.hpp reads $now lines, $before in docs/compile_cost.md"
+    [ "$now" -le $((before + before / 10)) ]
+    exit
+fi
+
+cat <<END
+# Cost of compiling
+
+Processor seconds of one compilation, the fastest of $runs, and the lines that the compiler reads (comments and blank lines
+not counted). $(g++ --version | head -n 1), $(clang++ --version | head -n 1). Written by
+\`sh benchmarks/compile_cost.sh >docs/compile_cost.md\`; a test fails when quadrant.hpp reads a tenth more lines than here.
+
+## A full loop
+
+With \`-O2\`: \`examples/02_closed_loop.cpp\` is a cascade on a motor, \`servo_axis.cpp\` the largest loop of
+\`examples/microcontroller\` (cascade, notch, friction, observer, memory).
+
+| source | lines | g++ | clang++ |
+|---|---|---|---|
+END
+row 02_closed_loop.cpp "$root/examples/02_closed_loop.cpp" -O2 -c -o "$work/object"
+row servo_axis.cpp "$root/examples/microcontroller/servo_axis.cpp" -O2 -DSERVO_NUMBER=double -c -o "$work/object"
+
+cat <<END
+
+## One header alone
+
+With \`-fsyntax-only\`. The first rows are what all the others stand on: a file with nothing of ours costs that much.
+
+| header | lines | g++ | clang++ |
+|---|---|---|---|
+END
+row '(std: array, cmath, complex)' "$(including array cmath complex)" -fsyntax-only
+row '(and Boost.Units: quantity, force, velocity)' \
+    "$(including array cmath complex boost/units/quantity.hpp boost/units/systems/si/force.hpp boost/units/systems/si/velocity.hpp)" -fsyntax-only
+row quadrant.hpp "$(including quadrant/quadrant.hpp)" -fsyntax-only
+for header in $(find quadrant -name '*.hpp' ! -path '*/diagnosis/*' ! -name quadrant.hpp | sort); do
+    row "${header#quadrant/}" "$(including "$header")" -fsyntax-only
+done
