@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSL-1.0
+// loadrt quadrant_plant count=2
+#include "quadrant_plant.hpp"
+
+#include "component.hpp"
+
+#include <rtapi_app.h>
+
+#pragma GCC visibility push(default)
+static int count = 1;
+MODULE_LICENSE("GPL");
+MODULE_DESCRIPTION("A linear-motor axis, simulated: mass, friction, cogging, delay, amplifier, encoder");
+RTAPI_MP_INT(count, "number of axes");
+
+static hal::component<hal::hal_plant> all;
+extern "C" int rtapi_app_main() { return all.start(count); }
+extern "C" void rtapi_app_exit() { all.stop(); }
+#pragma GCC visibility pop

@@ -1,0 +1,113 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# usage: run.sh QUADRANT_GAP FOLDER [table]     (as root; QUADRANT_TESTS=all; else, or without LinuxCNC, says so: 77)
+# The components in LinuxCNC itself, without a screen. HAL alone: bad pins, changes while it runs, another period. Then
+# the machine of examples/linuxcnc/machine under LinuxCNC's planner, recorded, imported and diagnosed.
+# With `table`: the comparison of docs/linuxcnc.md instead.
+set -eu
+skip() { echo "SKIPPED: LinuxCNC: $*"; exit 77; }
+[ "${QUADRANT_TESTS-}" = all ] || skip "only with QUADRANT_TESTS=all"
+[ "$(id -u)" = 0 ] || skip "run as root: the components go to its modules, and it is run as a user of its own"
+for tool in linuxcnc halrun halcmd halsampler; do
+    command -v $tool >/dev/null || skip "no $tool: apt-get install linuxcnc-uspace linuxcnc-uspace-dev"
+done
+[ -e /usr/include/linuxcnc/hal.h ] || skip "no hal.h: apt-get install linuxcnc-uspace-dev"
+/usr/bin/python3 -c 'import linuxcnc' || skip "/usr/bin/python3 has no module linuxcnc: apt-get install linuxcnc-uspace"
+for tool in script su useradd; do command -v $tool >/dev/null || skip "no $tool (bsdutils, passwd)"; done
+if pgrep -x rtapi_app >/dev/null; then skip "another one is running on this machine (rtapi_app)"; fi
+
+gap=$(realpath "$1")
+out=$2
+here=$(cd "$(dirname "$0")" && pwd)
+example=$(realpath "$here/../../examples/linuxcnc")
+modules=/usr/lib/linuxcnc/modules
+user=quadrant-hal
+rm -rf "$out"
+mkdir -p "$out/kept"
+out=$(realpath "$out")
+work=$(mktemp -d) # where the user may go: a build folder may be root's alone
+made_user=no
+clean() {
+    if [ $made_user = yes ]; then userdel -r $user 2>/dev/null || true; fi
+    for name in quadrant_axis quadrant_plant; do
+        rm -f $modules/$name.so
+        [ ! -e "$out/kept/$name.so" ] || mv "$out/kept/$name.so" $modules/
+    done
+    cp -r "$work/." "$out/"
+    rm -rf "$work"
+}
+trap clean EXIT
+for name in quadrant_axis quadrant_plant; do
+    [ ! -e $modules/$name.so ] || mv $modules/$name.so "$out/kept/" # somebody installed them: back at the end
+done
+sh "$example/build.sh" --install
+id $user >/dev/null 2>&1 || { useradd -m -s /bin/sh $user && made_user=yes; }
+chmod 755 "$work"
+
+failed=0
+claim() { # WHAT COMMAND...
+    what=$1
+    shift
+    if "$@"; then echo "ok: $what"; else echo "FAILED: $what" && failed=1; fi
+}
+
+machine() { # NAME SED_ARGUMENT...      a run of the machine with its INI file changed
+    name=$1
+    shift
+    cp -r "$example/machine" "$work/$name"
+    sed -i "$@" "$work/$name/quadrant.ini"
+    chown -R $user "$work/$name"
+    su $user -c "cd '$work/$name' && timeout 300 script -qfec 'linuxcnc quadrant.ini' run.log" </dev/null >/dev/null ||
+        { echo "FAILED: $name: LinuxCNC stopped:" && tail -20 "$work/$name/run.log" && exit 1; }
+}
+
+diagnose() { # NAME PERIOD_MS
+    cd "$work/$1"
+    sed -i "s/\"scale\": 1}/\"scale\": $2}/" record.map.json
+    sed -i "s/\"sample_period_s\": 0.001/\"sample_period_s\": $(python3 -c "print($2 / 1000)")/" machine.json
+    "$gap" import --map record.map.json record.txt log.csv >import.txt
+    "$gap" diagnose --machine machine.json --log log.csv --json found.json --quiet
+    cd - >/dev/null
+}
+said() { # NAME EXPRESSION of v (verdict), named (axis and effect of every claim)
+    python3 - "$work/$1/found.json" "$2" <<'END'
+import json, sys
+found = json.load(open(sys.argv[1]))
+v = found["verdict"]
+named = {c["axis"] + "." + c["effect"] for c in found["causes"] if c["probability"] >= 0.5}
+print("   ", v, sorted(named))
+sys.exit(0 if eval(sys.argv[2]) else 1)
+END
+}
+
+if [ "${3-}" = table ]; then
+    turns='s/circle.ngc diamond.ngc/& turns.ngc/'
+    machine pid "$turns; s/= quadrant.hal/= pid.hal/; s/quadrant-axis\.\(.\)\.time/pid.\1.do-pid-calcs.time/"
+    machine cascade "$turns; s/^FRICTION_\(COULOMB\|STATIC\) = .*/FRICTION_\1 = 0/; s/^OBSERVER_ON = 1/OBSERVER_ON = 0/"
+    machine friction "$turns; s/^OBSERVER_ON = 1/OBSERVER_ON = 0/"
+    machine observer "$turns"
+    machine memory "$turns; s/^MEMORY_WEIGHT = 0/MEMORY_WEIGHT = 1/; s/^MEMORY_CYCLE = 1/MEMORY_CYCLE = 1.884956/"
+    python3 "$example/compare.py" "pid=$work/pid/record.txt" "cascade=$work/cascade/record.txt" \
+        "and friction=$work/friction/record.txt" "and observer=$work/observer/record.txt" \
+        "and memory=$work/memory/record.txt"
+    exit 0
+fi
+
+# HAL alone.
+cp "$here/pins.hal" "$here/pins.sh" "$work"
+su $user -c "cd '$work' && timeout 120 halrun -f pins.hal" >"$work/pins.txt" 2>&1 || true
+sed 's/^/    /' "$work/pins.txt"
+claim "HAL alone: bad pins, changes while it runs, another period" grep -qx "failed: 0" "$work/pins.txt"
+
+# The machine.
+machine clean -e ''
+diagnose clean 1
+claim "1 kHz, nothing injected: no gap" said clean 'v in ("no_gap", "within_tolerance") and not named'
+machine injected 's/^HALFILE = plant.hal/&\nHALFILE = inject.hal/'
+diagnose injected 1
+claim "1 kHz, cogging and delay on the pins of quadrant_plant: both named, on their axis, and nothing else" \
+    said injected 'named == {"x.cogging", "x.time_delay"}'
+machine fast 's/^SERVO_PERIOD = .*/SERVO_PERIOD = 250000/'
+diagnose fast 0.25
+claim "4 kHz, nothing injected: no gap" said fast 'v in ("no_gap", "within_tolerance") and not named'
+exit $failed
