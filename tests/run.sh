@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: tests/run.sh          everything that a change must pass; at most 12 minutes on 2 cores
+# usage: tests/run.sh          everything that a change must pass; below 20 minutes on 2 cores
 #        tests/run.sh all      and clang-tidy and longer fuzzing
 #        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
@@ -17,10 +17,9 @@ logs=$build/logs
 mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
 
-# Test folders that start threads, themselves or through the diagnosis: these run under the thread sanitizer.
+# Test folders that start threads run under the thread sanitizer; of the diagnosis, which fits on all cores, tests/threads.
 threaded() { grep -rlE '#include <(thread|future)>' "$@" 2>/dev/null; }
 thread_tests=$(threaded tests | cut -d/ -f2 | sort -u)
-[ -z "$(threaded include/quadrant/diagnosis)" ] || thread_tests=$(printf '%s\ndiagnosis\n' "$thread_tests" | sort -u)
 fuzz_seconds=20          # all fuzzers together
 
 case "${1-}" in
@@ -128,8 +127,12 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         mkdir -p "$found"
         { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
         { printf '\001' && cat examples/data/machine.json; } >"$found/machine"
+        { printf '\002' && cat tests/fuzz/diagnosis.json; } >"$found/diagnosis"
         { printf '\003' && cat examples/import/twincat_scope.map.json; } >"$found/map"
         { printf '\004' && sed 's/^Name\t.*/Name\tr\ty\tu/' examples/import/twincat_scope.csv | head -n 60; } >"$found/foreign"
+        { printf '\005G1 F9 X5\nG4 P1\nG64 P1 G2 X9 Y1 R9\nX0 Y0 I-1\n' && grep ^N examples/path/circle.nc; } >"$found/gcode"
+        { printf '\006' && head -n 14 examples/path/butterfly.cl && printf 'SPLINE/OFF\nCIRCLE/0,-50,0,0,0,1,50\nGOTO/0,0,0\n'; } >"$found/cl"
+        { printf '\007' && cat examples/quadrant_cnc/milling_table.json; } >"$found/cnc"
         if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
             -artifact_prefix="$found/" "$found" >"$logs/$name.txt" 2>&1; then
             printf '%s: %s\n' "$name" "$(grep number_of_executed_units "$logs/$name.txt")"
@@ -153,7 +156,10 @@ tidy() { # clang-tidy over every header
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
-    chromium-driver python3 python3-selenium python3-jsonschema gnuplot-nox || exit 1
+    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev || exit 1
+[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
+    libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev ||
+    echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
 
 for phase; do
     case $phase in

@@ -46,9 +46,14 @@ std::pair<std::string, double> parse(const init_field& f, std::string_view text)
 
 /// Asks for what is not given; an empty answer leaves it out.
 void ask(init_options& o) {
-    for (const std::size_t i : std::array<std::size_t, 13>{0, 1, 2, 3, 4, 7, 8, 11, 12, 15, 16, 17, 18}) {
+    constexpr std::string_view asked[]{
+        "mass",           "force-constant",           "viscous",        "delay", "coulomb",
+        "tolerance-mass", "tolerance-force-constant", "resolution",     "limit", "position-gain",
+        "velocity-gain",  "velocity-integral",        "velocity-filter"};
+    for (std::size_t i = 0; i < init_fields.size(); ++i) {
         const init_field& f = init_fields[i];
-        if (!o.texts[i].empty()) continue;
+        if (!o.texts[i].empty() || std::find(std::begin(asked), std::end(asked), f.option) == std::end(asked))
+            continue;
         std::fprintf(stderr, "%s%s%s%s: ", f.meaning, *f.unit ? " [" : "", f.unit, *f.unit ? "]" : "");
         std::string answer;
         if (!std::getline(std::cin, answer)) return;

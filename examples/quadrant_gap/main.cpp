@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
         return 0;
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : bad_input_code;
-    } catch (const quadrant::diagnosis::bad_input& e) {
+    } catch (const std::exception& e) { // bad_input, or what this computer refuses
         std::fprintf(stderr, "quadrant-gap: %s\n", e.what());
     }
     return bad_input_code;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSL-1.0
-# The man page from the program's own help: cmake -DPROGRAM=quadrant-gap -DVERSION=0.1.0 -DOUT=quadrant-gap.1 -P man_page.cmake
-# So an option that the program has is an option that the page has.
+# The man page from the program's own help, so an option that the program has is an option that the page has:
+#   cmake -DPROGRAM=FILE -DNAME=quadrant-gap "-DSUMMARY=why ..." -DVERSION=0.1.0 -DMORE=SECTIONS -DOUT=quadrant-gap.1 -P man_page.cmake
 function(help out)
     execute_process(COMMAND "${PROGRAM}" ${ARGN} --help OUTPUT_VARIABLE text RESULT_VARIABLE code)
     if(code)
@@ -13,17 +13,21 @@ function(help out)
 endfunction()
 
 execute_process(COMMAND "${PROGRAM}" --help OUTPUT_VARIABLE plain)
-string(REGEX REPLACE ".*\nSubcommands:\n" "" subcommands "${plain}")
+set(subcommands)
+if(plain MATCHES "\nSubcommands:\n(.*)")
+    set(subcommands "${CMAKE_MATCH_1}")
+endif()
 string(REGEX MATCHALL "(^|\n)  [a-z]+" subcommands "${subcommands}")
 string(REGEX REPLACE "[\n ]" "" subcommands "${subcommands}")
 
 help(text)
-set(page ".TH QUADRANT-GAP 1 \"\" \"quadrant ${VERSION}\" \"User Commands\"
+string(TOUPPER ${NAME} title)
+string(REPLACE "-" "\\-" name "${NAME}")
+set(page ".TH ${title} 1 \"\" \"quadrant ${VERSION}\" \"User Commands\"
 .SH NAME
-quadrant-gap \\- why does the machine not do what its simulation says?
+${name} \\- ${SUMMARY}
 .SH SYNOPSIS
-.B quadrant-gap
-.I SUBCOMMAND
+.B ${name}
 .RI [ OPTIONS ]
 .SH OVERVIEW
 .nf
@@ -34,17 +38,9 @@ foreach(subcommand IN LISTS subcommands)
     string(TOUPPER ${subcommand} title)
     string(APPEND page ".SH ${title}\n.nf\n${text}.fi\n")
 endforeach()
-string(APPEND page ".SH EXIT STATUS
-0 when what was asked for is written, 2 on bad input: one line on standard error with file, line and column or key.
-.SH EXAMPLES
-.nf
-quadrant\\-gap init \\-\\-out machine.json \\-\\-log log.csv \\-\\-mass 340 \\-\\-force\\-constant 1450
-quadrant\\-gap diagnose \\-\\-machine machine.json \\-\\-log log.csv \\-\\-json found.json \\-\\-report found.html
-quadrant\\-gap apply \\-\\-machine machine.json \\-\\-diagnosis found.json \\-\\-out better.json
-quadrant\\-gap simulate \\-\\-machine better.json \\-\\-log another.csv
-quadrant\\-gap import \\-\\-map twincat_scope.map.json scope.csv log.csv
-.fi
-.SH SEE ALSO
-docs/diagnosis.md and docs/formats.md of the project.
-")
+if(EXISTS "${MORE}")
+    file(READ "${MORE}" more)
+    string(REPLACE "-" "\\-" more "${more}")
+    string(APPEND page "${more}")
+endif()
 file(WRITE "${OUT}" "${page}")

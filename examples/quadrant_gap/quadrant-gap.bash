@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSL-1.0
-# bash completion for quadrant-gap. What there is to complete is asked of the program, so it is never out of date.
+# bash completion for quadrant-gap, quadrant-reproduce, quadrant-cnc and quadrant-latency. What there is to complete is asked of the program, so it is never out of date.
 # zsh: autoload -U bashcompinit && bashcompinit, then source this file.
 _quadrant_gap() {
     local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} subcommand= w
@@ -17,4 +17,4 @@ _quadrant_gap() {
         COMPREPLY=($(compgen -f -- "$word"))
     fi
 }
-complete -o filenames -F _quadrant_gap quadrant-gap
+complete -o filenames -o default -F _quadrant_gap quadrant-gap quadrant-reproduce quadrant-cnc quadrant-latency

@@ -58,23 +58,18 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
         for (const place& p : a.where)
             places += fmt::format("<dt>{}</dt><dd>axis {}: {}</dd>", escape(percent(p.share)), escape(a.name),
                                   escape(p.finding));
-    return fill(joined(files::report_template_html),
-                {{"title", escape(s.log_file + " as " + s.machine_file + " predicts it")},
-                 {"badge", ""},
-                 {"sentence", escape(sentences)},
-                 {"overview", overviews},
-                 {"causes", none},
-                 {"remaining", "<dl>" + places + "</dl>"},
-                 {"next", none},
-                 {"axes", charts},
-                 {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
-                 {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Log</dt><dd>{}</dd></dl>",
-                                       escape(s.machine_file), escape(s.log_file))},
-                 {"charts", book.json_of_all()},
-                 {"dygraph_js", joined(files::dygraph_min_js)},
-                 {"dygraph_css", joined(files::dygraph_min_css)},
-                 {"css", joined(files::report_css)},
-                 {"js", joined(files::report_js)}});
+    return report_page({{"title", escape(s.log_file + " as " + s.machine_file + " predicts it")},
+                        {"badge", ""},
+                        {"sentence", escape(sentences)},
+                        {"overview", overviews},
+                        {"causes", none},
+                        {"remaining", "<dl>" + places + "</dl>"},
+                        {"next", none},
+                        {"axes", charts},
+                        {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
+                        {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Log</dt><dd>{}</dd></dl>",
+                                              escape(s.machine_file), escape(s.log_file))},
+                        {"charts", book.json_of_all()}});
 }
 
 } // namespace quadrant_gap

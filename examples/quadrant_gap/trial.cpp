@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap trial: does the diagnosis find what was put into machines that it did not make?
+#include "../for_each_index.hpp"
 #include "commands.hpp"
 #include "trial/child.hpp"
 #include "trial/files.hpp"
 #include "trial/page.hpp"
 #include "trial/tally.hpp"
 
-#include <atomic>
-#include <mutex>
+#include <quadrant/diagnosis/write_diagnosis.hpp>
+
 #include <openssl/evp.h>
-#include <thread>
 #include <unistd.h>
 
 namespace quadrant_gap {
@@ -17,6 +17,8 @@ namespace quadrant_gap {
 namespace {
 
 using namespace trial;
+using quadrant::diagnosis::bad_input, quadrant::diagnosis::write_aside;
+using quadrant_programs::for_each_index;
 
 struct trial_options {
     std::size_t machines = 200;
@@ -59,28 +61,6 @@ private:
     std::mutex telling_;
 };
 
-/// work(k) for k below n on several threads; the first exception is thrown on.
-template <class Work> void for_each_index(std::size_t n, unsigned jobs, Work&& work) {
-    std::atomic<std::size_t> next = 0;
-    std::exception_ptr failed;
-    std::mutex failing;
-    const auto loop = [&] {
-        for (std::size_t k; (k = next++) < n;) try {
-                work(k);
-            } catch (...) {
-                const std::lock_guard lock(failing);
-                if (!failed) failed = std::current_exception();
-                next = n;
-            }
-    };
-    {
-        std::vector<std::jthread> others;
-        for (unsigned j = 1; j < jobs; ++j) others.emplace_back(loop);
-        loop();
-    }
-    if (failed) std::rethrow_exception(failed);
-}
-
 /// The claims of a diagnosis that never saw the hold-out log: its forecast, and what they do on that log.
 std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const std::filesystem::path& folder) {
     const auto file = [&](const char* name) { return (folder / name).string(); };
@@ -104,15 +84,26 @@ std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const s
     return shrink_pair{*forecast, 1 - *after / *before};
 }
 
+/// Before the work, that what it finds can be written.
+void check_folders(const trial_options& o) {
+    for (const std::filesystem::path file : {o.json, o.report})
+        if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
+            throw bad_input(file.string(), "cannot be written: no such folder");
+    if (o.keep.empty()) return;
+    std::error_code fault;
+    std::filesystem::create_directories(o.keep, fault);
+    if (!std::filesystem::is_directory(o.keep, fault)) throw bad_input(o.keep, "cannot be made a folder");
+}
+
 void run_trial(trial_options o) {
+    check_folders(o);
     if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
     const auto planned_machines = plan(o.seed, o.machines);
     std::vector<std::size_t> chosen(o.machines);
     for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
     if (!o.only.empty()) chosen = o.only;
     for (const std::size_t k : chosen)
-        if (k >= o.machines)
-            throw quadrant::diagnosis::bad_input("--only", fmt::format("there is no machine {}", k));
+        if (k >= o.machines) throw bad_input("--only", fmt::format("there is no machine {}", k));
     std::vector<ordered_json> truths(chosen.size());
     progress drawn("drawn", chosen.size(), o.say);
     std::vector<drawn_machine> machines(chosen.size());
@@ -157,9 +148,9 @@ void run_trial(trial_options o) {
                         {"truth_sha256", digest}};
     result.update(tally(judged));
     const std::string text = summary_text(result);
-    if (!o.keep.empty()) write_file(std::filesystem::path(o.keep) / "truth.json", truth);
-    if (!o.json.empty()) write_file(o.json, result.dump(1) + "\n");
-    if (!o.report.empty()) write_file(o.report, page(result));
+    if (!o.keep.empty()) write_aside(std::filesystem::path(o.keep) / "truth.json", truth);
+    if (!o.json.empty()) write_aside(o.json, result.dump(1) + "\n");
+    if (!o.report.empty()) write_aside(o.report, page(result));
     if (!o.say.quiet) std::fputs(text.c_str(), stdout);
 }
 

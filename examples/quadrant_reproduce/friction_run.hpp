@@ -73,16 +73,10 @@ public:
 
 private:
     static auto controller(const axis& a) {
-        return typename decltype(loop::box)::parameters{.position_gain = position_gain,
-                                                        .velocity_gain = a.kp,
-                                                        .velocity_integral = a.ki,
-                                                        .estimator_corner = estimator_corner,
-                                                        .notch = notch_of(a),
-                                                        .plant_gain = a.B,
-                                                        .plant_pole = a.A_gms,
-                                                        .friction = Compensation::of(a),
-                                                        .disturbance = Observer::of(a),
-                                                        .limit = 10_V};
+        auto p = controller_of<decltype(loop::box)>(a);
+        p.friction = Compensation::of(a);
+        p.disturbance = Observer::of(a);
+        return p;
     }
     static auto machine(const axis& a, const reading& how) {
         const quantity<si::mass> mass = a.kf / a.B;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// quadrant-reproduce: the thesis' experiments computed again, and its figures beside ours.
+// quadrant-reproduce: published experiments computed again, and their figures beside ours.
 #include "choose.hpp"
 #include "experiments.hpp"
 #include "markdown.hpp"
@@ -77,7 +77,7 @@ int reproduce(const options& o, bool wants_page) {
         write_aside(o.json, to_json(all).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.markdown.empty()) write_aside(o.markdown, qr::markdown(all));
     if (wants_page) {
-        const bool can_draw = qr::gnuplot_is_here();
+        const bool can_draw = quadrant_page::gnuplot_is_here();
         write_aside(o.html, qr::page(all, can_draw, [&](std::size_t done, std::size_t of) {
                         say(fmt::format("picture {} of {}", done, of));
                     }));
@@ -86,7 +86,7 @@ int reproduce(const options& o, bool wants_page) {
             fmt::print(stderr,
                        "quadrant-reproduce: no gnuplot, so the page has its tables but no pictures (Debian "
                        "package {})\n",
-                       qr::gnuplot_package);
+                       quadrant_page::gnuplot_package);
     }
     say("");
     if (!o.quiet) {
@@ -122,9 +122,7 @@ int main(int argc, char** argv) {
         return reproduce(o, page->count() > 0 || (o.json.empty() && o.markdown.empty()));
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : bad_input_code;
-    } catch (const qr::unknown_id& e) {
-        fmt::print(stderr, "quadrant-reproduce: {}\n", e.what());
-    } catch (const quadrant::diagnosis::bad_input& e) {
+    } catch (const std::exception& e) { // unknown_id, bad_input, or what this computer refuses
         fmt::print(stderr, "quadrant-reproduce: {}\n", e.what());
     }
     return bad_input_code;

@@ -14,17 +14,17 @@ inline std::string cell(const std::string& text) {
 
 inline std::string markdown(const std::vector<section>& all) {
     std::string out =
-        "# The thesis' figures, reproduced\n\n"
+        "# Published figures, reproduced\n\n"
         "Written by `quadrant-reproduce --markdown docs/reproduction.md`; do not edit. Every figure under "
         "\"ours\" is computed "
         "in the run (`--html` draws the pictures, `--json` has all digits). In brackets: how far ours lies "
         "from the figure "
         "before the bracket.\n\n"
-        "- published, simulated or on the model: by [Jamaludin2008] in its own simulation\n"
-        "- published, measured: by [Jamaludin2008] on its machine, or on the frequency response measured "
+        "- published, simulated or on the model: by the source of the section in its own simulation\n"
+        "- published, measured: by the source on its machine, or on the frequency response measured "
         "there\n"
-        "- reference: our own earlier computation from the thesis' parameters by another program, "
-        "`../shared/reference/thesis.md`; asked is 2 % for loops and the memory, 10 % for friction\n\n"
+        "- reference: our own earlier computation from the source's parameters by another program, "
+        "`../shared/reference/`; asked is 2 % for loops and the memory, 10 % for friction\n\n"
         "| experiment | has a reference | within what is asked |\n|---|---|---|\n";
     std::string outside;
     for (const section& s : all) {

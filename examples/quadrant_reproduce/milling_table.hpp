@@ -2,6 +2,7 @@
 #pragma once
 #include "divergence_guard.hpp"
 #include "friction_run.hpp"
+#include "white_noise.hpp"
 
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <random>
 #include <string_view>
 #include <vector>
 
@@ -95,17 +95,11 @@ struct lugre_plant {
 template <class Friction, class Observer, class Memory> struct configuration {
     using boxes = milling_axis_boxes<typename Friction::box, typename Observer::box, typename Memory::box>;
     static typename boxes::parameters controller(const axis& a, const cut& c) {
-        return {.position_gain = position_gain,
-                .velocity_gain = a.kp,
-                .velocity_integral = a.ki,
-                .estimator_corner = estimator_corner,
-                .notch = notch_of(a),
-                .plant_gain = a.B,
-                .plant_pole = a.A_gms,
-                .friction = Friction::of(a),
-                .disturbance = Observer::of(a),
-                .memory = Memory::of(a, c),
-                .limit = 10_V};
+        auto p = controller_of<boxes>(a);
+        p.friction = Friction::of(a);
+        p.disturbance = Observer::of(a);
+        p.memory = Memory::of(a, c);
+        return p;
     }
 };
 using uncompensated = configuration<none, no_observer, no_memory>; ///< (i)
@@ -122,7 +116,7 @@ public:
         : loop_{.box = {Configuration::controller(a, c), period}}, motor_(machine(a, friction, c), period),
           cutter_({c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, harmonics},
                   period),
-          noise_(1e-6 * c.noise), random_(std::uint64_t(a.name[0])) {}
+          noise_(1e-6 * c.noise), gauss_(std::uint64_t(a.name[0])) {}
 
     void settle(quantity<si::length> at) {
         motor_.settle(at);
@@ -131,7 +125,7 @@ public:
     }
     void step(const typename loop::motion& r) {
         reading_ = motor_(loop_(r, reading_), cutter_());
-        if (noise_ > 0) reading_ = 250_nm * std::round((motor_.now().x + noise_ * gauss() * 1_m) / 250_nm);
+        if (noise_ > 0) reading_ = 250_nm * std::round((motor_.now().x + noise_ * gauss_() * 1_m) / 250_nm);
     }
     double position() const { return motor_.now().x.value(); } ///< of the axis, not of its encoder [m]
     bool stopped() const { return motor_.faulted() || loop_.faulted() || loop_.limited(); }
@@ -149,19 +143,13 @@ private:
         p.friction.curve.viscous += a.A_gms * believed; // A' beside sigma
         return p;
     }
-    /// Box and Muller: the standard library's own differ from one another.
-    double gauss() {
-        const auto uniform = [&] { return (double(random_() >> 11) + 0.5) / 9007199254740992.0; };
-        const double radius = std::sqrt(-2 * std::log(uniform()));
-        return radius * std::cos(2 * pi_ * uniform());
-    }
 
     loop loop_;
     motor motor_;
     cutting_force<15> cutter_;
     quantity<si::length> reading_{};
     double noise_; ///< m rms
-    std::mt19937_64 random_;
+    white_noise gauss_;
 };
 
 struct circle_result {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../page/picture.hpp"
+
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 /// What an experiment hands over: rows of figures, and pictures.
@@ -20,31 +21,12 @@ struct row {
     std::string note{};                          ///< why it differs, or how it was read
 };
 
-/// A curve; points with a value that is not finite interrupt it.
-struct line {
-    std::string name;
-    std::vector<double> x, y;
-    enum class style { solid, dashed, points } drawn = style::solid;
-};
-
-/// One diagram. Panels of one picture stand below each other (Bode: gain, phase).
-struct panel {
-    std::string x_label, y_label;
-    std::vector<line> lines;
-    bool log_x = false, log_y = false;
-    bool square = false; ///< equal scales: Nyquist
-    bool polar = false;  ///< x in degrees, y as radius about `polar_zero`
-    double polar_zero = 0;
-    std::optional<std::pair<double, double>> x_range{}, y_range{};
-};
+using quadrant_page::line;
+using quadrant_page::panel;
+using quadrant_page::picture;
 
 /// Cases of one experiment that hand over pictures of the same title draw into one: their lines are put together, panel by
 /// panel.
-struct picture {
-    std::string title, caption;
-    std::vector<panel> panels;
-};
-
 struct outcome {
     std::vector<row> rows;
     std::vector<picture> pictures{};

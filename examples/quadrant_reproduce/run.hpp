@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../for_each_index.hpp"
 #include "row.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 namespace quadrant_reproduce {
 
@@ -34,11 +31,11 @@ template <class Tell> std::vector<section> run_all(const std::vector<experiment>
     for (const experiment& e : chosen)
         for (const run_case& c : e.cases) cases.push_back(&c);
     std::vector<outcome> found(cases.size());
-    std::atomic<std::size_t> next = 0;
     std::size_t done = 0;
     std::mutex telling;
-    const auto work = [&] {
-        for (std::size_t k; (k = next++) < cases.size();) {
+    quadrant_programs::for_each_index(
+        cases.size(), std::min<std::size_t>(std::thread::hardware_concurrency(), cases.size()),
+        [&](std::size_t k) {
             try {
                 found[k] = cases[k]->run();
             } catch (const std::exception& e) {
@@ -51,15 +48,7 @@ template <class Tell> std::vector<section> run_all(const std::vector<experiment>
                 }
             const std::lock_guard lock(telling);
             tell(cases[k]->id, ++done, cases.size());
-        }
-    };
-    {
-        std::vector<std::jthread> others;
-        for (std::size_t k = 1; k < std::min<std::size_t>(std::thread::hardware_concurrency(), cases.size());
-             ++k)
-            others.emplace_back(work);
-        work();
-    }
+        });
     std::vector<section> out;
     auto at = found.begin();
     for (const experiment& e : chosen) {

@@ -18,13 +18,13 @@ namespace thesis {
 using namespace quadrant;
 using namespace quadrant::literals;
 
-/// One column of Tables 2.1, 2.2, 3.3, 4.1 and 4.3, in SI but for the names of the thesis.
+/// One axis: eq. (2.2), Table 2.2, eq. (3.5), Tables 4.1 and 4.3; in SI but for the names of the thesis.
 struct axis {
     const char* name;
     gain_of<signal::acceleration, signal::voltage> B;
-    frequency A;     ///< Table 2.1, friction in it
+    frequency A;     ///< of eq. (2.2), friction in it
     frequency A_gms; ///< A' of Table 4.1: what is linear beside GMS
-    duration delay;  ///< Td of Table 2.1
+    duration delay;  ///< Td of eq. (2.2)
     gain_of<signal::force, signal::voltage> kf;
     gain_of<signal::voltage, signal::velocity> kp;
     gain_rate_of<signal::voltage, signal::velocity> ki;
@@ -69,7 +69,7 @@ inline const axis y{
     .k = {newtons_per_um(99.94), newtons_per_um(1.364), newtons_per_um(1.081), newtons_per_um(0.119)},
     .C = 1000_N / 1_s,
     .corner = 90_Hz};
-/// The y axis with the friction of eq. (4.3b), adjusted on the machine.
+/// The y axis with the friction of Table 4.3b, adjusted on the machine.
 inline const axis y_adjusted = [] {
     axis a = y;
     a.alpha = {57_N, 26.5_N, 15_N, 3.4_N};
@@ -87,7 +87,7 @@ inline notch<signal::velocity>::parameters notch_of(const axis& a) {
     return {w0 / (2 * pi_) * 1_Hz, a.notch_damping / w0};
 }
 
-/// G(s) of eq. (2.2), Table 2.1.
+/// G(s) of eq. (2.2).
 inline analysis::axis_model<> model_of(const axis& a) { return {a.A, a.B, a.delay}; }
 
 /// The cascade of eqs. (2.22) to (2.34) around a plant: G, or a measured response.
@@ -97,6 +97,18 @@ template <analysis::frequency_response Plant> auto loop_around(const Plant& plan
                                analysis::in_series{analysis::derivative_model{estimator_corner},
                                                    analysis::notch_model{n.centre, n.damping}},
                                position_gain};
+}
+
+/// The controller that all simulations have; friction, observer and memory are for the caller to fill in.
+template <class Boxes> typename Boxes::parameters controller_of(const axis& a) {
+    return {.position_gain = position_gain,
+            .velocity_gain = a.kp,
+            .velocity_integral = a.ki,
+            .estimator_corner = estimator_corner,
+            .notch = notch_of(a),
+            .plant_gain = a.B,
+            .plant_pole = a.A_gms,
+            .limit = 10_V};
 }
 
 /// Friction of the plant [N], or against it in volts.

@@ -2,9 +2,9 @@
 #pragma once
 #include "divergence_guard.hpp"
 #include "friction_run.hpp"
+#include "white_noise.hpp"
 
 #include <optional>
-#include <random>
 #include <utility>
 
 /// The friction experiment on the y axis with GMS feedforward, 100 mm/s, on a machine that differs from its tables.
@@ -33,17 +33,10 @@ struct reversal_error { // um
 inline std::optional<reversal_error> reversals_with(const difference& d) {
     using loop_type = milling_axis<milling_axis_boxes<gms_model::box>>;
     using motor_type = linear_motor<maxwell_slip<4>>;
-    loop_type loop{.box = {{.position_gain = position_gain,
-                            .velocity_gain = y.kp,
-                            .velocity_integral = y.ki,
-                            .estimator_corner = estimator_corner,
-                            .notch = notch_of(y),
-                            .plant_gain = y.B,
-                            .plant_pole = y.A_gms,
-                            .friction = gms_model::of(y),
-                            .limit = 10_V,
-                            .dac_step = d.dac * 1_V},
-                           period}};
+    auto controller = controller_of<decltype(loop_type::box)>(y);
+    controller.friction = gms_model::of(y);
+    controller.dac_step = d.dac * 1_V;
+    loop_type loop{.box = {controller, period}};
     const double corner = 942.5 / (1 + 942.5 * d.lag);
     loop.box.measured_velocity = {{corner / (2 * pi_) * 1_Hz}, period};
 
@@ -64,12 +57,7 @@ inline std::optional<reversal_error> reversals_with(const difference& d) {
     p.friction.curve.viscous += y.A_gms * believed + d.viscous * 1_N / 1_mps;
     motor_type motor{p, period};
 
-    std::mt19937_64 random(1);
-    const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) / 9007199254740992.0; };
-    const auto gauss = [&] { // Box and Muller: the standard library's own differ from one another
-        const double radius = std::sqrt(-2 * std::log(uniform()));
-        return radius * std::cos(2 * pi_ * uniform());
-    };
+    white_noise gauss(1);
     const double amplitude = 0.03, w = 0.1 / amplitude, T = period.value();
     divergence_guard runs_away(1000, static_cast<std::size_t>(pi_ / w / T), 3); // a window is one half cycle
     quantity<si::length> reading{};

@@ -179,3 +179,11 @@ TEST_CASE("preview: refuses a lead beyond its capacity and below zero") {
     CHECK(refusal<preview<2>>({std::numeric_limits<double>::infinity() * 1_s}) != "");
     CHECK(refusal<preview<2>>({1_ms}) == "");
 }
+TEST_CASE(
+    "preview: whole periods up to its capacity are taken, though 13 periods of 100 us over 100 us are not 13") {
+    const auto T = 100_us;
+    REQUIRE((13.0 * T).value() / T.value() > 13);
+    preview<13> p{{13.0 * T}, T};
+    CHECK_FALSE(p.limited());
+    for (int k = 0; k < 20; ++k) CHECK(p(motion_at(k, 0, 0)).ahead.position.value() == k);
+}

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
-// The first byte chooses the reader; bad_input is the only way out but success.
+// The first byte chooses the reader; bad_input (bad_program of a tool path) is the only way out but success.
+#include "../../examples/quadrant_cnc/gap_machine.hpp"
+#include "../../examples/quadrant_cnc/read_cnc.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/import/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
+#include "quadrant/path/cl_reader.hpp"
+#include "quadrant/path/gcode_reader.hpp"
 
 #include <cstdint>
 #include <sstream>
@@ -63,16 +67,50 @@ void check_foreign_log(const std::string& text) {
     check_physics(in, map);
 }
 
+/// Moves follow one another, each with a way to go and a feed.
+template <class Reader> void check_program(const std::string& text) {
+    std::istringstream in(text);
+    Reader reader(in, "part");
+    quadrant::point at{};
+    bool first = true;
+    while (const auto move = reader.next()) {
+        const auto& path = move->path;
+        must_hold(path.length() > 0 && (move->rapid || move->feed > 0) && move->dwell >= 0 &&
+                  move->tolerance >= 0);
+        must_hold(finite(path.position(path.length() / 2)) && finite(path.curvature(path.length() / 2)));
+        const double size = magnitude(path.start()) + magnitude(path.end()) + path.length();
+        must_hold(first || distance(at, path.start()) <= 1e-9 + 1e-9 * size);
+        at = path.end(), first = false;
+    }
+}
+
+/// A virtual machine, and that what it is for quadrant-gap is a machine there or refused.
+void check_cnc(const std::string& text) {
+    const auto cnc = quadrant_cnc::cnc_reader(text, "cnc.json").read();
+    must_hold(cnc.servo_period_s > 0 && !cnc.axes.empty() && cnc.axes.size() <= 3);
+    std::vector<std::string> notes;
+    const auto machine = read_machine(to_json(quadrant_cnc::gap_machine(cnc, notes)).dump(), "gap.json");
+    must_hold(machine.axes.size() == cnc.axes.size());
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
     const std::string text(data + 1, data + size);
     try {
-        constexpr void (*readers[])(const std::string&) = {check_log, check_machine, check_diagnosis, check_map,
-                                                           check_foreign_log};
+        constexpr void (*readers[])(const std::string&) = {check_log,
+                                                           check_machine,
+                                                           check_diagnosis,
+                                                           check_map,
+                                                           check_foreign_log,
+                                                           check_program<quadrant::gcode_reader>,
+                                                           check_program<quadrant::cl_reader>,
+                                                           check_cnc};
         readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
+        must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
+    } catch (const quadrant::bad_program& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
     }
     return 0;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "page/svg.hpp"
 #include "quadrant_reproduce/choose.hpp"
 #include "quadrant_reproduce/experiment/friction.hpp"
 #include "quadrant_reproduce/markdown.hpp"
-#include "quadrant_reproduce/svg.hpp"
 
 #include <doctest/doctest.h>
 
 #include <thread> // run_all starts some: so tests/run.sh takes this folder to the thread sanitizer
 
+using namespace quadrant_page;
 using namespace quadrant_reproduce;
 
 namespace {
@@ -122,8 +123,9 @@ TEST_CASE("reproduce: thinning keeps the ends' neighbourhood and every peak") {
     const std::vector<double> few{3, 1, 2};
     CHECK(peaks(few) == std::vector<std::size_t>{0, 1, 2});
 }
-TEST_CASE("reproduce: pictures take their colours from the page, and their ids are their own" *
-          doctest::skip(!gnuplot_is_here())) {
+TEST_CASE(
+    "reproduce: pictures take their colours from the page, their ids are their own, and apostrophes are text" *
+    doctest::skip(!gnuplot_is_here())) {
     const picture p{
         "",
         "",
@@ -132,7 +134,13 @@ TEST_CASE("reproduce: pictures take their colours from the page, and their ids a
             .y_label = "error [um]",
             .lines = {{.name = "a_b", .x = {1, 2, 3}, .y = {1, std::nan(""), 3}, .drawn = line::style::points},
                       {.name = "c", .x = {1, 2}, .y = {2, 2}}}}}};
+    const char* const was = std::getenv("TMPDIR");
+    const std::string before = was ? was : "/tmp", odd = before + "/quadrant's own";
+    std::filesystem::create_directories(odd);
+    setenv("TMPDIR", odd.c_str(), 1);
     const std::string drawn = svg(p, 7, "label");
+    setenv("TMPDIR", before.c_str(), 1);
+    std::filesystem::remove_all(odd);
     CHECK(drawn.starts_with("<svg viewBox=\"0 0 480 300\" role=\"img\" aria-label=\"label\">"));
     for (const char* const has : {"var(--line-1)", "var(--line-2)", "var(--ink)", "var(--grid)", "error [µm]",
                                   "a_b", "the axis' time", "p7canvas"})

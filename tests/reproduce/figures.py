@@ -29,6 +29,22 @@ for how in ("none", "static", "gms", "dob", "dob_static", "dob_gms"):
     ASKED[f"thesis.circle.{how}"] = ["radial_max", "radial_rms"]
 for configuration in ("i", "ii", "iii"):
     ASKED[f"thesis.cutting.{configuration}"] = ["radial_rms"]
+# As shared/reference/virtual_cnc.md lists them.
+for law in ("pid", "smc"):
+    for path in ("diamond", "circle"):
+        ASKED[f"vcnc.{path}.{law}"] = ["x_error_max", "y_error_max", "contour_error_max"]
+    for axis in "xy":
+        ASKED[f"vcnc.margins.{axis}.{law}"] = ["gain_margin", "phase_margin", "bandwidth"]
+for case in (1, 2, 3):
+    ASKED[f"vcnc.fuzzy.case{case}"] = ["ks", "rho", "peak_error", "iterations"]
+ASKED["vcnc.fuzzy.table"] = [f"{attribute}_{state}_{gain}" for attribute in ("OSC", "PHM", "TRE") for gain in ("ks", "rho")
+                             for state in (("EL", "LA", "ME", "SM", "OK") if attribute == "TRE" else ("HIUN", "LIUN", "ACCP", "LIOQ", "HIOQ"))]
+# As shared/reference/linear_stage.md lists them.
+for move in ("move_300mm", "move_20mm"):
+    ASKED[f"stage.{move}"] = ["peak_speed", "settling_time", "max_error", "final_error", "peak_current"]
+for how in ("none", "lugre"):
+    ASKED[f"stage.move_500um.{how}"] = ["settling_time", "max_error", "final_error"]
+ASKED["stage.bs3800"] = ["max_error", "rms_estimate_error"]
 
 # Figures of the reference that the program must hold beside its own: a change of these is no repair.
 REFERENCE = {
@@ -42,6 +58,9 @@ REFERENCE = {
     ("thesis.friction.x.static", "quadrant_glitch_10"): 9.7, ("thesis.friction.y.static", "quadrant_glitch_10"): 20.4,
     ("thesis.friction.x.gms", "quadrant_glitch_10"): 0.17, ("thesis.friction.y.gms", "quadrant_glitch_10"): 0.41,
     ("thesis.cutting.i", "radial_rms"): 11.4, ("thesis.cutting.ii", "radial_rms"): 4.4,
+    ("vcnc.diamond.pid", "x_error_max"): 36.9, ("vcnc.diamond.pid", "y_error_max"): 40.8,
+    ("vcnc.diamond.pid", "contour_error_max"): 9.0, ("vcnc.diamond.smc", "x_error_max"): 12.5,
+    ("vcnc.diamond.smc", "y_error_max"): 11.9, ("vcnc.diamond.smc", "contour_error_max"): 8.5,
     ("thesis.repetitive", "gamma_p"): 0.0628, ("thesis.repetitive", "gamma_np"): 6.02,
 }
 

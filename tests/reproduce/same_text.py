@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSL-1.0
-"""docs/reproduction.md against a run: the same words, and every figure within 0.5 % (distances within 0.6 of a per cent).
+"""docs/reproduction.md against a run: the same words, and every figure within 0.5 % (distances within 0.6 of a per cent). The
+rows of a search on a rough cost may differ in their figures: where it ends, the last digit of another libm's sine decides.
 
 same_text.py COMMITTED.md WRITTEN.md
 """
@@ -8,6 +9,9 @@ import re
 import sys
 
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?(?: %)?)")
+
+
+ROUGH = ("| `stage.tuning.",)
 
 
 def differs(a, b):
@@ -23,7 +27,7 @@ def differs(a, b):
 def main():
     committed, written = ([NUMBER.split(line) for line in open(path, encoding="utf-8")] for path in sys.argv[1:3])
     wrong = [(k, "".join(a), "".join(b)) for k, (a, b) in enumerate(zip(committed, written), 1)
-             if len(a) != len(b) or any(map(differs, a, b))]
+             if len(a) != len(b) or not a[0].startswith(ROUGH) and any(map(differs, a, b))]
     for k, a, b in wrong[:20]:
         print(f"FAILED: line {k}\n  committed {a}  written   {b}", end="")
     if len(committed) != len(written):

@@ -7,12 +7,15 @@ using namespace quadrant_gap::trial;
 
 namespace {
 
+using list =
+    std::vector<ordered_json>; // an ordered_json of one in braces is a copy with Clang, an array with GCC
+
 ordered_json effect(const std::string& name, double size = 5,
                     ordered_json parameters = ordered_json::object()) {
     return {{"effect", name}, {"axis", "x"}, {"size", size}, {"parameters", std::move(parameters)}};
 }
-ordered_json truth(const std::string& kind, ordered_json effects = ordered_json::array()) {
-    return {{"index", 7}, {"kind", kind}, {"effects", std::move(effects)}};
+ordered_json truth(const std::string& kind, const list& effects = {}) {
+    return {{"index", 7}, {"kind", kind}, {"effects", effects}};
 }
 ordered_json cause(const std::string& name, double probability, std::vector<std::string> confusable = {},
                    const std::string& axis = "x") {
@@ -23,11 +26,10 @@ ordered_json cause(const std::string& name, double probability, std::vector<std:
             {"parameters", ordered_json::object()},
             {"shrink", 0.5}};
 }
-ordered_json said(const std::string& verdict, ordered_json causes = ordered_json::array(),
-                  const std::string& block = "mechanics") {
+ordered_json said(const std::string& verdict, const list& causes = {}, const std::string& block = "mechanics") {
     return {{"verdict", verdict},
             {"axes", {{"x", {{"where", {{{"view", "block"}, {"block", block}}}}}}}},
-            {"causes", std::move(causes)}};
+            {"causes", causes}};
 }
 
 } // namespace

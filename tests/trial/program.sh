@@ -29,4 +29,17 @@ cmp "$out/a.json" "$out/b.json" || fail "the same seed said something else"
 
 "$program" trial --machines 4 --only 4 2> "$out/refused.txt" && fail "machine 4 of 4 was accepted"
 grep -q -e "--only" "$out/refused.txt" || fail "no word about --only"
+for option in --json --report; do # said before the work, not after it
+    code=0
+    "$program" trial --machines 4 $option "$out/missing/a" > "$out/refused.txt" 2>&1 || code=$?
+    [ $code = 2 ] || fail "$option into a folder that is not there ends with $code"
+    [ "$(cat "$out/refused.txt")" = "quadrant-gap: $out/missing/a: cannot be written: no such folder" ] ||
+        fail "$option into a folder that is not there says $(cat "$out/refused.txt")"
+done
+code=0
+"$program" trial --machines 4 --keep "$out/a.json" > "$out/refused.txt" 2>&1 || code=$?
+[ $code = 2 ] || fail "--keep in the place of a file ends with $code"
+code=0
+TMPDIR=$out/missing "$program" trial --machines 4 --only 0 --quiet 2> "$out/refused.txt" || code=$?
+[ $code = 2 ] || fail "without a folder for temporary files it ends with $code"
 echo "four machines, sealed and repeated"

@@ -138,11 +138,11 @@ TEST_CASE("trial's actuator: a command acts after the delay, to a fraction of a 
     actuator_truth a;
     a.delay = 0.00123456;
     actuator drive(a, 0.0005, dice(1));
-    drive.command(0, 0);
+    drive.command(0);
     double area = 0;
     for (int k = 0; k < 200; ++k) { // 4 ms; the step is given at 0.5 ms
-        if (k == 25) drive.command(1, 1);
-        if (k > 25 && k % 25 == 0) drive.command(static_cast<std::size_t>(k / 25), 1);
+        if (k == 25) drive.command(1);
+        if (k > 25 && k % 25 == 0) drive.command(1);
         area += drive.acting(k * h, h) * h;
     }
     CHECK(near(area, 0.004 - 0.0005 - 0.00123456, 1e-6));
@@ -154,7 +154,7 @@ TEST_CASE("trial's actuator: lag, dead zone, drive limit and ripple as FORMAT.md
     actuator slow(a, 0.0005, dice(1));
     double last = 0;
     for (int k = 0; k < 100; ++k) {
-        if (k % 25 == 0) slow.command(static_cast<std::size_t>(k / 25), 3);
+        if (k % 25 == 0) slow.command(3);
         last = slow.acting(k * h, h);
     }
     CHECK(near(last, 3 * (1 - std::exp(-(99.5 * h) / 0.002)), 1e-4));
@@ -166,7 +166,7 @@ TEST_CASE("trial's actuator: lag, dead zone, drive limit and ripple as FORMAT.md
     a.ripple = {0.02, {0.1}, {0}};
     for (const auto& [given, acts] : {std::pair{0.1, 0.0}, {1.0, 0.8}, {-1.0, -0.8}, {9.0, 4.0}}) {
         actuator drive(a, 0.0005, dice(1));
-        drive.command(0, given);
+        drive.command(given);
         CHECK(std::abs(drive.acting(0, h) - acts) < 1e-12);
     }
     CHECK(near(actuator(a, 0.0005, dice(1)).force(2, 0.005), 220, 1e-9));
@@ -178,7 +178,7 @@ TEST_CASE("trial's actuator: a lost sample keeps the command before it, as often
     actuator drive(a, 0.0005, dice(3));
     int lost = 0;
     for (int k = 0; k < 5000; ++k) {
-        drive.command(static_cast<std::size_t>(k), k);
+        drive.command(k);
         lost += drive.acting(k * 0.0005, h) < k - 0.5;
     }
     CHECK(near(lost, 1000, 0.1));

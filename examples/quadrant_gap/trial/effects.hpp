@@ -43,9 +43,9 @@ struct withheld {
 
 namespace detail {
 
-/// A relative change; downwards it ends at one tenth.
-inline double changed(double value, insertion& i) {
-    return i.random.chance(0.5) ? value * (1 + i.amplitude) : value / (1 + i.amplitude);
+/// A relative change: times or over 1 + amplitude.
+inline double changed(double value, insertion& i, double upwards = 0.5) {
+    return i.random.chance(upwards) ? value * (1 + i.amplitude) : value / (1 + i.amplitude);
 }
 /// A period that this motion passes at least twice.
 inline double passed_period(insertion& i) {
@@ -98,7 +98,7 @@ inline constexpr withheld effects[] = {
     {"viscous_friction", 0.02, 20,
      [](insertion& i) {
          auto& b = i.truth.friction.viscous;
-         b = i.random.chance(0.7) ? b * (1 + i.amplitude) : b / (1 + i.amplitude);
+         b = detail::changed(b, i, 0.7);
          i.parameters["viscous_N_s_per_m"] = b;
      },
      false, true},
@@ -155,7 +155,7 @@ inline constexpr withheld effects[] = {
     {"mass", 0.01, 1.5,
      [](insertion& i) {
          auto& m = i.truth.mechanics.mass;
-         m = i.random.chance(0.7) ? m * (1 + i.amplitude) : m / (1 + i.amplitude);
+         m = detail::changed(m, i, 0.7);
          i.parameters["mass_kg"] = m;
      }},
     {"structural_resonance", 0.003, 0.45,
@@ -203,7 +203,7 @@ inline constexpr withheld effects[] = {
     {"force_constant", 0.005, 1,
      [](insertion& i) {
          auto& k = i.truth.actuator.force_constant;
-         k = i.random.chance(0.3) ? k * (1 + i.amplitude) : k / (1 + i.amplitude);
+         k = detail::changed(k, i, 0.3);
          i.parameters["force_constant_N_per_V"] = k;
      }},
     {"time_delay", 2e-5, 0.02,

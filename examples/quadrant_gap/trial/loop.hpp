@@ -113,7 +113,7 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
         for (std::size_t i = 0; i < axes.size(); ++i) {
             const double y = all[i].scale(all[i].body.seen());
             const double u = all[i].control(references[i][k], y);
-            all[i].drive.command(k, u);
+            all[i].drive.command(u);
             out[i].position.push_back(y);
             out[i].command.push_back(u);
             if (!(std::abs(y) < farthest)) {

@@ -11,11 +11,10 @@ namespace quadrant_gap::trial {
 class actuator {
 public:
     actuator(const actuator_truth& a, double period, dice random) : a_(a), period_(period), random_(random) {}
-    /// Row k's command, given at k T.
-    void command(std::size_t k, double u) {
+    /// The next row's command; the first one is given at t = 0.
+    void command(double u) {
         if (!(a_.loss > 0 && !told_.empty() && random_.chance(a_.loss))) kept_ = u;
         told_.push_back(kept_);
-        (void)k;
     }
     /// Mean acting command over [t, t + h].
     double acting(double t, double h) {

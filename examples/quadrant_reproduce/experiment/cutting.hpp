@@ -100,9 +100,9 @@ inline experiment cutting() {
     using namespace thesis;
     return {
         "Cutting along a circle",
-        "[Jamaludin2008] section 5.4, Table 5.4",
-        "Both axes on GMS friction along a circle of 30 mm at 100 mm/s, pushed by the 15 harmonics of Tables "
-        "3.5 and 3.6 times 1.38. (i) cascade and inverse-model feedforward; (ii) and disturbance observer and "
+        "[Jamaludin2008] Table 5.4",
+        "Both axes on GMS friction along a circle of 30 mm at 100 mm/s, pushed by the 15 harmonics of eq. "
+        "(3.10) times 1.38. (i) cascade and inverse-model feedforward; (ii) and disturbance observer and "
         "GMS friction feedforward; (iii) and repetitive memory of order 2, weights [2, -1], 85 periods, which "
         "is 1 % short. Rms over three turns after the first, of the axes, not of their encoders. Radius and "
         "feed are our reading: with 25 mm at 5 mm/s, the circle of the real cut, (i) to (iii) do not reproduce "

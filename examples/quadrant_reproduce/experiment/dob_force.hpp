@@ -18,16 +18,10 @@ std::optional<double> error_under_push(const thesis::axis& a, typename Observer:
     using namespace quadrant::literals;
     using loop_type = milling_axis<milling_axis_boxes<thesis::none::box, typename Observer::box>>;
     using motor_type = linear_motor<coulomb_viscous<>>;
-    loop_type loop{.box = {{.position_gain = thesis::position_gain,
-                            .velocity_gain = a.kp,
-                            .velocity_integral = a.ki,
-                            .estimator_corner = thesis::estimator_corner,
-                            .notch = thesis::notch_of(a),
-                            .plant_gain = a.B,
-                            .plant_pole = a.A,
-                            .disturbance = observer,
-                            .limit = 10_V},
-                           thesis::period}};
+    auto controller = thesis::controller_of<decltype(loop_type::box)>(a);
+    controller.plant_pole = a.A; // friction in it
+    controller.disturbance = observer;
+    loop_type loop{.box = {controller, thesis::period}};
     const quantity<si::mass> mass = a.kf / a.B;
     motor_type motor({.mass = mass,
                       .force_constant = a.kf,

@@ -89,7 +89,7 @@ inline experiment friction() {
     // Simulated: Table 4.2, measured: Table 4.4 [Jamaludin2008]; reference: shared/reference/thesis.md, "Friction".
     experiment e{
         "Friction at reversals, without observer",
-        "[Jamaludin2008] eqs. (3.5-3.8), section 4.2, Tables 3.3, 4.1, 4.2, 4.4",
+        "[Jamaludin2008] eqs. (3.5-3.8), section 4.2, Tables 4.1-4.4",
         "The axis on GMS friction follows a sinusoid of 30 mm. The figure is the largest tracking error in the "
         "quarter of a half cycle that follows a reversal, mean over the reversals, with an encoder of 0.25 um; "
         "100 and 10 are the peak speed in mm/s.",

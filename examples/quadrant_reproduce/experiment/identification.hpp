@@ -44,7 +44,7 @@ inline outcome identification_case(const thesis::axis& a) {
 
 inline experiment identification() {
     return {"Identification from simulated runs",
-            "[Jamaludin2008] section 3.3, eqs. (3.5), (3.9), Table 3.3",
+            "[Jamaludin2008] eqs. (3.5), (3.9)",
             "Friction map from constant speeds of 0.01 to 30 mm/s and virgin curve from sinusoids of 15 and "
             "450 um at 0.1 Hz, on an "
             "axis with an encoder that counts and jitters and a controller that is 2 % off. The reference here "

@@ -49,15 +49,11 @@ public:
 
 private:
     static milling_axis_boxes<>::parameters controller(const axis& a) {
-        return {.position_gain = position_gain,
-                .velocity_gain = a.kp,
-                .velocity_integral = a.ki,
-                .estimator_corner = estimator_corner,
-                .notch = notch_of(a),
-                .plant_gain = 1.02 * a.B,
-                .plant_pole = 0.98 * a.A_gms,
-                .limit = 10_V,
-                .dac_step = 20_V / 65536.0};
+        auto p = controller_of<milling_axis_boxes<>>(a);
+        p.plant_gain *= 1.02;
+        p.plant_pole *= 0.98;
+        p.dac_step = 20_V / 65536.0;
+        return p;
     }
     static motor::parameters machine(const axis& a) {
         motor::parameters p{.mass = a.kf / a.B,

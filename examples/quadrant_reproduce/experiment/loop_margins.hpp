@@ -80,7 +80,7 @@ inline const given_loop frf_x{12.33, 74.5, 28.9, 15.1, 68, 26.6, 15},
     frf_y{10.31, 73.1, 28.8, 16.49, 67.18, 27.1, 8};
 
 inline experiment loop() {
-    return {"The cascade on its model", "[Jamaludin2008] eqs. (2.2), (2.22-2.40), Tables 2.1-2.3",
+    return {"The cascade on its model", "[Jamaludin2008] eqs. (2.2), (2.22-2.40), Tables 2.2, 2.3",
             "P on position, PI on velocity with the notch in the velocity feedback, on G(s) = B e^{-s Td}/(s "
             "(s + A)). The "
             "thesis read its margins off the measured frequency response, which is not public and has base and "
@@ -167,7 +167,7 @@ inline experiment loop_modes() {
                                 {},
                                 "eq. (2.40); modes do not enter"});
             out.pictures.push_back(bode(fmt::format("Axis {}: the plant", a.name),
-                                        "G of Table 2.1, and with the fitted modes.",
+                                        "G of eq. (2.2), and with the fitted modes.",
                                         {{"G", thesis::model_of(a)}, {"with modes", fit.plant}},
                                         {quadrant::analysis::hertz(5), quadrant::analysis::hertz(900), 400}));
             return out;

@@ -14,7 +14,7 @@
 /// structural mode must be for the model to have them, by least squares within what the thesis says of the modes.
 namespace thesis {
 
-/// Published on the measured FRF: Tables 2.3, 2.4 and section 2.4.
+/// Published on the measured FRF: Table 2.3 and chapter 2.
 struct published_loop {
     loop_figures figures; ///< tracking_ratio_10Hz is not given: NaN
     frequency base;       ///< where the base's anti-resonance and resonance lie
@@ -27,7 +27,7 @@ inline const published_loop published_y{
     {10.31, 307.6, 73.1, 34.9, 28.8, 16.49, 100.6, 67.18, 22.47, 27.1, not_given, 8}, 44_Hz, 270_Hz, 320_Hz};
 
 struct mode_fit {
-    analysis::flexible_axis_model<> plant; ///< G of Table 2.1 with the base and the structural mode
+    analysis::flexible_axis_model<> plant; ///< G of eq. (2.2) with the base and the structural mode
     loop_figures figures;
     double rms; ///< of the relative distance to what is published
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "row.hpp"
+#include "html.hpp"
+#include "picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@
 
 /// Pictures as SVG inside the page, drawn by gnuplot as a program of its own. Text, frame, grid and lines take
 /// their colours from the page's variables, so that dark and light both work.
-namespace quadrant_reproduce {
+namespace quadrant_page {
 
 inline constexpr std::string_view gnuplot_package = "gnuplot-nox";
 inline bool gnuplot_is_here() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
@@ -40,6 +41,12 @@ inline std::string with_micro(std::string label) {
     if (label == "um") return "µm";
     if (const std::size_t at = label.find("um]"); at != std::string::npos) label.replace(at, 2, "µm");
     return label;
+}
+
+/// A path in the shell's quotes.
+inline std::string in_shell_quotes(std::string path) {
+    replace_all(path, "'", "'\\''");
+    return "'" + path + "'";
 }
 
 /// A text in gnuplot's quotes.
@@ -137,10 +144,6 @@ private:
 };
 
 namespace detail {
-inline void replace_all(std::string& text, std::string_view what, std::string_view with) {
-    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
-        text.replace(at, what.size(), with);
-}
 /// What follows the XML prolog, in the page's colours, its identifiers its own among all pictures of the page.
 inline std::string fit_into_page(std::string svg, std::size_t number, std::string_view label) {
     const std::size_t open = svg.find("<svg"), view = svg.find("viewBox", open),
@@ -148,14 +151,10 @@ inline std::string fit_into_page(std::string svg, std::size_t number, std::strin
     if (canvas == std::string::npos) return "";
     const std::string frame = svg.substr(view, svg.find('\n', view) - view);
     svg = fmt::format("<svg {} role=\"img\" aria-label=\"{}\">\n", frame, label) + svg.substr(canvas);
-    for (std::size_t at; (at = svg.find("<filter")) != std::string::npos;) {
-        constexpr std::string_view end = "</filter>";
-        svg.erase(at, svg.find(end, at) + end.size() - at);
-    }
-    for (std::size_t at; (at = svg.find("<title>")) != std::string::npos;) {
-        constexpr std::string_view end = "</title>";
-        svg.erase(at, svg.find(end, at) + end.size() - at);
-    }
+    for (const auto& [begin, end] :
+         {std::pair<std::string_view, std::string_view>{"<filter", "</filter>"}, {"<title>", "</title>"}})
+        for (std::size_t at; (at = svg.find(begin)) != std::string::npos;)
+            svg.erase(at, svg.find(end, at) + end.size() - at);
     for (const char* quote : {"\"", "'"}) {
         replace_all(svg, fmt::format("{0}black{0}", quote), fmt::format("{0}var(--ink){0}", quote));
         replace_all(svg, fmt::format("{0}gray{0}", quote), fmt::format("{0}var(--grid){0}", quote));
@@ -191,7 +190,7 @@ inline std::string svg(const picture& drawn, std::size_t number, std::string_vie
     if (FILE* const file = fdopen(handle, "w")) {
         const bool written = std::fputs(script.c_str(), file) >= 0;
         if (std::fclose(file) == 0 && written) {
-            if (FILE* const pipe = popen(("gnuplot '" + path + "' 2>&1").c_str(), "r")) {
+            if (FILE* const pipe = popen(("gnuplot " + in_shell_quotes(path) + " 2>&1").c_str(), "r")) {
                 std::array<char, 65536> part;
                 while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
                     out.append(part.data(), n);
@@ -203,4 +202,14 @@ inline std::string svg(const picture& drawn, std::size_t number, std::string_vie
     return detail::fit_into_page(std::move(out), number, label);
 }
 
-} // namespace quadrant_reproduce
+/// The picture, or why it is not there.
+inline std::string svg_or_reason(const picture& drawn, std::size_t number, std::string_view label,
+                                 bool can_draw) {
+    if (!can_draw)
+        return fmt::format("<p class=\"empty\">Not drawn: gnuplot is not installed (Debian package {}).</p>",
+                           gnuplot_package);
+    const std::string done = svg(drawn, number, label);
+    return done.empty() ? "<p class=\"empty\">gnuplot could not draw this.</p>" : done;
+}
+
+} // namespace quadrant_page

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSL-1.0
+// quadrant-cnc: what a machine makes of a part program, before there is a machine.
+#include "commands.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+namespace {
+
+void add_run(CLI::App& app) {
+    const auto o = std::make_shared<quadrant_cnc::run_options>();
+    auto* command = app.add_subcommand("run", "drive a part program through the virtual machine");
+    command->add_option("--cnc", o->cnc, "the machine (JSON, docs/cnc.md)")->required();
+    command->add_option("--path", o->path, "the part program: a CL file (.cl, .cls, .apt), else G-code")
+        ->required();
+    command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    command->add_option("--log", o->log, "write every servo sample (CSV), as quadrant-gap reads it");
+    command->add_option("--export-gap-machine", o->machine,
+                        "write the machine as quadrant-gap reads it (JSON)");
+    auto* json =
+        command->add_option("--json", o->json, "write the figures (JSON); without a file name: print them");
+    json->expected(0, 1);
+    command->add_flag("-q,--quiet", o->quiet, "no text, only the files");
+    command->set_version_flag("--version", QUADRANT_VERSION);
+    command->callback([o, json] {
+        if (json->count() > 0 && o->json.empty()) o->json = "-";
+        quadrant_cnc::run(*o);
+    });
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    constexpr int bad_input_code = 2;
+    CLI::App app{
+        "A virtual CNC: a part program driven through simulated axes, with its tracking and contour errors.",
+        "quadrant-cnc"};
+    app.set_version_flag("--version", QUADRANT_VERSION);
+    app.require_subcommand(1);
+    app.footer("Exit code: 0 when what was asked for is written, 2 on bad input (one line says where).");
+    add_run(app);
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : bad_input_code;
+    } catch (const std::exception& e) { // bad_input, bad_program, or what this computer refuses
+        std::fprintf(stderr, "quadrant-cnc: %s\n", e.what());
+    }
+    return bad_input_code;
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "cnc_keys.hpp"
+
+#include <quadrant/diagnosis/read/text.hpp>
+
+namespace quadrant_cnc {
+
+/// One reading of a machine's file, box by box. Nothing in it is ignored; messages name the file and the path of the key.
+class cnc_reader {
+public:
+    cnc_reader(std::string_view text, std::string_view file)
+        : root_(qd::parse_json(text, file)), top_{&root_, "", file} {}
+
+    cnc_description read() {
+        qd::need_schema(top_, "quadrant.cnc/1");
+        qd::refuse_unknown_keys(top_, cnc_file_keys);
+        out_.file = qd::one_line(top_.file);
+        out_.servo_period_s = top_.need("servo_period_s").number(qd::rule::positive);
+        if (const auto seed = top_.find("seed")) out_.seed = unsigned(seed->number(whole_number));
+        read_trajectory(top_.need("trajectory").object());
+        const qd::json_node axes = top_.need("axes").object();
+        if (axes.value->empty()) axes.refuse("must name at least one axis");
+        for (const auto& [name, value] : axes.value->items()) {
+            const qd::json_node one = axes.at(name, value);
+            if (name != "x" && name != "y" && name != "z") one.refuse("an axis is called x, y or z");
+            read_axis(std::size_t(name[0] - 'x'), one.object());
+        }
+        return std::move(out_);
+    }
+
+private:
+    void read_trajectory(const qd::json_node& node) {
+        trajectory_description& t = out_.trajectory;
+        qd::read_numbers(node, trajectory_keys, trajectory_other_keys, t);
+        read_limits(node, t.limits);
+        if (const auto kind = node.find("profile"))
+            t.profile = profile(choice(*kind, {"constant_velocity", "constant_acceleration",
+                                               "trapezoidal_acceleration", "cubic_acceleration"}));
+        if (const auto start = node.find("start_m")) {
+            const auto at = start->numbers(qd::rule::any_number);
+            if (at.size() != 3) start->refuse("must be three numbers: x, y, z");
+            std::copy(at.begin(), at.end(), t.start_m.begin());
+        }
+        if (const auto strict = node.find("reach_the_feed")) t.reach_the_feed = yes(*strict);
+        refuse_what_the_profile_cannot_keep(node, t.limits);
+    }
+
+    static void read_limits(const qd::json_node& node, limits_description& limits) {
+        for (const auto& key : limit_keys)
+            if (const auto given = node.find(key.name)) key.set(limits, given->number(key.rule));
+    }
+    void refuse_what_the_profile_cannot_keep(const qd::json_node& node, const limits_description& l) const {
+        const profile kind = out_.trajectory.profile;
+        if (kind == profile::constant_velocity && l.acceleration_m_per_s2 < unlimited)
+            node.find("acceleration_m_per_s2")->refuse("a profile of constant velocity keeps no such limit");
+        if (kind < profile::trapezoidal_acceleration && l.jerk_m_per_s3 < unlimited)
+            node.find("jerk_m_per_s3")->refuse("only trapezoidal and cubic acceleration keep such a limit");
+    }
+
+    void read_axis(std::size_t axis, const qd::json_node& node) {
+        qd::refuse_unknown_keys(node, axis_keys);
+        axis_description a;
+        a.axis = axis;
+        a.path = node.path;
+        if (const auto travel = node.find("travel_m")) {
+            const auto ends = travel->numbers(qd::rule::any_number);
+            if (ends.size() != 2 || !(ends[0] < ends[1]))
+                travel->refuse("must be two numbers, the lower first");
+            a.from_m = ends[0], a.to_m = ends[1];
+        }
+        if (const auto limits = node.find("limits")) {
+            qd::read_numbers(*limits, limit_keys, {}, a.limits);
+            refuse_what_the_profile_cannot_keep(*limits, a.limits);
+        }
+        read_drive(node.need("drive").object(), a);
+        if (const auto encoder = node.find("encoder")) {
+            qd::read_numbers(*encoder, encoder_keys, encoder_other_keys, a.sensor);
+            if (const auto on = encoder->find("on")) a.sensor.on_motor = choice(*on, {"table", "motor"}) == 1;
+        }
+        if (const auto tachometer = node.find("tachometer"))
+            qd::read_numbers(*tachometer, tachometer_keys, {}, a.sensor);
+        read_command(node.need("command"), a.command);
+        read_law(node.need("control").object(), a);
+        if (const auto friction = node.find("friction_feedforward")) {
+            a.friction_feedforward.emplace();
+            qd::read_numbers(*friction, friction_feedforward_keys, {}, *a.friction_feedforward);
+            if (std::holds_alternative<quadrant::diagnosis::controller_description>(a.law))
+                friction->refuse("cascade_p_pi has its own: control.coulomb_feedforward_V");
+        }
+        out_.axes.push_back(std::move(a));
+    }
+
+    static void read_drive(const qd::json_node& node, axis_description& a) {
+        if (choice(node.need("kind"), {"ball_screw", "linear_motor"}) == 0) {
+            ball_screw_description d;
+            qd::read_numbers(node, ball_screw_keys, ball_screw_other_keys, d);
+            if (const auto friction = node.find("friction")) {
+                qd::refuse_unknown_keys(friction->object(), directions);
+                qd::read_numbers(friction->need("forward"), friction_keys, {}, d.forward);
+                qd::read_numbers(friction->need("backward"), friction_keys, {}, d.backward);
+            }
+            a.drive = d;
+            return;
+        }
+        linear_motor_description d;
+        qd::read_numbers(node, linear_motor_keys, kind_key, d);
+        if (d.static_N.has_value() != d.stribeck_velocity_m_per_s.has_value())
+            node.refuse("static_N and stribeck_velocity_m_per_s need each other");
+        if (d.static_N && *d.static_N < d.coulomb_N)
+            node.find("static_N")->refuse("must not lie below coulomb_N");
+        a.drive = d;
+    }
+
+    static void read_command(const qd::json_node& node, command_description& c) {
+        qd::read_numbers(node, command_keys, command_other_keys, c);
+        if (const auto bits = node.find("dac_bits")) c.dac_bits = int(bits->number(qd::rule::bits));
+        if (c.dac_bits.has_value() != c.dac_range_V.has_value())
+            node.refuse("dac_bits and dac_range_V need each other");
+    }
+
+    void read_law(const qd::json_node& node, axis_description& a) const {
+        const auto as = [&](auto law, const auto& keys, qd::key_names others) {
+            qd::read_numbers(node, keys, others, law);
+            a.law = law;
+        };
+        const std::size_t law = choice(node.need("law"), law_names);
+        switch (law) {
+        case 0:
+            return as(pid_description{}, pid_keys, law_key);
+        case 1:
+            return as(p_pi_description{}, p_pi_keys, law_key);
+        case 2:
+            return as(sliding_mode_description{}, sliding_mode_keys, law_key);
+        case 3:
+            break;
+        case 4:
+        case 5: {
+            poles_description d;
+            d.zero_phase = law == 5;
+            return as(d, poles_keys, law_key);
+        }
+        case 6:
+            return as(lead_lag_description{}, lead_lag_keys, law_key);
+        case 7:
+            return as(predictive_description{}, predictive_keys, law_key);
+        default:
+            return as(state_feedback_description{}, state_feedback_keys, law_key);
+        }
+        quadrant::diagnosis::controller_description c; // the keys are those of the gap's machine file
+        qd::read_numbers(node, qd::controller_keys_of_file, cascade_other_keys, c);
+        using estimator = quadrant::diagnosis::controller_description::estimator;
+        if (const auto e = node.find("velocity_estimator"))
+            c.velocity_estimator = estimator(choice(*e, {"filtered_derivative", "two_sample_mean"}));
+        if (c.velocity_estimator == estimator::filtered_derivative) node.need("velocity_filter_Hz");
+        if (const auto notch = node.find("notch"))
+            qd::read_numbers(*notch, qd::notch_keys, {}, c.notch.emplace());
+        a.law = c;
+    }
+
+    template <class Names> static std::size_t choice(const qd::json_node& node, const Names& names) {
+        std::string all;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (node.text() == std::data(names)[i]) return i;
+            all += fmt::format("{}{}", i == 0 ? "" : ", ", std::data(names)[i]);
+        }
+        node.refuse(fmt::format("{} is none of {}", qd::in_quotes(node.text()), all));
+    }
+    static std::size_t choice(const qd::json_node& node, std::initializer_list<std::string_view> names) {
+        return choice<std::initializer_list<std::string_view>>(node, names);
+    }
+    static bool yes(const qd::json_node& node) {
+        if (!node.value->is_boolean()) node.refuse("must be true or false");
+        return node.value->get<bool>();
+    }
+
+    nlohmann::json root_;
+    qd::json_node top_;
+    cnc_description out_;
+};
+
+/// Reads a machine's file or throws bad_input.
+inline cnc_description read_cnc(const std::filesystem::path& path) {
+    return cnc_reader(qd::read_whole(path), path.string()).read();
+}
+
+} // namespace quadrant_cnc

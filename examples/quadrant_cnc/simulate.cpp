@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSL-1.0
+// The run itself: program -> trajectory -> axes -> what is kept of them, one servo period after another.
+#include "simulate.hpp"
+
+#include "axis.hpp"
+#include "contour.hpp"
+#include "program.hpp"
+#include "run_memory.hpp"
+
+#include <chrono>
+
+namespace quadrant_cnc {
+
+namespace {
+
+using namespace quadrant;
+using clock = std::chrono::steady_clock;
+
+class run {
+public:
+    run(const cnc_description& cnc, const std::string& path_file, log_writer* log)
+        : cnc_(cnc), program_(cnc, path_file), log_(log), period_(cnc.servo_period_s), drive_(make_drive(cnc)),
+          waiting_(0) {
+        std::size_t most_lead = 0;
+        for (const axis_description& a : cnc.axes) {
+            try {
+                axes_.push_back({a.axis, make_axis(a, period_, cnc.seed + a.axis), 0});
+            } catch (const invalid_parameter& fault) {
+                throw diagnosis::bad_input(cnc.file, fmt::format("{}: {}", a.path, fault.what()));
+            }
+            out_.axes.push_back({.name = a.name(),
+                                 .effort_unit = effort_unit(a),
+                                 .effort_limit = axes_.back().box->effort_limit()});
+            most_lead = std::max(most_lead, axes_.back().box->lead());
+        }
+        for (one& a : axes_) a.wait = most_lead - a.box->lead();
+        waiting_ = waiting_line(most_lead);
+        values_.resize(1 + run_outcome::of_axis * axes_.size());
+        out_.signals = decimated(values_.size());
+        out_.cnc_file = cnc.file, out_.path_file = path_file, out_.period = period_;
+    }
+
+    run_outcome operator()(const std::function<void(const progress&)>& tell) {
+        const auto start = clock::now();
+        auto told = start;
+        const auto seconds = [&](clock::time_point t) {
+            return std::chrono::duration<double>(t - start).count();
+        };
+        fill();
+        const std::size_t rest = waiting_.longest() + std::size_t(std::ceil(at_rest_after / period_));
+        for (std::size_t left = rest; left > 0;) {
+            fill();
+            if (drive_->done()) --left; // the path is over, the axes come to rest
+            step((*drive_)());
+            if (out_.samples % 4096 == 0 && tell)
+                if (const auto now = clock::now(); seconds(now) - seconds(told) > 0.2) {
+                    told = now;
+                    tell({program_.share(), double(out_.samples) * period_, seconds(now), line_});
+                }
+        }
+        out_.signals.finish();
+        out_.contour_plot.finish();
+        out_.worst = close_up_.finish();
+        out_.duration = double(out_.samples) * period_;
+        out_.wall_time = seconds(clock::now());
+        return std::move(out_);
+    }
+
+private:
+    static constexpr double at_rest_after = 0.05; ///< [s] that the run goes on behind the end of the path
+    using interpolator = trajectory::interpolator<128>;
+    struct one {
+        std::size_t axis;
+        std::unique_ptr<quadrant_cnc::axis> box;
+        std::size_t wait; ///< periods that its references come later than the first law wants them
+    };
+
+    static std::unique_ptr<interpolator> make_drive(const cnc_description& cnc) {
+        try {
+            return std::make_unique<interpolator>(
+                interpolator::parameters{program::limits_of(cnc), program::kind_of(cnc)},
+                duration::from_value(cnc.servo_period_s));
+        } catch (const invalid_parameter& fault) {
+            throw diagnosis::bad_input(cnc.file, fmt::format("trajectory: {}", fault.what()));
+        }
+    }
+    void fill() {
+        while (more_ && !drive_->full()) {
+            const auto move = program_.next();
+            more_ = move.has_value();
+            if (!move) break;
+            try {
+                drive_->push(*move);
+            } catch (const invalid_parameter& fault) {
+                program_.refuse(fault);
+            }
+            if (out_.moves++ == 0) settle(move->path.start());
+            contour_.add(move->path, move->line);
+            out_.path_length += move->path.length();
+            out_.lines = move->line;
+        }
+    }
+    void settle(point at) {
+        due_sample here;
+        for (int i = 0; i < 3; ++i)
+            here.axis[std::size_t(i)].position = quantity_of<signal::position>::from_value(at[i]);
+        waiting_.settle(here);
+        for (one& a : axes_) a.box->settle(at[int(a.axis)]);
+    }
+
+    void step(const trajectory::path_reference& reference) {
+        waiting_.push(reference);
+        const due_sample& due = waiting_.ago(waiting_.longest());
+        const double t = double(out_.samples) * period_;
+        point asked{due.axis[0].position.value(), due.axis[1].position.value(), due.axis[2].position.value()};
+        point place = asked;
+        line_ = due.line;
+        if (log_) log_->number(t, 7);
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            one& a = axes_[i];
+            const trajectory::motion& m = waiting_.ago(a.wait).axis[a.axis];
+            const axis_sample s = a.box->step({m.position, m.velocity, m.acceleration});
+            if (s.faulted)
+                throw diagnosis::bad_input(
+                    cnc_.file, fmt::format("{}: the simulation leaves all numbers at {:.6g} s, line {} of {}",
+                                           cnc_.axes[i].path, t, line_, program_.file()));
+            place[int(a.axis)] = s.place;
+            const trajectory::motion& now = due.axis[a.axis];
+            take(i, now, now.position.value() - s.place, s, t);
+            if (log_) {
+                log_->number(s.reference, 12);
+                log_->number(s.reading, 11);
+                log_->number(s.command, 8);
+            }
+        }
+        if (log_) log_->end_row();
+        contour_.follow(asked, line_, due.speed * period_);
+        const contour::deviation off = contour_(place);
+        const double distance = off.distance();
+        const contour_sample sample{contour_.path_place(), off.foot, off.off};
+        const bool worst = distance > out_.contour.most;
+        out_.contour.add(distance, t, line_);
+        if (worst) out_.worst_place = off.foot;
+        values_[0] = distance;
+        out_.signals.add(values_.data());
+        out_.contour_plot.add(sample, distance);
+        close_up_.add(sample, worst);
+        ++out_.samples;
+    }
+    void take(std::size_t i, const trajectory::motion& asked, double error, const axis_sample& s, double t) {
+        axis_outcome& o = out_.axes[i];
+        double* const v = values_.data() + 1 + run_outcome::of_axis * i;
+        v[0] = error, v[1] = asked.velocity.value(), v[2] = asked.acceleration.value(),
+        v[3] = asked.jerk.value(), v[4] = s.effort;
+        o.error.add(v[0], t, line_);
+        o.velocity.add(v[1], t, line_);
+        o.acceleration.add(v[2], t, line_);
+        o.jerk.add(v[3], t, line_);
+        o.effort.add(v[4], t, line_);
+        o.limited += s.limited;
+    }
+
+    const cnc_description& cnc_;
+    quadrant_cnc::program program_;
+    log_writer* log_;
+    double period_;
+    std::unique_ptr<interpolator> drive_;
+    std::vector<one> axes_;
+    waiting_line waiting_;
+    contour contour_;
+    close_up close_up_;
+    std::vector<double> values_;
+    std::size_t line_ = 0;
+    bool more_ = true;
+    run_outcome out_;
+};
+
+} // namespace
+
+run_outcome simulate(const cnc_description& cnc, const std::string& path_file, log_writer* log,
+                     const std::function<void(const progress&)>& tell) {
+    return run(cnc, path_file, log)(tell);
+}
+
+std::string log_header(const cnc_description& cnc) {
+    std::string out = "t_s";
+    for (const axis_description& a : cnc.axes)
+        for (const char* column : {"ref_m", "pos_m", "cmd_V"}) out += fmt::format(",{}_{}", a.name(), column);
+    return out;
+}
+
+} // namespace quadrant_cnc

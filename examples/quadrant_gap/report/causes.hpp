@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../words.hpp"
+#include "html.hpp"
+
+/// The table of what was named.
+namespace quadrant_gap {
+
+inline std::string lines(const std::vector<std::string>& all) {
+    std::string html;
+    for (const std::string& line : all) html += (html.empty() ? "" : "<br>") + escape(line);
+    return html;
+}
+
+inline std::string probability_bar(const cause& c) {
+    const double group = std::max(c.probability, c.group_probability);
+    return fmt::format("{}<span class=\"bar\"><i class=\"group\" style=\"width:{:.0f}%\"></i><i "
+                       "style=\"width:{:.0f}%\"></i></span>{}",
+                       probability(c.probability), 100 * group, 100 * c.probability,
+                       c.confusable_with.empty()
+                           ? ""
+                           : fmt::format("<small>{} with its alternatives</small>", probability(group)));
+}
+
+inline std::string causes(const diagnosis_result& d) {
+    if (d.causes.empty())
+        return d.verdict <= verdict::within_tolerance
+                   ? "<p class=\"empty\">None is needed.</p>"
+                   : "<p class=\"empty\">None of the known effects fits.</p>";
+    std::string rows;
+    for (const cause& c : d.causes) {
+        std::vector<std::string> gap{
+            "force " + change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, "N")};
+        if (c.gap_before_position_rms_m.value > 0)
+            gap.push_back("position " +
+                          change(c.gap_before_position_rms_m.value, c.gap_after_position_rms_m.value, "m"));
+        if (c.gap_before_command_rms_V.value > 0)
+            gap.push_back("command " +
+                          change(c.gap_before_command_rms_V.value, c.gap_after_command_rms_V.value, "V"));
+        const std::string_view box = words_of(c.effect).box;
+        rows += fmt::format(
+            "<tr data-effect=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span><small>axis "
+            "{}{}{}{}</small></th>"
+            "<td data-label=\"Probability\">{}</td><td data-label=\"Values found (95 % interval)\">{}</td>"
+            "<td data-label=\"Gap before → after, rms\">{}</td><td data-label=\"Force gap shrinks "
+            "by\">{}</td></tr>\n",
+            escape(c.effect), escape(capital(name_of_effect(c.effect))), escape(c.axis),
+            box.empty() ? "" : ", ", box, claimed(c) ? "" : "<br>a suspect, not a claim", probability_bar(c),
+            lines(lines_of(c.parameters)), lines(gap), escape(percent(c.shrink)));
+        std::string more;
+        if (!c.confusable_with.empty())
+            more += fmt::format("On this record it cannot be told apart from {}.",
+                                escape(named(c.confusable_with, "or")));
+        for (const reading& r : c.readings)
+            more += fmt::format("<br>As {}: {}.", escape(name_of_effect(r.effect)),
+                                escape(listed(lines_of(r.parameters))));
+        if (!c.exciting_motion.empty())
+            more += fmt::format("{}Shown by: {}.", more.empty() ? "" : "<br>", escape(c.exciting_motion));
+        if (!more.empty())
+            rows += fmt::format("<tr class=\"more\"><td colspan=\"5\"><small>{}</small></td></tr>\n", more);
+    }
+    return "<table><thead><tr><th scope=\"col\">Effect</th><th scope=\"col\">Probability</th><th "
+           "scope=\"col\">Values found "
+           "(95 % interval)</th><th scope=\"col\">Gap before → after, rms</th><th scope=\"col\">Force gap "
+           "shrinks by</th></tr>"
+           "</thead><tbody>\n" +
+           rows + "</tbody></table>";
+}
+
+} // namespace quadrant_gap

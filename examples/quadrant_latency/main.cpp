@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSL-1.0
+// quadrant-latency: does my loop fit my period, with what margin?
+#include "page.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace {
+
+constexpr int too_long_code = 1, bad_input_code = 2;
+
+/// As CLI::Range, which lets NaN through.
+CLI::Validator between(double low, double high) {
+    return {[low, high](const std::string& given) {
+                const double v = std::strtod(given.c_str(), nullptr);
+                return v >= low && v <= high ? std::string()
+                                             : fmt::format("must lie between {} and {}", low, high);
+            },
+            fmt::format("{} ... {}", low, high)};
+}
+
+/// Written beside its place and renamed when complete; opened before a minute has been spent.
+class file_aside {
+public:
+    explicit file_aside(const std::string& path) : path_(path), out_(path + ".part") {
+        if (!out_) throw std::runtime_error(path + ": cannot be written");
+    }
+    ~file_aside() {
+        std::error_code ignored;
+        std::filesystem::remove(path_ + ".part", ignored);
+    }
+    file_aside(const file_aside&) = delete;
+    file_aside& operator=(const file_aside&) = delete;
+    void write(const std::string& text) {
+        out_ << text;
+        out_.close();
+        if (!out_) throw std::runtime_error(path_ + ": could not be written");
+        std::filesystem::rename(path_ + ".part", path_);
+    }
+
+private:
+    std::string path_;
+    std::ofstream out_;
+};
+
+int run(const quadrant_latency::plan& plan, const std::string& html) {
+    file_aside file(html);
+    const auto result = quadrant_latency::measure(plan);
+    const bool can_draw = quadrant_page::gnuplot_is_here();
+    file.write(quadrant_latency::page(result, plan.period_us, can_draw));
+    fmt::print("{}Page: {}\n", quadrant_latency::text(result, plan.period_us), html);
+    if (!can_draw)
+        fmt::print(stderr, "quadrant-latency: no gnuplot, so the page has no picture (Debian package {})\n",
+                   quadrant_page::gnuplot_package);
+    return quadrant_latency::fits(result, plan.period_us) ? 0 : too_long_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Runs the two-axis controller of the milling table on this computer, with warm and cold "
+                 "caches and on a\n"
+                 "timer, and says how much of the servo period it needs.",
+                 "quadrant-latency"};
+    app.set_version_flag("--version", QUADRANT_VERSION);
+    quadrant_latency::plan plan;
+    std::string html = "quadrant_latency.html";
+    app.add_option("--period_us", plan.period_us, "the servo period in us")
+        ->check(between(1, 1e6))
+        ->capture_default_str();
+    app.add_option("--seconds", plan.seconds, "how long to measure")
+        ->check(between(0.1, 86400))
+        ->capture_default_str();
+    app.add_option("--core", plan.core, "the core to run on; without it the last one that is allowed")
+        ->check(CLI::Range(0, 1023));
+    app.add_option("--html", html, "write the page (one HTML file, opens without a network)")
+        ->capture_default_str();
+    app.footer("Exit code: 0 when no call was longer than the period, 1 when one was, 2 on bad input.");
+    try {
+        app.parse(argc, argv);
+        return run(plan, html);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : bad_input_code;
+    } catch (const std::exception& e) { // what this computer refuses
+        fmt::print(stderr, "quadrant-latency: {}\n", e.what());
+    }
+    return bad_input_code;
+}

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "experiment/vcnc_contour.hpp"
+#include "experiment/vcnc_fuzzy.hpp"
+#include "experiment/vcnc_margins.hpp"
+#include "experiments.hpp"
+
+std::vector<quadrant_reproduce::experiment> quadrant_reproduce::vcnc_experiments() {
+    return {vcnc_contour(), vcnc_margins(), vcnc_fuzzy()};
+}

@@ -1,0 +1,58 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# quadrant-latency as it is used: what it writes and refuses. How long anything takes is not asked: other tests run meanwhile.
+# usage: program.sh QUADRANT_LATENCY SCRATCH
+set -eu
+latency=$1 dir=$2
+rm -rf "$dir"
+mkdir -p "$dir"
+cd "$dir"
+fail() { echo "FAILED: $*"; cat said; exit 1; }
+says() { grep -qE -- "$1" said || fail "does not say '$1'"; }
+
+# ---- an answer, and the exit code that goes with it ----
+code=0
+"$latency" --seconds 1 --html page.html >said 2>err || code=$?
+for row in 'cache warm' 'cache cold' 'every period' 'the clock alone'; do
+    says "^$row +[0-9]+ +[0-9.]+ +[0-9.]+ +[0-9.]+"
+done
+says '^real-time priority.*: (granted|not granted \(.*\); .+)$'
+says '^pinned to core [0-9]+: (granted|not granted)'
+says '^memory locked: (granted|not granted)'
+case $code in
+0) says '^Yes, it fits 500 us: .* the margin is [0-9.]+ us\.$' ;;
+1) says '^No, it does not fit 500 us: .*% of the period' ;;
+*) fail "exit code $code" ;;
+esac
+awk '/^cache (warm|cold)/ && !($3 > 0 && $4 <= $5 && $5 <= $6) { exit 1 }' said || fail "no order in a row"
+grep -q "$(grep -oE '^(Yes|No), it[^:]*' said | sed 's/ us/ µs/')" page.html || fail "the page says something else"
+! grep -qE 'src=|<link|@import' page.html || fail "the page loads something"
+if command -v gnuplot >/dev/null; then
+    grep -q '<svg' page.html || fail "no picture"
+else
+    grep -q 'gnuplot is not installed' page.html || fail "does not say why there is no picture"
+fi
+echo "ok: $(tail -n 2 said | head -n 1)"
+
+# ---- nothing takes a microsecond with cold caches and a timer ----
+code=0
+"$latency" --seconds 0.3 --period_us 1 --html short.html >said 2>err || code=$?
+[ $code = 1 ] || fail "exit code $code, not 1"
+says '^No, it does not fit 1\.00 us'
+
+# ---- what is refused: exit code 2, nothing written ----
+refuses() { # WORDS OPTIONS
+    words=$1
+    shift
+    code=0
+    "$latency" "$@" >said 2>&1 || code=$?
+    [ $code = 2 ] || fail "exit code $code, not 2, for $*"
+    grep -qF -- "$words" said || fail "does not say '$words'"
+    ! ls out.html* >/dev/null 2>&1 || fail "something was written for $*"
+    echo "ok: $*: refused"
+}
+refuses '--period_us' --period_us 0 --html out.html
+refuses '--period_us' --period_us nan --html out.html
+refuses '--seconds' --seconds -1 --html out.html
+refuses '--core' --core x --html out.html
+refuses 'nowhere/out.html: cannot be written' --seconds 1 --html nowhere/out.html
