@@ -154,6 +154,24 @@ TEST_CASE("observed count: the step in which a position really moves") {
     CHECK(observed_count(std::vector<double>(100, 0.5), 1e-9) == 0);
 }
 
+TEST_CASE(
+    "controller box: a log that begins at rest, just after the noise has moved the reading, is replayed") {
+    const workshop::machine real;
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto file = workshop::described(real);
+    const auto& y = log.position;
+    std::size_t begin = 20; // the axis rests for 200 rows
+    while (y[begin] != y[begin + 1] || y[begin] == y[begin - 1]) ++begin;
+    REQUIRE(begin < 190);
+    const auto from = [&](const std::vector<double>& v) { return std::span(v).subspan(begin); };
+    const auto replayed = replay_controller(*file.axes[0].controller, file.axes[0].actuator, workshop::period,
+                                            from(log.reference), from(y), from(log.command));
+    std::vector<double> difference;
+    for (std::size_t k = 100; k < replayed.size(); ++k)
+        difference.push_back(replayed[k] - log.command[begin + k]);
+    CHECK(rms(difference) < workshop::dac);
+}
+
 TEST_CASE("controller box: replay agrees to one DAC step, from the start and from the middle of a motion") {
     const workshop::machine real;
     const auto log = workshop::run(real);

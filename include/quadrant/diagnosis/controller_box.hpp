@@ -71,8 +71,9 @@ void start_at_row_0(Cascade& axis, double r0, double r1, double y0, double y1, d
 }
 
 /// The controller box alone: fed the logged reference and position, it puts out what the described controller would
-/// have commanded. Row 0 is taken from the log. A log may begin in motion; what its first rows leave open of the
-/// initial integral is then a constant offset of the replay, which a second pass takes from the whole record.
+/// have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of the encoder is in
+/// the first command by way of the velocity. What that leaves open of the initial integral is a constant offset of the
+/// replay, which a second pass takes from the whole record.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, std::span<const double> reference,
                                              std::span<const double> position,
@@ -89,8 +90,7 @@ inline std::vector<double> replay_controller(const controller_description& c, co
                              .value();
         };
         pass(command[0]);
-        const bool in_motion = position[1] != position[0] || reference[1] != reference[0];
-        if (in_motion && c.velocity_integral_V_per_m != 0) {
+        if (c.velocity_integral_V_per_m != 0) {
             std::vector<double> offset(out.size());
             for (std::size_t k = 0; k < out.size(); ++k) offset[k] = command[k] - out[k];
             pass(command[0] + quantile(offset, 0.5));
