@@ -21,7 +21,7 @@ struct durations {
 
     double at(double share) const; ///< 0.5: the median; NaN when there are none
     double median() const { return at(0.5); }
-    double most_of() const { return at(0.999); }
+    double p999() const { return at(0.999); }
     double max() const { return at(1); }
 };
 

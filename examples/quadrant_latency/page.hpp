@@ -41,7 +41,7 @@ inline std::string page(const result& r, double period_us, bool can_draw) {
         rows += fmt::format(
             "<tr><th scope=\"row\">{}<small>{}</small></th><td data-label=\"calls\">{}</td>"
             "<td data-label=\"median\">{}</td><td data-label=\"p99.9\">{}</td><td data-label=\"max\">{}</td>",
-            d->name, d->what, d->us.size(), digits(d->median()), digits(d->most_of()), digits(d->max()));
+            d->name, d->what, d->us.size(), digits(d->median()), digits(d->p999()), digits(d->max()));
         for (const double p : periods_us)
             rows += fmt::format("<td data-label=\"max: % of {:g} µs\">{}</td>", p,
                                 d == &r.clock ? "–" : digits(100 * d->max() / p));

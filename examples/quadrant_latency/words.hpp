@@ -15,13 +15,14 @@ inline constexpr std::array periods_us{500.0, 125.0, 50.0};
 
 inline std::array<const durations*, 3> measured(const result& r) { return {&r.warm, &r.cold, &r.tick}; }
 
-/// The longest of all calls, from wherever it was started.
-inline double worst(const result& r) {
-    double us = 0;
-    for (const durations* d : measured(r)) us = std::max(us, d->us.empty() ? 0 : d->max());
-    return us;
+/// The kind with the longest of all calls.
+inline const durations& slowest(const result& r) {
+    const durations* slow = &r.warm;
+    for (const durations* d : measured(r))
+        if (d->max() > slow->max()) slow = d;
+    return *slow;
 }
-inline bool fits(const result& r, double period_us) { return worst(r) <= period_us; }
+inline bool fits(const result& r, double period_us) { return slowest(r).max() <= period_us; }
 
 /// Three digits that count: 1.36, 41.2, 1250.
 inline std::string digits(double v) {
@@ -31,23 +32,22 @@ inline std::string digits(double v) {
 }
 inline std::string percent(double us, double period_us) { return digits(100 * us / period_us) + " %"; }
 
-/// "Yes: ..." or "No: ...".
+/// "Yes, ..." or "No, ...".
 inline std::string answer(const result& r, double period_us) {
-    const double longest = worst(r);
-    std::string text =
-        fits(r, period_us)
-            ? fmt::format("Yes, it fits {} us: the longest of {} calls took {} us, {} of the period; the "
-                          "margin is {} us.",
-                          digits(period_us), r.warm.us.size() + r.cold.us.size() + r.tick.us.size(),
-                          digits(longest), percent(longest, period_us), digits(period_us - longest))
-            : fmt::format("No, it does not fit {} us: the longest call took {} us, {} of the period.",
-                          digits(period_us), digits(longest), percent(longest, period_us));
-    if (fits(r, period_us)) return text;
-    if (const double alone = r.cold.median(); alone <= period_us) {
-        text += fmt::format(" With cold caches it takes {} us (median): ", digits(alone));
-        text += r.real_time ? "what is longer are interruptions; look at the kernel (PREEMPT_RT, isolcpus)."
-                            : "what is longer are interruptions, and there was no real-time priority.";
-    }
+    const durations& slow = slowest(r);
+    const std::string longest = fmt::format("the longest of {} calls ({}) took {} us, {} of the period",
+                                            r.warm.us.size() + r.cold.us.size() + r.tick.us.size(), slow.name,
+                                            digits(slow.max()), percent(slow.max(), period_us));
+    if (fits(r, period_us))
+        return fmt::format("Yes, it fits {} us: {}; the margin is {} us.", digits(period_us), longest,
+                           digits(period_us - slow.max()));
+    std::string text = fmt::format("No, it does not fit {} us: {}.", digits(period_us), longest);
+    if (const double alone = r.cold.median(); alone <= period_us)
+        text += fmt::format(" With cold caches it computes for {} us (median); the rest are interruptions and "
+                            "late wake-ups{}.",
+                            digits(alone),
+                            r.real_time ? ": look at the kernel (PREEMPT_RT, isolcpus) and at what else runs"
+                                        : ", and there was no real-time priority");
     return text;
 }
 
@@ -59,7 +59,7 @@ inline std::string text(const result& r, double period_us) {
                        "median", "p99.9", "max", periods_us[0], periods_us[1], periods_us[2]);
     for (const durations* d : {&r.warm, &r.cold, &r.tick, &r.clock}) {
         out += fmt::format("{:16}{:>10}{:>11}{:>11}{:>11}", d->name, d->us.size(), digits(d->median()),
-                           digits(d->most_of()), digits(d->max()));
+                           digits(d->p999()), digits(d->max()));
         if (d != &r.clock)
             for (const double period : periods_us) out += fmt::format("{:>9}", digits(100 * d->max() / period));
         out += "\n";
