@@ -66,7 +66,7 @@ by_debian_package)
     done
     [ "$(dpkg-deb --field "$work"/packed/libquadrant-dev_*_all.deb Depends)" = libboost-dev ]
     if [ -x "$quadrant_build/examples/quadrant-gap" ]; then
-        for program in quadrant-gap quadrant-reproduce quadrant-cnc; do
+        for program in quadrant-gap quadrant-reproduce quadrant-cnc quadrant-latency; do
             "$work/root/usr/bin/$program" --version
             gzip -dcf "$work/root/usr/share/man/man1/$program.1"* | grep -q '^\.SH SYNOPSIS'
             bash -n "$work/root/usr/share/bash-completion/completions/$program"
