@@ -17,9 +17,6 @@ logs=$build/logs
 mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
 
-# Test folders that start threads run under the thread sanitizer; of the diagnosis, which fits on all cores, tests/threads.
-threaded() { grep -rlE '#include <(thread|future)>' "$@" 2>/dev/null; }
-thread_tests=$(threaded tests | cut -d/ -f2 | sort -u)
 fuzz_seconds=20          # all fuzzers together
 
 case "${1-}" in
@@ -111,11 +108,8 @@ release() { # GCC: every test, what must not compile with both compilers, the co
 sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables
     build_preset sanitize unit_tests && run_ctest sanitize -R '^unit\.'
 }
-thread() { # Clang, thread sanitizer: what starts threads
-    [ -n "$thread_tests" ] || echo "no test starts a thread"
-    for name in $thread_tests; do
-        build_preset thread "test_$name" && run_ctest thread -R "^unit\.$name\$"
-    done
+thread() { # Clang, thread sanitizer: diagnoses side by side, each on all cores
+    build_preset thread test_threads && run_ctest thread -R '^unit\.threads$'
 }
 fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the reader
     build_preset fuzz fuzz || return
