@@ -61,26 +61,33 @@ private:
     std::mutex telling_;
 };
 
-/// The claims of a diagnosis that never saw the hold-out log: its forecast, and what they do on that log.
+/// A diagnosis that never saw the hold-out log: its forecast for that motion, and what its claims do on that log.
 std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const std::filesystem::path& folder) {
     const auto file = [&](const char* name) { return (folder / name).string(); };
-    const answer f = diagnose_files(o.program, folder, false, o.limit_s);
-    const auto forecast = whole_shrink(f.diagnosis);
-    if (!forecast || run_child({o.program, "apply", "--quiet", "--machine", file("machine.json"), "--diagnosis",
-                                file("forecast.json"), "--out", file("corrected.json")},
-                               folder / "heard.txt", o.limit_s) != 0)
+    const auto runs = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), o.program);
+        words.emplace_back("--quiet");
+        return run_child(words, folder / "heard.txt", o.limit_s) == 0;
+    };
+    const auto written = [&](const char* name) {
+        std::ifstream text(file(name));
+        return ordered_json::parse(text, nullptr, false);
+    };
+    if (!claims(diagnose_files(o.program, folder, false, o.limit_s).diagnosis) ||
+        !runs({"forecast", "--machine", file("machine.json"), "--diagnosis", file("forecast.json"), "--motion",
+               file("planned.csv"), "--json", file("expected.json")}) ||
+        !runs({"apply", "--machine", file("machine.json"), "--diagnosis", file("forecast.json"), "--out",
+               file("corrected.json")}))
         return std::nullopt;
     const auto left = [&](const char* machine) -> std::optional<double> {
-        if (run_child({o.program, "simulate", "--quiet", "--machine", file(machine), "--log",
-                       file("holdout.csv"), "--json", file("simulated.json")},
-                      folder / "heard.txt", o.limit_s) != 0)
+        if (!runs({"simulate", "--machine", file(machine), "--log", file("holdout.csv"), "--json",
+                   file("simulated.json")}))
             return std::nullopt;
-        std::ifstream written(file("simulated.json"));
-        const auto s = ordered_json::parse(written, nullptr, false);
-        return remaining_force(s);
+        return remaining_force(written("simulated.json"));
     };
+    const auto forecast = forecast_shrink(written("expected.json"));
     const auto before = left("machine.json"), after = left("corrected.json");
-    if (!before || !after || *before <= 0) return std::nullopt;
+    if (!forecast || !before || !after || *before <= 0) return std::nullopt;
     return shrink_pair{*forecast, 1 - *after / *before};
 }
 
@@ -128,8 +135,7 @@ void run_trial(trial_options o) {
         const answer a = diagnose_files(o.program, folder.path(), true, o.limit_s);
         judged[k].judged = judge(truths[k], a.diagnosis);
         if (!a.error.empty()) judged[k].judged.said += ": " + a.error;
-        if (!o.no_forecast && whole_shrink(a.diagnosis))
-            judged[k].shrink = forecast_and_achieved(o, folder.path());
+        if (!o.no_forecast && claims(a.diagnosis)) judged[k].shrink = forecast_and_achieved(o, folder.path());
         if (!o.keep.empty()) {
             const auto kept = std::filesystem::path(o.keep) / fmt::format("{:03}", chosen[k]);
             std::filesystem::create_directories(kept);

@@ -33,6 +33,19 @@ awk "BEGIN { exit !($after < 0.5 * $before) }"
 grep -q 'force remain where sensor noise' simulated.txt
 grep -q '</html>' simulated.html
 [ -z "$("$program" apply --quiet --machine "$data/machine.json" --diagnosis found.json --out better.json)" ]
+# forecast: what shrinks on the other motion, known by its reference only, comes within ten points of what did.
+cut -d, -f1,2 "$data/holdout.csv" >planned.csv
+head -n 1 planned.csv | grep -qx 't_s,x_ref_m'
+"$program" forecast --machine "$data/machine.json" --diagnosis found.json --motion planned.csv --json expected.json | tee expected.txt
+grep -q 'the gap shrinks by' expected.txt
+expected=$(sed -n 's/.*"shrink": \([0-9.e+-]*\).*/\1/p' expected.json)
+awk "BEGIN { d = $expected - (1 - $after / $before); exit !(d < 0.1 && d > -0.1) }"
+printf 't_s,x_pos_m\n0,1\n0.0005,1\n' >no_reference.csv
+"$program" forecast --quiet --machine "$data/machine.json" --diagnosis found.json --motion planned.csv --json again.json --at-least 1
+grep -q '"shrink": 0.0' again.json # nothing is that sure: nothing corrected, nothing gained
+rm again.json
+refuses 'column x_pos_m is missing' simulate --machine better.json --log planned.csv
+refuses 'no axis: columns such as x_ref_m' forecast --machine "$data/machine.json" --diagnosis found.json --motion no_reference.csv
 refuses 'has stribeck_friction already' apply --machine better.json --diagnosis found.json --out again.json
 refuses 'schema: must be "quadrant.diagnosis/1"' apply --machine better.json --diagnosis better.json --out again.json
 sed 's/"x": {/"z": {/' "$data/machine.json" >z.json

@@ -40,6 +40,9 @@ TEST_CASE("diagnose: another controller, by replay, with its key") {
     named(d, "controller_mismatch", "position_gain_per_s", 88, 0.001);
     CHECK(d.axes[0].where[0].block == "controller");
     CHECK(d.axes[0].where[0].basis == "replay");
+    auto excluding = file;
+    excluding.excluded_effects = {"controller_mismatch"};
+    abstains(diagnosed(excluding, real));
 }
 
 TEST_CASE("diagnose: two effects, one found on top of the other") {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
-usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [DIAGNOSIS.json ...]
+usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [--forecast FORECAST.json ...] [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
@@ -78,9 +78,11 @@ def changed(value, path, to):
 arguments = argparse.ArgumentParser()
 arguments.add_argument("--practice", type=pathlib.Path)
 arguments.add_argument("--simulation", type=pathlib.Path, action="append", default=[])
+arguments.add_argument("--forecast", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
-machine, log, diagnosis, simulation, import_map = map(validator, ("machine", "log", "diagnosis", "simulation", "import"))
+machine, log, diagnosis, simulation, forecast, import_map = map(
+    validator, ("machine", "log", "diagnosis", "simulation", "forecast", "import"))
 
 for box, keys in keys_of_the_reader().items():
     checked += 1
@@ -109,6 +111,8 @@ for path in given.diagnoses:
     accept(diagnosis, load(path), path)
 for path in given.simulation:
     accept(simulation, load(path), path)
+for path in given.forecast:
+    accept(forecast, load(path), path)
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 
@@ -191,6 +195,11 @@ accept(simulation, good_simulation, "the simulation of this test")
 for path, to in [(["axes"], {}), (["axes", "x", "gap"], ...), (["axes", "x", "command_unit"], "mV"), (["schema"], "1"),
                  (["axes", "x", "where", 0, "share"], 2), (["axes", "x", "gap", "force_rms_N"], -1)]:
     refuse(simulation, changed(good_simulation, path, to), f"simulation with {path} = {to}")
+
+good_forecast = {"schema": "quadrant.forecast/1", "notes": [], "axes": {"x": {"gap_before": gap, "gap_after": gap, "shrink": 0}}}
+accept(forecast, good_forecast, "the forecast of this test")
+for path, to in [(["axes", "x", "gap_after"], ...), (["axes", "x", "shrink"], 1.1), (["schema"], "1"), (["colour"], 1)]:
+    refuse(forecast, changed(good_forecast, path, to), f"forecast with {path} = {to}")
 
 units = set(re.findall(r'unit_name\{"(\w+)"', (root / "include/quadrant/diagnosis/import/units.hpp").read_text()))
 checked += 1

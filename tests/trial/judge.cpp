@@ -127,16 +127,51 @@ TEST_CASE("judge: no diagnosis is no answer, and wrong") {
     const auto j = judge(truth("none"), nullptr);
     CHECK_FALSE(j.answered);
     CHECK_FALSE(j.right);
-    CHECK_FALSE(whole_shrink(nullptr));
+    CHECK_FALSE(claims(nullptr));
 }
 
-TEST_CASE("judge: the whole shrink multiplies what each claim leaves") {
-    auto weak = cause("mass", 0.3);
-    CHECK(*whole_shrink(said("explained", {cause("cogging", 0.9), cause("backlash", 0.6), weak})) ==
-          doctest::Approx(0.75));
-    CHECK_FALSE(whole_shrink(said("explained", {weak})));
+TEST_CASE(
+    "judge: a claim is a cause of one half or more; forecast and remaining force are read, or are not there") {
+    CHECK(claims(said("explained", {cause("mass", 0.3), cause("cogging", 0.5)})));
+    CHECK_FALSE(claims(said("explained", {cause("mass", 0.49)})));
+    CHECK(*forecast_shrink({{"axes", {{"x", {{"shrink", 0.8}}}}}}) == 0.8);
+    CHECK_FALSE(forecast_shrink({{"axes", {{"y", {{"shrink", 0.8}}}}}}));
+    CHECK_FALSE(forecast_shrink(nullptr));
     CHECK(*remaining_force({{"axes", {{"x", {{"gap", {{"force_rms_N", 3.5}}}}}}}}) == 3.5);
     CHECK_FALSE(remaining_force(ordered_json::object()));
+}
+
+TEST_CASE("judge: an effect that the file excludes has to be left without a name") {
+    CHECK(judge(truth("removed", {effect("cogging", 5)}), said("unexplained")).right);
+    CHECK_FALSE(judge(truth("removed", {effect("cogging", 5)}), said("within_tolerance")).right);
+    const auto j =
+        judge(truth("removed", {effect("cogging", 5)}), said("explained", {cause("force_ripple", 0.9)}));
+    CHECK_FALSE(j.right);
+    CHECK(j.blamed_falsely);
+    CHECK(j.truth == "cogging (removed)");
+}
+
+TEST_CASE("recalibration: finds the line that the answers were drawn from") {
+    const auto drawn =
+        [](double slope, double offset) { // 20 000 of each probability, right exactly as often as the line says
+            std::vector<std::pair<double, bool>> all;
+            for (const double p : {0.1, 0.3, 0.6, 0.9, 0.97}) {
+                const double q = 1 / (1 + std::exp(-offset - slope * std::log(p / (1 - p))));
+                for (int k = 0; k < 20000; ++k) all.emplace_back(p, k < 20000 * q);
+            }
+            return recalibrate(all);
+        };
+    for (const auto& [slope, offset] : {std::pair{1.0, 0.0}, {0.6, -0.4}, {1.3, 0.5}}) {
+        const auto r = drawn(slope, offset);
+        CHECK(std::abs(r.slope - slope) < 0.01);
+        CHECK(std::abs(r.offset - offset) < 0.01);
+        CHECK(r.slope_95.first < slope);
+        CHECK(r.slope_95.second > slope);
+    }
+    CHECK(recalibrate({}).slope == 1);
+    CHECK(recalibrate(std::vector<std::pair<double, bool>>(30, {0.97, true})).offset >
+          0); // finite, and the right way
+    CHECK(recalibrate(std::vector<std::pair<double, bool>>(30, {0.97, false})).slope < 0.5);
 }
 
 TEST_CASE("tally: bounds of Clopper and Pearson, Brier score and bins by hand") {

@@ -23,6 +23,7 @@ TEST_CASE("plan: the shares that were promised, every effect in turn, no two nea
         two_axes += p.two_axes;
         slow_none += p.what == kind::none && p.slow_only;
         if (p.what == kind::single) singles.insert(p.effects.at(0));
+        if (p.what == kind::removed) CHECK_FALSE(has_a_twin(p.effects.at(0)));
         if (p.what == kind::pair) CHECK_FALSE(near_relatives(p.effects.at(0), p.effects.at(1)));
         for (const std::string& e : p.effects)
             if (e == "cross_coupling") CHECK(p.two_axes);
@@ -30,8 +31,9 @@ TEST_CASE("plan: the shares that were promised, every effect in turn, no two nea
     CHECK(kinds[kind::none] == 60);
     CHECK(kinds[kind::unknown] == 20);
     CHECK(kinds[kind::pair] == 30);
-    CHECK(kinds[kind::poor] == 20);
-    CHECK(kinds[kind::single] == 70);
+    CHECK(kinds[kind::removed] == 20);
+    CHECK(kinds[kind::poor] == 10);
+    CHECK(kinds[kind::single] == 60);
     CHECK(slow_none == 10);
     CHECK(singles.size() == 25);
     CHECK(two_axes >= 10);

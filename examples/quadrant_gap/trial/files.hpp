@@ -88,12 +88,26 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
     if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-/// machine.json, log.csv and holdout.csv into a folder.
+/// The references alone, as somebody would plan them.
+inline std::string motion_file(const drawn_machine& m, const std::vector<std::vector<double>>& references) {
+    std::string out = "t_s";
+    for (const axis_truth& a : m.described) out += fmt::format(",{}_ref_m", a.name);
+    out += '\n';
+    for (std::size_t k = 0; k < references[0].size(); ++k) {
+        out += fmt::format("{:.6f}", static_cast<double>(k) * m.period);
+        for (const auto& r : references) out += fmt::format(",{:.12f}", r[k]);
+        out += '\n';
+    }
+    return out;
+}
+
+/// machine.json, log.csv, holdout.csv and the motion of the latter, planned.csv, into a folder.
 inline void write_files(const drawn_machine& m, const std::filesystem::path& folder) {
     write_file(folder / "machine.json", machine_file(m).dump(2) + "\n");
     write_file(folder / "log.csv", log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed)));
     write_file(folder / "holdout.csv",
                log_file(m, run(m.truth, m.holdout_reference, m.period, m.noise_seed + 1)));
+    write_file(folder / "planned.csv", motion_file(m, m.holdout_reference));
 }
 
 /// What the parent keeps to itself.

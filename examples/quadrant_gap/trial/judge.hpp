@@ -105,6 +105,7 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
         if (want.back() == "unknown") j.truth = e.at("parameters").at("unknown");
     }
     if (want.empty()) j.truth = "none", j.size = 0;
+    if (j.kind == "removed") j.truth += " (removed)";
     if (!said.is_object()) {
         j.said = j.first = "no answer";
         if (j.kind == "single" || j.kind == "poor_excitation") j.box = false;
@@ -140,7 +141,7 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
 
     if (j.kind == "none") {
         j.right = quiet && claims.empty();
-    } else if (j.kind == "unknown") {
+    } else if (j.kind == "unknown" || j.kind == "removed") {
         j.right = (verdict == "unexplained" || verdict == "partly_explained") && claims.empty();
     } else if (j.kind == "single") {
         j.right = !causes.empty() && is(causes[0], want[0]) && verdict == "explained" && wrong.empty();
@@ -178,22 +179,24 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
     return j;
 }
 
-/// Forecast against achieved: the whole shrink by the claims, forecast from held-out parts of the log, achieved on another.
+/// How far the gap in force shrinks on another log of another motion: forecast from its reference, and achieved on what the
+/// machine recorded.
 struct shrink_pair {
     double forecast = 0, achieved = 0;
 };
 
-/// 1 - after/before in force, over all claims together; empty without a claim.
-inline std::optional<double> whole_shrink(const ordered_json& said) {
-    if (!said.is_object()) return std::nullopt;
-    double left = 1;
-    bool any = false;
-    for (const ordered_json& c : said.value("causes", ordered_json::array())) {
-        if (c.value("probability", 1.0) < 0.5 || !c.contains("shrink") || !c["shrink"].is_number()) continue;
-        left *= 1 - c["shrink"].get<double>();
-        any = true;
-    }
-    return any ? std::optional(1 - left) : std::nullopt;
+/// Something is claimed: a cause of one half or more.
+inline bool claims(const ordered_json& said) {
+    if (!said.is_object()) return false;
+    const auto causes = detail::causes_of(said);
+    return std::any_of(causes.begin(), causes.end(), [](const auto& c) { return c.probability >= 0.5; });
+}
+
+/// Shrink of the axis with the effects, as `forecast --json` writes it.
+inline std::optional<double> forecast_shrink(const ordered_json& forecast) {
+    if (!forecast.is_object()) return std::nullopt;
+    const ordered_json shrink = forecast.value(ordered_json::json_pointer("/axes/x/shrink"), ordered_json());
+    return shrink.is_number() ? std::optional(shrink.get<double>()) : std::nullopt;
 }
 
 /// Residual force of the axis with the effects, as `simulate --json` writes it.

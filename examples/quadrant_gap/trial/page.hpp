@@ -101,6 +101,7 @@ inline std::string figures(const ordered_json& t) {
     row("forecast within 10 points", share_text(t.at("forecast_within_10_points")));
     row("Brier score", fmt::format("{:.3f} over {} causes", t["calibration"]["brier"].get<double>(),
                                    t["calibration"]["causes"].get<int>()));
+    row("recalibration", recalibration_text(t.at("calibration")));
     return "<table><tbody>" + rows + "</tbody></table>\n";
 }
 

@@ -95,7 +95,8 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         m.truth = m.described;
         if (const gap_meter meter(m); !meter.runs() || !std::isfinite(meter(m.described))) continue;
         const auto target = [&] {
-            return p.what == kind::single ? random.log_uniform(0.25, 15) : random.log_uniform(2, 12);
+            if (p.what == kind::single) return random.log_uniform(0.25, 15);
+            return p.what == kind::removed ? random.log_uniform(4, 15) : random.log_uniform(2, 12);
         };
         if (p.what == kind::unknown)
             detail::put_in(
@@ -116,6 +117,7 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         for (drawn_effect& e : m.effects) detail::read_again(e.parameters, m.truth[0]);
         for (const char* c : {"backlash", "cutting_force", "sample_loss", "structural_resonance", "cogging"})
             if (random.chance(0.08) && !has(c)) m.excluded.emplace_back(c);
+        if (p.what == kind::removed) m.excluded.push_back(p.effects.front());
         bool stays = true;
         for (const auto* references : {&m.log_reference, &m.holdout_reference})
             for (const axis_record& r : trial::run(m.truth, *references, m.period, own))

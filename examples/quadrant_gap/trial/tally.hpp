@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "judge.hpp"
+#include "recalibration.hpp"
 
 #include <array>
 #include <boost/math/distributions/binomial.hpp>
@@ -62,6 +63,7 @@ inline ordered_json tally(const std::vector<judged_machine>& all) {
     std::array<step, size_steps.size() - 1> steps{};
     double brier = 0;
     std::size_t causes = 0;
+    std::vector<std::pair<double, bool>> every_cause;
     ordered_json cases = ordered_json::array();
 
     for (const auto& [j, shrink] : all) {
@@ -85,6 +87,7 @@ inline ordered_json tally(const std::vector<judged_machine>& all) {
             ++b.of, b.right += right, b.sum += p;
             brier += (p - right) * (p - right);
             ++causes;
+            every_cause.emplace_back(p, right);
         }
         for (const judged_parameter& p : j.parameters)
             coverage.add(p.covered()), coverage_by_key[p.key].add(p.covered());
@@ -123,6 +126,11 @@ inline ordered_json tally(const std::vector<judged_machine>& all) {
                  {"of", bins[k].of},
                  {"said", bins[k].sum / static_cast<double>(bins[k].of)},
                  {"right", static_cast<double>(bins[k].right) / static_cast<double>(bins[k].of)}});
+    const recalibration line = recalibrate(every_cause);
+    out["calibration"]["slope"] = {{"value", line.slope},
+                                   {"ci95", {line.slope_95.first, line.slope_95.second}}};
+    out["calibration"]["offset"] = {{"value", line.offset},
+                                    {"ci95", {line.offset_95.first, line.offset_95.second}}};
     out["forecast_within_10_points"] = forecast.json();
     for (const auto& [truth, said] : confusion)
         for (const auto& [name, n] : said) out["confusion"][truth][name] = n;

@@ -17,6 +17,16 @@ inline std::string share_text(const ordered_json& s) {
                        100 * s.at("ci95")[0].get<double>(), 100 * s.at("ci95")[1].get<double>());
 }
 
+inline std::string recalibration_text(const ordered_json& c) {
+    const auto with_interval = [&](const char* key) {
+        const auto& e = c.at(key);
+        return fmt::format("{:.2f} ({:.2f} to {:.2f})", e["value"].get<double>(), e["ci95"][0].get<double>(),
+                           e["ci95"][1].get<double>());
+    };
+    return fmt::format("slope {}, offset {} (calibrated: 1 and 0)", with_interval("slope"),
+                       with_interval("offset"));
+}
+
 inline std::string summary_text(const ordered_json& t) {
     std::string out = "Right answers (verdict, first cause, nothing else blamed), as gap/check.py judges\n";
     for (const auto& [kind, s] : t.at("top1").items()) out += fmt::format("  {:22} {}\n", kind, share_text(s));
@@ -29,6 +39,7 @@ inline std::string summary_text(const ordered_json& t) {
     out += fmt::format("Forecast within 10 pts   {}\n", share_text(t.at("forecast_within_10_points")));
     out += fmt::format("Brier, over {} causes    {:.3f}\n", t.at("calibration").at("causes").get<int>(),
                        t.at("calibration").at("brier").get<double>());
+    out += "Recalibration            " + recalibration_text(t.at("calibration")) + "\n";
     if (t.at("calibration").contains("bins"))
         for (const auto& b : t["calibration"]["bins"])
             out += fmt::format("  said {:.2f}: right {:.2f} of {}\n", b["said"].get<double>(),

@@ -18,10 +18,14 @@ public:
         : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
           resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
           record(prepare(l, period, resolution)), models(record, a, excluded, r, tell) {
+        const auto is_excluded = [&](const char* effect) {
+            return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
+        };
         if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
+        controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
+        if (controller_unnamed) controller->mended = false;
         path = models.run();
-        count_unnamed =
-            coarse() && std::find(excluded.begin(), excluded.end(), "encoder_quantization") != excluded.end();
+        count_unnamed = coarse() && is_excluded("encoder_quantization");
         noise = models.noise(path.back());
         structure = models.structure(path.back(), noise);
         immaterial = models.immaterial(path.back());
@@ -42,7 +46,8 @@ public:
     double noise = 0;            ///< white noise of the position [m]
     bool immaterial = false;     ///< what the last model leaves is small beside the cloud of tolerances
     bool count_unnamed = false; ///< a coarser count than described, and the machine file excludes it as a cause
-    double structure = 0;       ///< what the last model leaves above it, in log-score
+    bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
+    double structure = 0;            ///< what the last model leaves above it, in log-score
 
     const candidate& best() const { return path.back(); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }

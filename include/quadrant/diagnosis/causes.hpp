@@ -102,17 +102,20 @@ inline double unknown(const axis_case& c, std::size_t which) {
     return std::min(0.03 + left_beside(c, which), 0.95);
 }
 
-/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, and none
-/// better than what is left beside what its effect explains: a pull as large as the rest, all of it along this value. An angle
-/// moves by as much in radian.
-inline void add_model_error(std::vector<parameter_estimate>& values, double left) {
+/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none
+/// better than what is left beside what its effect explains (a pull as large as the rest, all of it along this value), no length
+/// better than half a count. An angle moves by as much in radian.
+inline void add_model_error(std::vector<parameter_estimate>& values, const effect& e, const axis_case& c,
+                            double left) {
     const double relative = std::min(1.0, std::hypot(0.01, left));
     for (auto& p : values)
-        for (estimate& e : p.values) {
-            const double error = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(e.value));
-            e.low = e.value - std::hypot(e.value - e.low, error);
-            e.high = e.value + std::hypot(e.high - e.value, error);
+        for (estimate& v : p.values) {
+            const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
+            const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
+            v.low = v.value - std::hypot(v.value - v.low, error);
+            v.high = v.value + std::hypot(v.high - v.value, error);
         }
+    for (estimate& v : values.front().values) v.high *= e.by_another_law;
 }
 
 inline void widen(std::vector<parameter_estimate>& mine, const std::vector<parameter_estimate>& other) {
@@ -151,8 +154,9 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
             } else if (r.same) {
                 named.confusable_with.emplace_back(r.name->name);
                 named.group_probability += r.weight;
-                named.readings.push_back(
-                    {std::string(r.name->name), estimates(r.model, *r.name, c.record.score)});
+                auto values = estimates(r.model, *r.name, c.record.score);
+                detail::add_model_error(values, *r.name, c, detail::left_beside(c, i));
+                named.readings.push_back({std::string(r.name->name), std::move(values)});
             } else if (r.unlisted() && r.weight > 0.5) {
                 named.better_form = r.name->name;
             }
@@ -162,8 +166,7 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
             for (const auto& r : rivals[j])
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
-        detail::add_model_error(named.parameters, detail::left_beside(c, i));
-        for (auto& other : named.readings) detail::add_model_error(other.parameters, detail::left_beside(c, i));
+        detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
         const double known = 1 - detail::unknown(c, i);
         named.probability *= known;
         named.group_probability *= known;
@@ -195,7 +198,7 @@ inline std::optional<cause> count_cause(const axis_case& c) {
 /// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to rounding is
 /// the cause; one that does not is a guess.
 inline std::optional<cause> controller_cause(const axis_case& c) {
-    if (!c.controller_differs()) return {};
+    if (!c.controller_differs() || c.controller_unnamed) return {};
     cause out;
     out.axis = c.axis.name;
     out.effect = "controller_mismatch";

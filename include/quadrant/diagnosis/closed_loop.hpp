@@ -14,10 +14,11 @@ struct closed_loop_run {
 
 /// The whole simulation as its owner would run it: described controller and given plant from the logged reference,
 /// started where the log starts. Sub-steps keep stick and the held command apart from the sampling. Periods that lose
-/// their command are drawn, always the same ones: which they were on the machine only a log of it can tell.
+/// their command are drawn, always the same ones: which they were on the machine only a log of it can tell. Noise of the sensor
+/// [m], one entry a row, is in the reading before it is rounded to a count.
 inline closed_loop_run simulate_closed_loop(const controller_description& c, const axis_description& axis,
-                                            const plant_model& plant, double period, const axis_log& log) {
-    constexpr int substeps = 4;
+                                            const plant_model& plant, double period, const axis_log& log,
+                                            std::span<const double> sensor_noise = {}, int substeps = 4) {
     return with_cascade(c, axis.actuator, period, [&](auto controller) {
         closed_loop_run out;
         const std::size_t n = log.reference.size();
@@ -35,7 +36,8 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
         std::vector<double> applied(n);
         const double q = axis.encoder.resolution_m;
         for (std::size_t k = 0; k < n; ++k) {
-            const double reading = s.load + plant.cyclic.at(s.load);
+            const double reading =
+                s.load + plant.cyclic.at(s.load) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
             out.position[k] = q > 0 ? std::round(reading / q) * q : reading;
             out.command[k] = k == 0 ? log.command[0]
                                     : controller(quantity_of<signal::position>::from_value(log.reference[k]),
@@ -45,11 +47,13 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
                 plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
             applied[k] = lost ? applied[k - 1] : out.command[k];
             const auto past = [&](std::size_t back) { return applied[k >= back ? k - back : 0]; };
-            const surroundings now{.time = static_cast<double>(k) * period,
-                                   .other_acceleration =
-                                       log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
-            for (int i = 0; i < substeps && first > 0; ++i) older(s, past(whole + 1), now);
-            for (int i = 0; i < substeps; ++i) newer(s, past(whole), now);
+            surroundings now{.time = static_cast<double>(k) * period,
+                             .other_acceleration =
+                                 log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
+            for (int i = 0; i < substeps && first > 0; ++i, now.time += first / substeps)
+                older(s, past(whole + 1), now);
+            for (int i = 0; i < substeps; ++i, now.time += (period - first) / substeps)
+                newer(s, past(whole), now);
         }
         return out;
     });

@@ -37,8 +37,9 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
         before += square(rms(c.command_difference(c.log, *c.axis.controller)));
         after += square(rms(c.command_difference(c.log, c.mended())));
         if (c.controller_open())
-            text +=
-                "the controller that ran is not the one described and no single key of it mends the replay; ";
+            text += std::string("the controller that ran is not the one described") +
+                    (c.controller_unnamed ? ", which the machine file excludes; "
+                                          : " and no single key of it mends the replay; ");
     }
     if (c.count_unnamed)
         text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
@@ -112,11 +113,6 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
         propose(out, causes);
     }
     out.axes.push_back(std::move(result));
-}
-
-template <class Axes> auto named(const Axes& axes, const std::string& name) {
-    const auto found = std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.name == name; });
-    return found == axes.end() ? nullptr : &*found;
 }
 
 } // namespace detail

@@ -93,7 +93,10 @@ private:
             if (!other_acceleration.empty()) now.other_acceleration = other_acceleration[k];
             now.time = static_cast<double>(k) * period;
             const double before = plant.backlash > 0 ? s.load_velocity : s.v;
-            if (first > 0) older(s, past(k, whole + 1), now);
+            if (first > 0) {
+                older(s, past(k, whole + 1), now);
+                now.time += first;
+            }
             newer(s, past(k, whole), now);
             if (acceleration) (*acceleration)[k] = (s.load_velocity - before) / period;
         }

@@ -11,8 +11,8 @@ namespace detail {
 /// One reading of a log. The text is walked once; a place is worked out only for a message.
 class log_reader {
 public:
-    log_reader(std::string_view text, std::string_view file)
-        : text_(without_byte_order_mark(text)), file_(file) {
+    log_reader(std::string_view text, std::string_view file, log_purpose purpose = log_purpose::record)
+        : text_(without_byte_order_mark(text)), file_(file), purpose_(purpose) {
         text_ = text_.substr(0, text_.find_last_not_of(" \t\r\n") + 1);
         rest_ = text_;
     }
@@ -21,7 +21,8 @@ public:
         if (text_.empty()) throw bad_input(file_, "is empty");
         const std::string_view first = next_line();
         header_ = read_header(
-            first, [&](std::size_t offset, const std::string& message) { refuse(1, first, offset, message); });
+            first, [&](std::size_t offset, const std::string& message) { refuse(1, first, offset, message); },
+            purpose_);
         reserve();
         while (!rest_.empty()) read_row(next_line());
         if (rows_ < 2)
@@ -104,6 +105,10 @@ private:
             out.notes.push_back(fmt::format("{}: the stamps jitter by up to {:.2g} % of the sample period.",
                                             out.file, 100 * clock.jitter));
         for (auto& [name, at] : header_.axes) {
+            if (purpose_ == log_purpose::motion) {
+                out.axes.push_back(planned(name, header_.columns[*at.reference]));
+                continue;
+            }
             auto &reference = header_.columns[*at.reference], &position = header_.columns[*at.position],
                  &command = header_.columns[*at.command];
             const bool still = is_constant(reference.values) && is_constant(position.values);
@@ -128,11 +133,23 @@ private:
         return out;
     }
 
+    /// An axis that follows its reference without being asked for anything.
+    static axis_log planned(const std::string& name, log_column& reference) {
+        axis_log out;
+        out.name = name;
+        out.still = is_constant(reference.values);
+        out.reference = out.position = std::move(reference.values);
+        out.command.assign(out.position.size(), 0.0);
+        out.reference_step = reference.step.step();
+        return out;
+    }
+
     static bool is_constant(const std::vector<double>& values) {
         return std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
     }
 
     std::string_view text_, rest_, file_;
+    log_purpose purpose_;
     std::size_t line_ = 0, rows_ = 0;
     log_header header_{};
 };
@@ -142,6 +159,11 @@ private:
 /// Reads a log (FORMAT.md) or throws bad_input.
 inline machine_log read_log(const std::filesystem::path& path) {
     return detail::log_reader(detail::read_whole(path), path.string()).read();
+}
+/// Reads the references of a planned motion (t_s, x_ref_m, ...; other columns of the format are left alone) or throws
+/// bad_input. Positions are the reference, commands 0.
+inline machine_log read_motion(const std::filesystem::path& path) {
+    return detail::log_reader(detail::read_whole(path), path.string(), detail::log_purpose::motion).read();
 }
 inline machine_log read_log(std::istream& in, std::string_view name) {
     return detail::log_reader(detail::read_whole(in, name), name).read();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -110,5 +111,15 @@ struct diagnosis_result {
     std::vector<std::string> notes;
     std::string machine_file, log_file, holdout_file;
 };
+
+namespace detail {
+
+/// The axis of this name, or null.
+template <class Axes> auto named(const Axes& axes, const std::string& name) {
+    const auto found = std::find_if(axes.begin(), axes.end(), [&](const auto& a) { return a.name == name; });
+    return found == axes.end() ? nullptr : &*found;
+}
+
+} // namespace detail
 
 } // namespace quadrant::diagnosis

@@ -26,7 +26,7 @@ struct plant_state {
 
 /// What acts on the plant from outside during a step.
 struct surroundings {
-    double time = 0;               ///< from the first row of the log [s]
+    double time = 0;               ///< at the step's start, from the first row of the log [s]
     double other_acceleration = 0; ///< of the other axis [m/s^2]
 };
 
@@ -70,13 +70,14 @@ public:
     }
 
     void operator()(plant_state& s, double command, const surroundings& now = {}) const {
-        double drive = motor(s, command) + plant_.constant_force - plant_.spring * s.x +
-                       plant_.cogging.at(s.x) + plant_.cutting.at(now.time + plant_.cutting_start) +
-                       plant_.cutting_mean + plant_.mass * plant_.coupling * now.other_acceleration;
-        if (plant_.unlisted.of != free_curve::over::nothing) drive += unlisted(s, command, now.time);
+        const double x = s.x + 0.5 * h_ * s.v, time = now.time + 0.5 * h_; // in the middle of the step
+        double drive = motor(s, command, x) + plant_.constant_force - plant_.spring * x + plant_.cogging.at(x) +
+                       plant_.cutting.at(time + plant_.cutting_start) + plant_.cutting_mean +
+                       plant_.mass * plant_.coupling * now.other_acceleration;
+        if (plant_.unlisted.of != free_curve::over::nothing) drive += unlisted(x, s.v, command, time);
         double push = inertia_ * s.v + h_ * drive; // momentum before friction
         if (plant_.mode.mass > 0) push -= plant_.mode.mass * (wq_ * s.q + (ww_ - 1) * s.w);
-        const double v = behind_friction(s, push, now.time);
+        const double v = behind_friction(s, push, time);
         if (plant_.mode.mass > 0) {
             const double rest = q_at_rest_ * (v - s.v) / h_, q = s.q - rest;
             s.q = rest + qq_ * q + qw_ * s.w;
@@ -95,7 +96,7 @@ private:
     };
 
     /// Force of the motor: what the actuator makes of a command.
-    double motor(plant_state& s, double command) const {
+    double motor(plant_state& s, double command, double x) const {
         if (plant_.dead_zone > 0)
             command = command > 0 ? std::max(0.0, command - plant_.dead_zone)
                                   : std::min(0.0, command + plant_.dead_zone);
@@ -105,14 +106,14 @@ private:
             s.lagged = command + from * lag_left_;
             command += from * lag_mean_;
         }
-        return plant_.force_constant * (1 + plant_.ripple.at(s.x)) * command;
+        return plant_.force_constant * (1 + plant_.ripple.at(x)) * command;
     }
 
-    double unlisted(const plant_state& s, double command, double time) const {
+    double unlisted(double x, double v, double command, double time) const {
         using over = free_curve::over;
         const auto& curve = plant_.unlisted;
-        return curve.at(curve.of == over::position   ? s.x
-                        : curve.of == over::velocity ? s.v
+        return curve.at(curve.of == over::position   ? x
+                        : curve.of == over::velocity ? v
                         : curve.of == over::time     ? time
                                                      : command);
     }

@@ -34,6 +34,8 @@ struct effect {
     std::vector<key_value> (*read)(const plant_model&);
     /// What the plant model needs before the parameters mean anything; most effects need nothing.
     void (*join)(plant_model&, const screening&) = [](plant_model&, const screening&) {};
+    /// Another law of the same effect, as good on this record, would have up to this multiple of the first value read.
+    double by_another_law = 1;
 };
 
 namespace detail {

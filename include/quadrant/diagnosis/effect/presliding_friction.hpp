@@ -55,6 +55,9 @@ inline constexpr effect presliding_friction{
         [](plant_model& p, const screening&) {
             p.friction.contact.exponential(p.friction.contact.length);
             p.friction.contact.lengths_as_described = {};
-        }};
+        },
+    // After a full turn a contact that forgets (Dahl, LuGre) follows exp(-x/l) where one that remembers follows
+    // exp(-x/2l): the same branch by twice the length.
+    .by_another_law = 2};
 
 } // namespace quadrant::diagnosis::suspect

@@ -52,8 +52,12 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_cmd_Nm", column_role::rotary},
 };
 
-/// `refuse(offset, message)` throws.
-template <class Refuse> log_header read_header(std::string_view line, Refuse refuse) {
+/// What a file is read for: what a machine did, or a motion that it is to make.
+enum class log_purpose { record, motion };
+
+/// `refuse(offset, message)` throws. Of a motion only the reference is read.
+template <class Refuse>
+log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose = log_purpose::record) {
     if (const auto other = line.find_first_of(";\t"); other != line.npos && line.find(',') == line.npos)
         refuse(other, "cells must be separated by commas");
     log_header out;
@@ -106,7 +110,7 @@ template <class Refuse> log_header read_header(std::string_view line, Refuse ref
                                in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
-        else
+        else if (purpose == log_purpose::record || suffix->role == column_role::reference)
             join_axis(*suffix, index);
     }
 
@@ -115,6 +119,7 @@ template <class Refuse> log_header read_header(std::string_view line, Refuse ref
         refuse(line.size(), "no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
     for (const auto& [name, axis] : out.axes) {
         if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_m is missing", name));
+        if (purpose == log_purpose::motion) continue;
         if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_m is missing", name));
         if (!axis.command)
             refuse(line.size(), fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_N)", name));
