@@ -51,8 +51,10 @@ public:
 
     const candidate& best() const { return path.back(); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
+    /// Nothing is left but noise: no other cause can hide behind the names.
+    bool clean() const { return structure < limits.structure; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
-    bool at_floor() const { return structure < limits.structure || immaterial; }
+    bool at_floor() const { return clean() || immaterial; }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {

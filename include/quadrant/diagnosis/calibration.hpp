@@ -37,10 +37,17 @@ inline std::vector<parameter> calibration(const plant_description& d, const tole
     within(
         "coulomb_N", [](plant_model& p) -> double& { return p.friction.coulomb; }, coulomb,
         tolerance.of("coulomb"));
-    if (excess > 0) // the level Fs is known to a tolerance; the excess over Fc, being smaller, less well
+    if (excess >
+        0) { // both levels move inside their tolerances, and the excess between them by what either lets it
         within(
             "static_N", [](plant_model& p) -> double& { return p.friction.excess; }, excess,
             tolerance.of("static") * *d.static_N / excess);
+        if (!out.empty() && out.back().key == "static_N") {
+            const double play = tolerance.of("static") * *d.static_N + tolerance.of("coulomb") * coulomb;
+            out.back().low = std::max(0.01 * excess, excess - play);
+            out.back().high = excess + play;
+        }
+    }
     within(
         "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));

@@ -55,7 +55,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             }
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
-    if (!c.at_floor()) {
+    if (!c.clean()) {
         const auto models = c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()});
         for (std::size_t i = 0; i < models.size(); ++i)
             if (c.takes_off(models[i], c.best()) > 0.3 &&
@@ -65,7 +65,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     weigh(out, c);
 
     const double energy = square(rms(c.models.held_out_residual(c.best())));
-    const double unexplained = c.at_floor() ? 0 : std::max(0.0, energy - square(c.floor_force()));
+    const double unexplained = c.clean() ? 0 : std::max(0.0, energy - square(c.floor_force()));
     double sum = 0;
     for (auto& r : out) {
         const double excess = std::max(0.0, square(rms(c.models.held_out_residual(r.model))) - energy);
@@ -85,9 +85,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     return out;
 }
 
-/// What is left above the floor beside what the cause number `which` explained, in force on held-out motion; 0 at the floor.
+/// What is left above the noise beside what the cause number `which` explained, in force on held-out motion.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    if (c.at_floor()) return 0;
+    if (c.clean()) return 0;
     const double before = rms(c.models.held_out_residual(c.path[which]));
     const double after = rms(c.models.held_out_residual(c.best()));
     const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
@@ -95,8 +95,8 @@ inline double left_beside(const axis_case& c, std::size_t which) {
     return left / explained;
 }
 
-/// The probability that the cause is none of the suspects. At the floor nothing is left that could speak for it. While
-/// structure is left, whatever leaves it may also be what the name stands in for: as probable as what is left is large
+/// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
+/// structure is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as probable as what is left is large
 /// beside what the name explained.
 inline double unknown(const axis_case& c, std::size_t which) {
     return std::min(0.03 + left_beside(c, which), 0.95);

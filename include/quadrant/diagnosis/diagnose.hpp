@@ -13,7 +13,9 @@ namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
     if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
-        if (!causes.empty()) return verdict::explained;
+        const bool named = std::all_of(causes.begin(), causes.end(),
+                                       [](const cause& x) { return x.group_probability >= 0.5; });
+        if (!causes.empty()) return named ? verdict::explained : verdict::partly_explained;
         const auto& given = c.models.given();
         const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
                               c.models.structure(given, c.noise) < c.limits.structure;
