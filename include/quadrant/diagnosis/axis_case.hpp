@@ -58,7 +58,7 @@ public:
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {
-            const double force = rms(models.held_out_residual(m));
+            const double force = models.held_out_force(m);
             return force * force;
         };
         const double left = energy(from), floor = floor_force() * floor_force();

@@ -3,6 +3,9 @@
 #include "calibration.hpp"
 #include "effects.hpp"
 
+#include <memory>
+#include <optional>
+
 namespace quadrant::diagnosis {
 
 /// A model under trial: the described machine, calibrated, with some effects joined; and how well it predicts
@@ -15,6 +18,10 @@ struct candidate {
         0; ///< for flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices
     double total = 0;                     ///< their sum without the penalty
     std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
+    Eigen::MatrixXd curvature{};          ///< of the score, without what the owner knows
+    Eigen::MatrixXd gradient{};           ///< of the score, one column a motion segment
+    /// rms of the residual force on held-out motion [N], once it was asked for; copies share it.
+    std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();
 };
 
 inline constexpr std::size_t folds = 5;
@@ -51,12 +58,16 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
     std::array<detail::fold_sum, folds> sums;
     detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
     for (auto& f : sums) f = all;
+    c.curvature = Eigen::MatrixXd::Zero(n, n);
+    c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
     detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const double w = nu / (blocks[b].ms + floor * floor);
             auto& f = sums[fold_of(s.segment_of_block[b])];
             f.a += w * blocks[b].a;
             f.g += w * blocks[b].g;
+            c.curvature += w * blocks[b].a;
+            c.gradient.col(static_cast<Eigen::Index>(s.segment_of_block[b])) += w * blocks[b].g;
         }
     });
     for (const auto& f : sums) all.a += f.a;
@@ -129,7 +140,8 @@ inline candidate sketch(const axis_record& record, const candidate& from, const 
     return best;
 }
 
-/// Scores a fitted model on motion that was not fitted.
+/// Scores a fitted model on motion that was not fitted, and keeps of its rows and blocks only what is asked for later: a
+/// diagnosis remembers hundreds of models.
 inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
     Eigen::VectorXd curvature = Eigen::VectorXd::Zero(c.fit.x.size());
@@ -137,6 +149,9 @@ inline void judge(const axis_record& record, candidate& c) {
         if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0)
             curvature[i] = 1 / (p.spread * p.spread);
     cross_validate(c, record.score, curvature);
+    c.held_out_force = std::make_shared<std::optional<double>>();
+    c.fit.innovation = {};
+    c.fit.quadratic = c.fit.quadratic_mean = {};
 }
 
 /// Fits a sketch to the end and scores it.

@@ -64,19 +64,19 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     }
     weigh(out, c);
 
-    const double energy = square(rms(c.models.held_out_residual(c.best())));
+    const double energy = square(c.models.held_out_force(c.best()));
     const double unexplained = c.clean() ? 0 : std::max(0.0, energy - square(c.floor_force()));
     double sum = 0;
     for (auto& r : out) {
-        const double excess = std::max(0.0, square(rms(c.models.held_out_residual(r.model))) - energy);
+        const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
         // A name that mends nothing is no rival. Two whose difference is smaller than what both leave unexplained are
         // not told apart by it, nor are two that are one model (gap/FORMAT.md) while their predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within = pays && leaner && !r.unlisted() &&
-                            excess < unexplained; // more flexible and no better: no second reading
-        const bool equivalent = r.name->name == own->equivalent && excess < 0.2 * energy;
-        if (within) r.weight = std::max(r.weight, std::exp(-excess / unexplained) * out.front().weight);
+        const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
+                            excess() < unexplained; // more flexible and no better: no second reading
+        const bool equivalent = r.name->name == own->equivalent && excess() < 0.2 * energy;
+        if (within) r.weight = std::max(r.weight, std::exp(-excess() / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
         sum += r.weight;
@@ -88,8 +88,8 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 /// What is left above the noise beside what the cause number `which` explained, in force on held-out motion.
 inline double left_beside(const axis_case& c, std::size_t which) {
     if (c.clean()) return 0;
-    const double before = rms(c.models.held_out_residual(c.path[which]));
-    const double after = rms(c.models.held_out_residual(c.best()));
+    const double before = c.models.held_out_force(c.path[which]);
+    const double after = c.models.held_out_force(c.best());
     const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
     const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
     return left / explained;

@@ -60,11 +60,7 @@ public:
     }
 
     /// How the innovation moves with each parameter.
-    std::vector<std::vector<double>> slopes(const fit_result& r) const {
-        std::vector<std::vector<double>> out(r.parameters.size());
-        for (std::size_t i = 0; i < out.size(); ++i) out[i] = slope(r, static_cast<Eigen::Index>(i));
-        return out;
-    }
+    std::vector<std::vector<double>> slopes(const fit_result& r) const { return slopes(r, {}); }
 
     /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
     /// at one more effect: the others' slopes are those of the model without it.
@@ -124,32 +120,49 @@ private:
         return ps[static_cast<std::size_t>(i)];
     }
 
-    std::vector<double> slope(const fit_result& r, Eigen::Index i) const {
-        const auto& q = p(r.parameters, i);
-        const double up = q.to_fit(q.high), h = r.x[i] + q.step > up ? -q.step : q.step;
-        plant_model plant = r.plant;
-        q.of(plant) = q.from_fit(r.x[i] + h);
-        std::vector<double> moved;
-        predictor_.run(plant, moved);
-        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation[k]) / h;
-        return moved;
+    /// Empty where `known` has them.
+    std::vector<std::vector<double>> slopes(const fit_result& r,
+                                            const std::vector<const std::vector<double>*>& known) const {
+        std::vector<plant_model> plants;
+        std::vector<std::size_t> which;
+        std::vector<double> step;
+        for (std::size_t i = 0; i < r.parameters.size(); ++i) {
+            if (i < known.size() && known[i]) continue;
+            const auto& q = r.parameters[i];
+            const double x = r.x[static_cast<Eigen::Index>(i)];
+            which.push_back(i);
+            step.push_back(x + q.step > q.to_fit(q.high) ? -q.step : q.step);
+            plants.push_back(r.plant);
+            q.of(plants.back()) = q.from_fit(x + step.back());
+        }
+        std::vector<std::vector<double>> moved(plants.size()), out(r.parameters.size());
+        predictor_.run(plants, moved);
+        for (std::size_t j = 0; j < which.size(); ++j) {
+            for (std::size_t k = 0; k < moved[j].size(); ++k)
+                moved[j][k] = (moved[j][k] - r.innovation[k]) / step[j];
+            out[which[j]] = std::move(moved[j]);
+        }
+        return out;
     }
 
     void linearize(fit_result& r, const std::vector<const std::vector<double>*>& known) const {
-        const auto n = static_cast<std::size_t>(r.x.size());
-        std::vector<std::vector<double>> d(n), dm(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            d[i] = i < known.size() && known[i] ? *known[i] : slope(r, static_cast<Eigen::Index>(i));
-            dm[i] = detail::means(d[i], scoring_.skip, scoring_.mean);
+        const auto found = slopes(r, known);
+        std::vector<const std::vector<double>*> d;
+        std::vector<std::vector<double>> dm;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            d.push_back(i < known.size() && known[i] ? known[i] : &found[i]);
+            dm.push_back(detail::means(*d.back(), scoring_.skip, scoring_.mean));
         }
+        std::vector<const std::vector<double>*> of_means;
+        for (const auto& m : dm) of_means.push_back(&m);
         r.quadratic = quadratics(r.innovation, d, scoring_.skip, scoring_.block, r.ms.size());
-        r.quadratic_mean = quadratics(detail::means(r.innovation, scoring_.skip, scoring_.mean), dm, 0,
+        r.quadratic_mean = quadratics(detail::means(r.innovation, scoring_.skip, scoring_.mean), of_means, 0,
                                       scoring_.block / scoring_.mean, r.ms_mean.size());
     }
 
     static std::vector<block_quadratic> quadratics(const std::vector<double>& e,
-                                                   const std::vector<std::vector<double>>& d, std::size_t first,
-                                                   std::size_t block, std::size_t count) {
+                                                   const std::vector<const std::vector<double>*>& d,
+                                                   std::size_t first, std::size_t block, std::size_t count) {
         const auto n = static_cast<Eigen::Index>(d.size());
         std::vector<block_quadratic> out(count);
         Eigen::MatrixXd j(static_cast<Eigen::Index>(block), n);
@@ -157,7 +170,7 @@ private:
             const auto k0 = first + b * block;
             for (Eigen::Index i = 0; i < n; ++i)
                 for (std::size_t k = 0; k < block; ++k)
-                    j(static_cast<Eigen::Index>(k), i) = d[static_cast<std::size_t>(i)][k0 + k];
+                    j(static_cast<Eigen::Index>(k), i) = (*d[static_cast<std::size_t>(i)])[k0 + k];
             const Eigen::Map<const Eigen::VectorXd> eb(e.data() + k0, static_cast<Eigen::Index>(block));
             const double inverse = 1 / static_cast<double>(block);
             out[b] = {.ms = eb.squaredNorm() * inverse,

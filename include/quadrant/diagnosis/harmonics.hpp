@@ -38,6 +38,12 @@ struct harmonics {
         }
         return sum;
     }
+    /// The same without the last harmonics that have no size.
+    harmonics trimmed() const {
+        harmonics out = *this;
+        while (out.count > 0 && sine[out.count - 1] == 0 && cosine[out.count - 1] == 0) --out.count;
+        return out;
+    }
     /// Up to the last harmonic that has a size.
     std::vector<double> sizes() const {
         std::vector<double> out;

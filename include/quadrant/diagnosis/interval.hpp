@@ -10,18 +10,10 @@ namespace quadrant::diagnosis {
 /// scatter, so that correlated residuals and what the model lacks widen it.
 inline Eigen::MatrixXd covariance(const candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
-    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(n, n), scatter = h;
-    std::vector<Eigen::VectorXd> gradient(s.segments, Eigen::VectorXd::Zero(n));
-    detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
-        for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double w = nu / (blocks[b].ms + floor * floor);
-            h += w * blocks[b].a;
-            gradient[s.segment_of_block[b]] += w * blocks[b].g;
-        }
-    });
+    Eigen::MatrixXd h = c.curvature, scatter = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
-    for (const auto& g : gradient) mean += g / static_cast<double>(s.segments);
-    for (const auto& g : gradient) scatter += (g - mean) * (g - mean).transpose();
+    for (const auto& g : c.gradient.colwise()) mean += g / static_cast<double>(s.segments);
+    for (const auto& g : c.gradient.colwise()) scatter += (g - mean) * (g - mean).transpose();
     if (s.segments > 1) scatter *= static_cast<double>(s.segments) / static_cast<double>(s.segments - 1);
     for (Eigen::Index i = 0; i < n; ++i)
         if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0) {

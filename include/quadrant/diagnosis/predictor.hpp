@@ -15,7 +15,8 @@ namespace quadrant::diagnosis {
 /// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
 /// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
 struct predictor {
-    double period;         ///< T [s]
+    static constexpr std::size_t abreast = 4; ///< plants in one pass
+    double period;                            ///< T [s]
     double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
@@ -24,16 +25,31 @@ struct predictor {
     /// period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const {
-        double choices = 0;
+        const std::span one(&plant, 1);
+        const std::span into(&innovation, 1);
         if (plant.loss > 0) {
-            pass(plant, command, innovation, nullptr);
+            pass(one, command, into, nullptr);
             const auto held = commands_with_loss(plant, innovation, plant.loss);
-            pass(plant, held.applied, innovation, acceleration);
-            choices = held.choices;
-        } else {
-            pass(plant, command, innovation, acceleration);
+            pass(one, held.applied, into, acceleration);
+            return held.choices;
         }
-        return choices;
+        pass(one, command, into, acceleration);
+        return 0;
+    }
+    /// The same for several plants, some at a time side by side: half the time. One list of innovations a plant, and of
+    /// accelerations where they are asked for.
+    void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
+             std::span<std::vector<double>> acceleration = {}) const {
+        for (std::size_t i = 0; i < plants.size();) {
+            std::vector<double>* const a = acceleration.empty() ? nullptr : &acceleration[i];
+            std::size_t n = 0;
+            while (i + n < plants.size() && n < abreast && plants[i + n].loss == 0) ++n;
+            if (n > 0)
+                pass(plants.subspan(i, n), command, innovation.subspan(i, n), a);
+            else
+                run(plants[i], innovation[i], a);
+            i += std::max<std::size_t>(1, n);
+        }
     }
 
     /// The commands that the drive acted on when it lost each with probability p, as the innovations of `plant` tell it.
@@ -74,31 +90,47 @@ private:
         return out;
     }
 
-    void pass(const plant_model& plant, std::span<const double> u, std::vector<double>& innovation,
-              std::vector<double>* acceleration) const {
+    /// One plant on its way through the log.
+    struct lane {
+        lane(const plant_model& p, double period, std::size_t whole_, double x)
+            : plant(p), whole(whole_), late(std::max(0.0, p.delay) - static_cast<double>(whole_) * period),
+              older(p, late > 0 ? late : period), newer(p, period - late),
+              s(plant_state::at(x - p.cyclic.at(x))) {}
+        const plant_model& plant;
+        std::size_t whole;
+        double late; ///< the older command's part of a period [s]
+        stepper older, newer;
+        plant_state s;
+        double before = 0;
+    };
+
+    /// Several plants side by side: each step waits for its own last one, so that the processor has time for the others'.
+    void pass(std::span<const plant_model> plants, std::span<const double> u,
+              std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
         const double to_position = l1(), to_velocity = l2();
-        const std::size_t whole = whole_periods(plant.delay);
-        const double first =
-            std::max(0.0, plant.delay) - static_cast<double>(whole) * period; // the older command's part
-        const stepper older(plant, first > 0 ? first : period), newer(plant, period - first);
-        const auto past = [&](std::size_t k, std::size_t back) { return u[k >= back ? k - back : 0]; };
-        innovation.resize(position.size());
-        if (acceleration) acceleration->resize(position.size());
-        auto s = plant_state::at(position[0] - plant.cyclic.at(position[0]));
+        std::vector<lane> lanes;
+        lanes.reserve(plants.size());
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            lanes.emplace_back(plants[i], period, whole_periods(plants[i].delay), position[0]);
+            innovation[i].resize(position.size());
+            if (acceleration) acceleration[i].resize(position.size());
+        }
         surroundings now;
         for (std::size_t k = 0; k < position.size(); ++k) {
-            const double e = position[k] - s.load - plant.cyclic.at(s.load);
-            innovation[k] = e;
-            s.shift(to_position * e, to_velocity * e);
+            const auto past = [&](std::size_t back) { return u[k >= back ? k - back : 0]; };
             if (!other_acceleration.empty()) now.other_acceleration = other_acceleration[k];
             now.time = static_cast<double>(k) * period;
-            const double before = plant.backlash > 0 ? s.load_velocity : s.v;
-            if (first > 0) {
-                older(s, past(k, whole + 1), now);
-                now.time += first;
+            for (std::size_t i = 0; i < lanes.size(); ++i) {
+                lane& l = lanes[i];
+                const double e = position[k] - l.s.load - l.plant.cyclic.at(l.s.load);
+                innovation[i][k] = e;
+                l.s.shift(to_position * e, to_velocity * e);
+                l.before = l.plant.backlash > 0 ? l.s.load_velocity : l.s.v;
+                if (l.late > 0) l.older(l.s, past(l.whole + 1), now);
             }
-            newer(s, past(k, whole), now);
-            if (acceleration) (*acceleration)[k] = (s.load_velocity - before) / period;
+            for (lane& l : lanes) l.newer(l.s, past(l.whole), {now.time + l.late, now.other_acceleration});
+            for (std::size_t i = 0; acceleration && i < lanes.size(); ++i)
+                acceleration[i][k] = (lanes[i].s.load_velocity - lanes[i].before) / period;
         }
     }
 };

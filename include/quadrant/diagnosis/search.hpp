@@ -42,23 +42,26 @@ public:
 
     /// Residual force of a model on the record it was fitted to [N].
     std::vector<double> residual(const candidate& c) const {
-        std::vector<double> e, a;
-        record_.observer.run(c.fit.plant, e, &a);
-        return residual_force(c.fit.plant, record_.position, a, record_.period, record_.bandwidth_Hz);
+        std::vector<double> out;
+        residuals({c.fit.plant}, [&](std::size_t, std::vector<double> r) { out = std::move(r); });
+        return out;
     }
     /// The same with every segment predicted by parameters that were fitted without it.
     std::vector<double> held_out_residual(const candidate& c) const {
         if (c.leave.empty()) return residual(c);
-        std::vector<double> out(record_.position.size()), e, a;
-        for (std::size_t f = 0; f < folds; ++f) {
-            plant_model plant = c.fit.plant;
-            fitter::put(plant, c.fit.parameters, c.leave[f]);
-            record_.observer.run(plant, e, &a);
-            const auto r = residual_force(plant, record_.position, a, record_.period, record_.bandwidth_Hz);
+        std::vector<plant_model> plants(folds, c.fit.plant);
+        for (std::size_t f = 0; f < folds; ++f) fitter::put(plants[f], c.fit.parameters, c.leave[f]);
+        std::vector<double> out(record_.position.size());
+        residuals(plants, [&](std::size_t f, const std::vector<double>& r) {
             for (std::size_t k = 0; k < r.size(); ++k)
                 if (fold_of(record_.segment[k]) == f) out[k] = r[k];
-        }
+        });
         return out;
+    }
+    /// Its rms [N].
+    double held_out_force(const candidate& c) const {
+        if (!*c.held_out_force) *c.held_out_force = rms(held_out_residual(c));
+        return **c.held_out_force;
     }
 
     /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end, the
@@ -121,7 +124,9 @@ public:
 
     /// White noise of the position as a model sees it [m].
     double noise(const candidate& c) const {
-        return position_noise(c.fit.innovation, record_.score, record_.resolution);
+        std::vector<double> innovation;
+        record_.observer.run(c.fit.plant, innovation);
+        return position_noise(innovation, record_.score, record_.resolution);
     }
 
     /// Structure that a model leaves: log-score of the blocks above twice the rms of noise and half a count. Below
@@ -145,7 +150,7 @@ public:
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const {
-        return structure(c, noise(c)) <= 0 && rms(held_out_residual(c)) < 1.3 * floor_force(c);
+        return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
     /// How far apart machines are that the owner calls the same: the residual force by which a machine drawn from inside
@@ -154,26 +159,24 @@ public:
     double tolerance_cloud() const {
         const auto calibrated = residual(calibrated_);
         std::mt19937_64 random(20080901);
-        std::vector<double> sizes;
-        for (int draw = 0; draw < 20; ++draw) {
-            candidate other{.effects = {}};
-            other.fit.plant = calibrated_.fit.plant;
+        std::vector<plant_model> others(20, calibrated_.fit.plant);
+        for (plant_model& other : others)
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m")
-                    p.of(other.fit.plant) = p.from_fit(low + share * (high - low));
+                if (p.key != "presliding_length_m") p.of(other) = p.from_fit(low + share * (high - low));
             }
-            auto there = residual(other);
+        std::vector<double> sizes;
+        residuals(others, [&](std::size_t, std::vector<double> there) {
             for (std::size_t k = 0; k < there.size(); ++k) there[k] -= calibrated[k];
             sizes.push_back(rms(there));
-        }
+        });
         return quantile(sizes, 0.95);
     }
 
     /// What a model leaves above the floor is small beside that cloud: nobody would call it a gap.
     bool immaterial(const candidate& c) const {
-        const double left = square(rms(held_out_residual(c))) - square(floor_force(c));
+        const double left = square(held_out_force(c)) - square(floor_force(c));
         if (!cloud_) cloud_ = tolerance_cloud();
         return std::sqrt(std::max(0.0, left)) < rules_.immaterial * *cloud_;
     }
@@ -229,7 +232,7 @@ public:
     bool pays(const candidate& more, const candidate& less) const {
         const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
         if (gain < std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
-        return rms(held_out_residual(more)) < (1 - rules_.least_shrink) * rms(held_out_residual(less));
+        return held_out_force(more) < (1 - rules_.least_shrink) * held_out_force(less);
     }
 
     static bool has(const candidate& c, const effect* e) {
@@ -241,6 +244,17 @@ public:
     }
 
 private:
+    /// use(i, residual force of plant i), one after the other.
+    template <class Use> void residuals(const std::vector<plant_model>& plants, const Use& use) const {
+        std::array<std::vector<double>, predictor::abreast> e, a;
+        for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
+            const std::size_t n = std::min(plants.size() - first, predictor::abreast);
+            record_.observer.run(std::span(plants).subspan(first, n), e, a);
+            for (std::size_t i = 0; i < n; ++i)
+                use(first + i, residual_force(plants[first + i], record_.position, a[i], record_.period,
+                                              record_.bandwidth_Hz));
+        }
+    }
     static double square(double x) { return x * x; }
     static candidate joined(const candidate& from, const effect* added) {
         candidate c{.effects = from.effects};
@@ -253,7 +267,10 @@ private:
         if (which.empty()) return;
         const auto left = residual(from);
         const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
-        const auto slopes = fitter(record_.observer, record_.score).slopes(from.fit);
+        const fitter fit(record_.observer, record_.score);
+        fit_result here = from.fit;
+        fit.evaluate(here);
+        const auto slopes = fit.slopes(here);
         on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
             candidate& c = models[which[i]];
             c = sketch(record_, from, *c.effects.back(), look, slopes);

@@ -37,7 +37,9 @@ struct surroundings {
 /// diagnosis runs millions of them.
 class stepper {
 public:
-    stepper(const plant_model& plant, double h) : plant_(plant), h_(h) {
+    stepper(const plant_model& plant, double h)
+        : plant_(plant), h_(h), ripple_(plant.ripple.trimmed()), cogging_(plant.cogging.trimmed()),
+          cutting_(plant.cutting.trimmed()), along_(plant.friction.along.trimmed()) {
         const auto& f = plant.friction;
         const auto& m = plant.mode;
         if (plant.lag > 0) {
@@ -65,19 +67,25 @@ public:
         const auto lengths = f.contact.lengths();
         for (std::size_t i = 0; i < f.contact.elements; ++i)
             stiffness_[i] = f.contact.weights[i] / lengths[i]; // times the level
+        for (side& d : side_) d = with_contact(d);
+        one_element_ = f.contact.elements == 1 && f.contact.weights[0] == 1;
+        level_varies_ = along_.count > 0 || f.drift != 0;
+        actuator_ = plant.dead_zone > 0 || plant.lag > 0 || ripple_.count > 0;
+        forces_ = cogging_.count + cutting_.count > 0 || plant.cutting_mean != 0 || plant.coupling != 0;
         inverse_stribeck_ = 1 / f.stribeck_velocity;
         inverse_drift_ = 1 / f.drift_time;
     }
 
     void operator()(plant_state& s, double command, const surroundings& now = {}) const {
         const double x = s.x + 0.5 * h_ * s.v, time = now.time + 0.5 * h_; // in the middle of the step
-        double drive = motor(s, command, x) + plant_.constant_force - plant_.spring * x + plant_.cogging.at(x) +
-                       plant_.cutting.at(time + plant_.cutting_start) + plant_.cutting_mean +
-                       plant_.mass * plant_.coupling * now.other_acceleration;
+        double drive = motor(s, command, x) + plant_.constant_force - plant_.spring * x;
+        if (forces_)
+            drive = drive + cogging_.at(x) + cutting_.at(time + plant_.cutting_start) + plant_.cutting_mean +
+                    plant_.mass * plant_.coupling * now.other_acceleration;
         if (plant_.unlisted.of != free_curve::over::nothing) drive += unlisted(x, s.v, command, time);
         double push = inertia_ * s.v + h_ * drive; // momentum before friction
         if (plant_.mode.mass > 0) push -= plant_.mode.mass * (wq_ * s.q + (ww_ - 1) * s.w);
-        const double v = behind_friction(s, push, time);
+        const double v = one_element_ ? behind_one(s, push, time) : behind_friction(s, push, time);
         if (plant_.mode.mass > 0) {
             const double rest = q_at_rest_ * (v - s.v) / h_, q = s.q - rest;
             s.q = rest + qq_ * q + qw_ * s.w;
@@ -93,10 +101,13 @@ public:
 private:
     struct side { // of one direction of motion
         double level, inertia;
+        double stiffness = 0, stuck_inertia = 0; // of a contact of one element, and with it
     };
 
     /// Force of the motor: what the actuator makes of a command.
     double motor(plant_state& s, double command, double x) const {
+        if (!actuator_)
+            return plant_.force_constant * std::clamp(command, -plant_.drive_limit, plant_.drive_limit);
         if (plant_.dead_zone > 0)
             command = command > 0 ? std::max(0.0, command - plant_.dead_zone)
                                   : std::min(0.0, command + plant_.dead_zone);
@@ -106,7 +117,7 @@ private:
             s.lagged = command + from * lag_left_;
             command += from * lag_mean_;
         }
-        return plant_.force_constant * (1 + plant_.ripple.at(x)) * command;
+        return plant_.force_constant * (1 + ripple_.at(x)) * command;
     }
 
     double unlisted(double x, double v, double command, double time) const {
@@ -118,18 +129,54 @@ private:
                                                      : command);
     }
 
+    double level_now(const side& d, const plant_state& s, double time) const {
+        double level = d.level;
+        if (along_.count > 0) level *= std::max(0.0, 1 + along_.at(s.x));
+        if (const double drift = plant_.friction.drift; drift != 0)
+            level *= std::max(0.0, 1 + drift * (1 - std::exp(-time * inverse_drift_)));
+        return level;
+    }
+    double slip_level(double level, double v) const {
+        const double excess = plant_.friction.excess;
+        return excess != 0 ? level + excess * std::exp(-std::abs(v) * inverse_stribeck_) : level;
+    }
+
+    /// behind_friction() for a contact of one element, which most models have: the same numbers in a third of the time.
+    double behind_one(plant_state& s, double push, double time) const {
+        side d = side_[(s.v != 0 ? s.v : push) > 0 ? 1 : 0];
+        if (level_varies_) d = with_contact({level_now(d, s, time), d.inertia});
+        const double breakaway = d.level + plant_.friction.excess;
+        if (breakaway <= 0) return push / d.inertia;
+        double& z = s.deflection[0];
+        const double pull = d.stiffness * z, stuck = (push - h_ * pull) / d.stuck_inertia, to = z + h_ * stuck;
+        const double force = std::abs(d.stiffness * to);
+        const bool slides = s.slipping[0] && to * s.v > 0;
+        double slip = slides ? slip_level(d.level, s.v) : breakaway;
+        s.slipping[0] = !(force <= slip);
+        if (!s.slipping[0]) {
+            z = to;
+            return stuck;
+        }
+        if (!slides) slip = slip_level(d.level, s.v);
+        const double held = to > 0 ? slip : -slip;
+        z = held / d.stiffness;
+        return (push - h_ * (pull + (held - pull))) / d.inertia;
+    }
+    /// A direction's level and inertia, with what follows from them.
+    side with_contact(side d) const {
+        d.stiffness = stiffness_[0] * (d.level + plant_.friction.excess);
+        d.stuck_inertia = d.inertia + h_ * (h_ + plant_.friction.contact.damping) * d.stiffness;
+        return d;
+    }
+
     /// Velocity at the end of the step. An element that would leave its share of the level slips, and the others are
     /// solved again: the sum is a rising function of the velocity, so at most one round an element.
     double behind_friction(plant_state& s, double push, double time) const {
         const auto& f = plant_.friction;
         const side& d = side_[(s.v != 0 ? s.v : push) > 0 ? 1 : 0];
-        double level = d.level;
-        if (f.along.count > 0) level *= std::max(0.0, 1 + f.along.at(s.x));
-        if (f.drift != 0) level *= std::max(0.0, 1 + f.drift * (1 - std::exp(-time * inverse_drift_)));
-        const double breakaway = level + f.excess;
+        const double level = level_now(d, s, time), breakaway = level + f.excess;
         if (breakaway <= 0) return push / d.inertia;
-        const double slip =
-            f.excess != 0 ? level + f.excess * std::exp(-std::abs(s.v) * inverse_stribeck_) : level;
+        const double slip = slip_level(level, s.v);
 
         const std::size_t n = f.contact.elements;
         std::array<double, friction_contact::most> held{}; // force of the elements that slip in this step
@@ -162,9 +209,11 @@ private:
     }
 
     const plant_model& plant_;
+    bool one_element_ = false, level_varies_ = false, actuator_ = false, forces_ = false;
     double h_, inverse_stribeck_ = 0, inverse_drift_ = 0;
     double inertia_ = 0, lag_left_ = 0, lag_mean_ = 0;
     double qq_ = 1, qw_ = 0, wq_ = 0, ww_ = 1, q_at_rest_ = 0;
+    harmonics ripple_, cogging_, cutting_, along_; // of the plant, up to the last that has a size
     std::array<double, friction_contact::most> stiffness_{};
     std::array<side, 2> side_{};
 };
