@@ -2,6 +2,7 @@
 #pragma once
 #include "controller_mismatch.hpp"
 #include "log.hpp"
+#include "restart.hpp"
 #include "search.hpp"
 #include "sensor_box.hpp"
 
@@ -24,6 +25,7 @@ public:
         if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
         controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
+        if (holdout) second = prepare(*holdout, period, resolution);
         path = models.run();
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         noise = models.noise(path.back());
@@ -41,6 +43,7 @@ public:
     double resolution; ///< the described one, or the real one where that is coarser [m]
     axis_record record;
     search models;
+    std::optional<axis_record> second; ///< the hold-out log
     std::optional<controller_finding> controller;
     std::vector<candidate> path; ///< the calibrated machine, then with one cause more each
     double noise = 0;            ///< white noise of the position [m]
@@ -52,9 +55,11 @@ public:
     const candidate& best() const { return path.back(); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left but noise: no other cause can hide behind the names.
-    bool clean() const { return structure < limits.structure; }
+    bool clean() const {
+        return structure < limits.structure && models.held_out_force(best()) < 1.3 * floor_force();
+    }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
-    bool at_floor() const { return clean() || immaterial; }
+    bool at_floor() const { return structure < limits.structure || immaterial; }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {
@@ -63,6 +68,20 @@ public:
         };
         const double left = energy(from), floor = floor_force() * floor_force();
         return left > floor ? (left - energy(to)) / (left - floor) : 0;
+    }
+    /// How well a model predicts the hold-out log, which nothing was fitted to, in log-score; 0 without one.
+    double second_score(const candidate& m) const {
+        if (!second) return 0;
+        fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
+        fitter(second->observer, second->score).evaluate(there);
+        return -there.objective;
+    }
+    /// Residual force that a model leaves on the hold-out log, rms [N].
+    double second_force(const candidate& m) const {
+        const plant_model plant = restarted(m.fit.plant, *second);
+        std::vector<double> e, a;
+        second->observer.run(plant, e, &a);
+        return rms(residual_force(plant, second->position, a, second->period, second->bandwidth_Hz));
     }
     bool controller_differs() const { return controller && controller->differs; }
     bool controller_open() const { return controller_differs() && !controller->mended; }

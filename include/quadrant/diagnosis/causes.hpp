@@ -21,13 +21,15 @@ struct rival {
 inline double square(double x) { return x * x; }
 
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
-/// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won.
+/// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A hold-out log counts as it
+/// stands.
 inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     const auto draws = segment_draws(c.record.segments);
-    std::vector<double> score(rivals.size());
+    std::vector<double> score(rivals.size()), second;
+    for (const rival& r : rivals) second.push_back(c.second_score(r.model));
     for (const auto& draw : draws) {
         for (std::size_t j = 0; j < rivals.size(); ++j) {
-            score[j] = -rivals[j].model.penalty;
+            score[j] = second[j] - rivals[j].model.penalty;
             for (std::size_t s = 0; s < draw.size(); ++s) score[j] += draw[s] * rivals[j].model.held_out[s];
         }
         const double top = *std::max_element(score.begin(), score.end());
@@ -85,21 +87,34 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     return out;
 }
 
-/// What is left above the noise beside what the cause number `which` explained, in force on held-out motion.
+/// A residual force `after` above the floor, beside what a cause took off `before`; 0 at the floor.
+inline double left_beside(double before, double after, double floor) {
+    if (after < 1.3 * floor) return 0;
+    return std::sqrt((square(after) - square(floor)) / std::max(1e-30, square(before) - square(after)));
+}
+/// The same of the cause number `which` on held-out motion, beside all the others.
 inline double left_beside(const axis_case& c, std::size_t which) {
     if (c.clean()) return 0;
-    const double before = c.models.held_out_force(c.path[which]);
-    const double after = c.models.held_out_force(c.best());
-    const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
-    const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
-    return left / explained;
+    return left_beside(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()),
+                       c.floor_force());
 }
 
 /// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
-/// structure is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as probable as what is left is large
-/// beside what the name explained.
+/// something is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as probable
+/// as what is left is large beside what the name explained, and by the square of that where only the force shows it and no
+/// block of the innovations does. So on the hold-out log, and a name that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    return std::min(0.03 + left_beside(c, which), 0.95);
+    const double left = left_beside(c, which);
+    const double here = std::min(0.03 + (c.structure < c.limits.structure ? left * left : left), 0.95);
+    if (!c.second) return here;
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, c.best().effects[which]);
+    const candidate without = c.models.with(others);
+    const double there =
+        std::min(0.03 + left_beside(c.second_force(without), c.second_force(c.best()), c.floor_force()), 0.95);
+    const double most = std::max(here, there), gain = c.second_score(c.best()) - c.second_score(without);
+    const double odds = (1 - most) / most * std::exp(std::clamp(gain / c.limits.temperature, -50.0, 0.0));
+    return 1 / (1 + odds);
 }
 
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none

@@ -57,19 +57,23 @@ inline forecast_result forecast(const machine_description& machine, const diagno
     out.machine_file = machine.file;
     out.motion_file = motion.file;
     machine_log expected = motion;
-    for (axis_log& planned : expected.axes) {
-        const auto axis = detail::named(corrected.axes, planned.name);
-        const auto was = detail::named(found.axes, planned.name);
-        if (!axis || !was || planned.still) continue;
-        if (!axis->controller) {
+    for (axis_log& planned : expected.axes)
+        if (const auto axis = detail::named(corrected.axes, planned.name); axis && !axis->controller) {
             out.notes.push_back(
                 fmt::format("axis {}: without a controller its motion cannot be forecast.", planned.name));
             planned.still = true;
-            continue;
         }
-        const axis_log alone = detail::with_neighbour(motion, planned, machine.sample_period_s);
-        planned = detail::recorded(*axis, alone, machine.sample_period_s,
-                                   detail::noise_beside_rounding(*axis, *was, machine.sample_period_s));
+    for (int round = 0; round < 2; ++round) { // in the second, coupled axes see each other as they really move
+        const machine_log before = expected;
+        for (axis_log& planned : expected.axes) {
+            const auto axis = detail::named(corrected.axes, planned.name);
+            const auto was = detail::named(found.axes, planned.name);
+            if (!axis || !was || planned.still) continue;
+            axis_log motion_of = *detail::named(motion.axes, planned.name);
+            motion_of = detail::with_neighbour(before, motion_of, machine.sample_period_s);
+            planned = detail::recorded(*axis, motion_of, machine.sample_period_s,
+                                       detail::noise_beside_rounding(*axis, *was, machine.sample_period_s));
+        }
     }
     const auto before = simulate(machine, expected), after = simulate(corrected, expected);
     for (std::size_t i = 0; i < after.axes.size(); ++i) {

@@ -3,7 +3,6 @@
 #include "causes.hpp"
 #include "closed_loop.hpp"
 #include "places.hpp"
-#include "restart.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -13,8 +12,7 @@ namespace quadrant::diagnosis {
 class how_far {
 public:
     explicit how_far(const axis_case& c)
-        : case_(c), log_(c.holdout ? *c.holdout : c.log),
-          judged_(c.holdout ? prepare(log_, c.record.period, c.resolution) : c.record),
+        : case_(c), log_(c.holdout ? *c.holdout : c.log), judged_(c.second ? *c.second : c.record),
           draws_(segment_draws(judged_.segments)) {}
 
     void measure(axis_result& result, std::vector<cause>& causes) const {

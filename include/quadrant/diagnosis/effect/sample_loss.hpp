@@ -24,9 +24,11 @@ inline constexpr effect sample_loss{
             if (found.told < 50) return {};
             p = std::clamp(found.lost / found.told, 1e-3, 0.5);
         }
-        const double by_chance = std::sqrt(found.lost + found.mirrored);
-        if (found.lost < 5 || found.lost - found.mirrored < by_chance) return {};
+        // Five times the scatter: in a closed loop the sensor's noise is in the command and in the pulses.
+        const double net = found.lost - found.mirrored, scatter = std::sqrt(found.lost + found.mirrored);
+        if (net < 5 || net < 5 * scatter) return {};
         if (p > 0.2) return {}; // no drive runs like that: something else makes the pulses
+        p = std::clamp(net / found.told, 1e-3, 0.5);
         return {{{.key = "actuator.loss_probability",
                   .of = [](plant_model& q) -> double& { return q.loss; },
                   .start = p,

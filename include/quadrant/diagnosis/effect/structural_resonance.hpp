@@ -2,6 +2,51 @@
 #pragma once
 #include "effect.hpp"
 
+namespace quadrant::diagnosis::detail {
+
+/// Frequencies at which a small second mass would take most out of the innovations, the best first: one pass for each of a
+/// ladder whose rungs are as close as a light damping is wide, and where it leads uphill the gain of a linear step in its mass.
+inline std::vector<double> ringing_frequencies(const screening& s, double lowest, double highest,
+                                               std::size_t most) {
+    constexpr double rung = 1.12;
+    const double small = 0.002 * s.leader.mass;
+    std::vector<double> ladder;
+    for (double f = lowest; f < highest; f *= rung) ladder.push_back(f);
+    std::vector<plant_model> plants(ladder.size(), s.leader);
+    for (std::size_t i = 0; i < ladder.size(); ++i) plants[i].mode = {small, ladder[i], 0.03};
+    std::vector<double> here;
+    s.record.observer.run(s.leader, here);
+    std::vector<std::vector<double>> there(ladder.size());
+    s.record.observer.run(plants, there);
+    const auto ms = block_ms(here, s.record.score.skip, s.record.score.block);
+    std::vector<double> gain(ladder.size());
+    for (std::size_t i = 0; i < ladder.size(); ++i) {
+        double along = 0, curvature = 1e-300;
+        for (std::size_t b = 0; b < ms.size(); ++b) {
+            double product = 0, square = 0;
+            for (std::size_t k = 0; k < s.record.score.block; ++k) {
+                const std::size_t at = s.record.score.skip + b * s.record.score.block + k;
+                const double d = there[i][at] - here[at];
+                product += d * here[at], square += d * d;
+            }
+            const double w = 1 / (ms[b] + s.record.score.floor * s.record.score.floor);
+            along -= w * product, curvature += w * square;
+        }
+        gain[i] = along > 0 ? along * along / curvature : 0;
+    }
+    std::vector<std::size_t> peaks;
+    for (std::size_t i = 0; i < gain.size(); ++i)
+        if (gain[i] > 0 && (i == 0 || gain[i] >= gain[i - 1]) &&
+            (i + 1 == gain.size() || gain[i] > gain[i + 1]))
+            peaks.push_back(i);
+    std::stable_sort(peaks.begin(), peaks.end(), [&](auto a, auto b) { return gain[a] > gain[b]; });
+    std::vector<double> out;
+    for (std::size_t i = 0; i < std::min(most, peaks.size()); ++i) out.push_back(ladder[peaks[i]]);
+    return out;
+}
+
+} // namespace quadrant::diagnosis::detail
+
 namespace quadrant::diagnosis::suspect {
 
 /// A second mass on a spring, part of the moving mass, that the encoder does not see: anti-resonance at the frequency given
@@ -14,11 +59,11 @@ inline constexpr effect structural_resonance{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double m = s.leader.mass, highest = std::min(600.0, 0.3 / s.record.period);
         std::vector<std::vector<parameter>> out;
-        for (double f : {30.0, 75.0, 180.0})
-            if (f < highest)
+        for (double f : detail::ringing_frequencies(s, 6, highest, 3))
+            for (double share : {0.03, 0.2})
                 out.push_back({{.key = "mode_mass_kg",
                                 .of = [](plant_model& p) -> double& { return p.mode.mass; },
-                                .start = 0.1 * m,
+                                .start = share * m,
                                 .low = 0.002 * m,
                                 .high = 0.8 * m,
                                 .logarithmic = true,
