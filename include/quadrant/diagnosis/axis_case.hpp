@@ -31,6 +31,7 @@ public:
         noise = models.noise(path.back());
         structure = models.structure(path.back(), noise);
         immaterial = models.immaterial(path.back());
+        if (second) structure_on_second = second_log(path.back()).structure;
     }
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -51,15 +52,14 @@ public:
     bool count_unnamed = false; ///< a coarser count than described, and the machine file excludes it as a cause
     bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
     double structure = 0;            ///< what the last model leaves above it, in log-score
+    double structure_on_second = 0;  ///< the same on the hold-out log
 
     const candidate& best() const { return path.back(); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left but noise: no other cause can hide behind the names.
-    bool clean() const {
-        return structure < limits.structure && models.held_out_force(best()) < 1.3 * floor_force();
-    }
+    bool clean() const { return structure < limits.structure; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
-    bool at_floor() const { return structure < limits.structure || immaterial; }
+    bool at_floor() const { return (clean() && structure_on_second < limits.structure) || immaterial; }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {
@@ -69,19 +69,19 @@ public:
         const double left = energy(from), floor = floor_force() * floor_force();
         return left > floor ? (left - energy(to)) / (left - floor) : 0;
     }
-    /// How well a model predicts the hold-out log, which nothing was fitted to, in log-score; 0 without one.
-    double second_score(const candidate& m) const {
-        if (!second) return 0;
+    /// How a model predicts the hold-out log, which nothing was fitted to.
+    struct on_second {
+        double score = 0;     ///< log-score
+        double structure = 0; ///< left above the noise
+        double force = 0;     ///< residual, rms [N]
+    };
+    on_second second_log(const candidate& m) const {
         fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
         fitter(second->observer, second->score).evaluate(there);
-        return -there.objective;
-    }
-    /// Residual force that a model leaves on the hold-out log, rms [N].
-    double second_force(const candidate& m) const {
-        const plant_model plant = restarted(m.fit.plant, *second);
         std::vector<double> e, a;
-        second->observer.run(plant, e, &a);
-        return rms(residual_force(plant, second->position, a, second->period, second->bandwidth_Hz));
+        second->observer.run(there.plant, e, &a);
+        return {-there.objective, models.structure(there.ms, there.ms_mean, noise, second->score),
+                rms(residual_force(there.plant, second->position, a, second->period, second->bandwidth_Hz))};
     }
     bool controller_differs() const { return controller && controller->differs; }
     bool controller_open() const { return controller_differs() && !controller->mended; }

@@ -26,7 +26,7 @@ inline double square(double x) { return x * x; }
 inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     const auto draws = segment_draws(c.record.segments);
     std::vector<double> score(rivals.size()), second;
-    for (const rival& r : rivals) second.push_back(c.second_score(r.model));
+    for (const rival& r : rivals) second.push_back(c.second ? c.second_log(r.model).score : 0);
     for (const auto& draw : draws) {
         for (std::size_t j = 0; j < rivals.size(); ++j) {
             score[j] = second[j] - rivals[j].model.penalty;
@@ -87,34 +87,33 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     return out;
 }
 
-/// A residual force `after` above the floor, beside what a cause took off `before`; 0 at the floor.
-inline double left_beside(double before, double after, double floor) {
-    if (after < 1.3 * floor) return 0;
-    return std::sqrt((square(after) - square(floor)) / std::max(1e-30, square(before) - square(after)));
-}
-/// The same of the cause number `which` on held-out motion, beside all the others.
+/// What is left above the noise beside what the cause number `which` explained, in force on held-out motion.
 inline double left_beside(const axis_case& c, std::size_t which) {
     if (c.clean()) return 0;
-    return left_beside(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()),
-                       c.floor_force());
+    const double before = c.models.held_out_force(c.path[which]);
+    const double after = c.models.held_out_force(c.best());
+    const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
+    const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
+    return left / explained;
 }
 
 /// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
-/// something is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as probable
-/// as what is left is large beside what the name explained, and by the square of that where only the force shows it and no
-/// block of the innovations does. So on the hold-out log, and a name that makes that one worse was not the cause there.
+/// structure is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as
+/// probable as what is left is large beside what the name explained. So on the hold-out log, and a name that makes that one worse
+/// was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    const double left = left_beside(c, which);
-    const double here = std::min(0.03 + (c.structure < c.limits.structure ? left * left : left), 0.95);
-    if (!c.second) return here;
+    double out = std::min(0.03 + left_beside(c, which), 0.95);
+    if (!c.second) return out;
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
-    const candidate without = c.models.with(others);
-    const double there =
-        std::min(0.03 + left_beside(c.second_force(without), c.second_force(c.best()), c.floor_force()), 0.95);
-    const double most = std::max(here, there), gain = c.second_score(c.best()) - c.second_score(without);
-    const double odds = (1 - most) / most * std::exp(std::clamp(gain / c.limits.temperature, -50.0, 0.0));
-    return 1 / (1 + odds);
+    const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
+    if (c.structure_on_second > c.limits.structure) {
+        const double left = std::sqrt(std::max(0.0, square(after.force) - square(c.floor_force())));
+        const double explained = std::sqrt(std::max(1e-30, square(before.force) - square(after.force)));
+        out = std::clamp(left / explained, out, 0.95);
+    }
+    const double gain = std::clamp((after.score - before.score) / c.limits.temperature, -50.0, 0.0);
+    return 1 / (1 + (1 - out) / out * std::exp(gain));
 }
 
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none

@@ -132,15 +132,19 @@ public:
     /// Structure that a model leaves: log-score of the blocks above twice the rms of noise and half a count. Below
     /// rules.structure the model is at the floor.
     double structure(const candidate& c, double sigma) const {
+        return structure(c.fit.ms, c.fit.ms_mean, sigma, record_.score);
+    }
+    double structure(const std::vector<double>& ms, const std::vector<double>& ms_mean, double sigma,
+                     const scoring& score) const {
         const auto over = [&](const std::vector<double>& blocks, double noise2, double nu) {
             double sum = 0;
-            for (double ms : blocks)
-                sum += 0.5 * nu * std::max(0.0, std::log(ms / (4 * (noise2 + square(record_.resolution) / 4))));
+            for (double block : blocks)
+                sum +=
+                    0.5 * nu * std::max(0.0, std::log(block / (4 * (noise2 + square(record_.resolution) / 4))));
             return sum;
         };
-        return over(c.fit.ms, sigma * sigma, record_.score.nu) +
-               over(c.fit.ms_mean, sigma * sigma / static_cast<double>(record_.score.mean),
-                    record_.score.nu_mean);
+        return over(ms, sigma * sigma, score.nu) +
+               over(ms_mean, sigma * sigma / static_cast<double>(score.mean), score.nu_mean);
     }
 
     /// The residual force that noise and rounding alone leave [N].
