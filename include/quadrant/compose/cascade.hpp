@@ -129,7 +129,7 @@ template <axis_boxes Boxes> struct cascade {
         wire.velocity_error = wire.demand - s.measured_velocity;
         wire.inertia = detail::settled(box.acceleration_feedforward, s.reference_acceleration);
         wire.friction = detail::settled(box.friction, s.reference_velocity);
-        hold(s.command);
+        carry(s.command);
         fault = false;
     }
     /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis: the
@@ -142,7 +142,7 @@ template <axis_boxes Boxes> struct cascade {
         look(reference, measured);
         wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
         wire.friction = box.friction(wire.reference_velocity);
-        hold(applied);
+        carry(applied);
     }
     /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward change goes into
     /// the integral: the last step, done once more, would give the same command.
@@ -202,7 +202,7 @@ private:
             box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
         wire.velocity_error = wire.demand - wire.measured_velocity;
     }
-    void hold(command u) noexcept {
+    void carry(command u) noexcept {
         wire.feedback = u - wire.inertia - wire.friction; // the notch has gain one at standstill
         box.velocity_loop.settle(wire.velocity_error, wire.feedback);
         wire.damped = detail::settled(box.resonance, wire.feedback);

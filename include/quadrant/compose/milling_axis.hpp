@@ -166,7 +166,7 @@ template <milling_boxes Boxes> struct milling_axis {
         } else
             wire.disturbance = detail::settled(box.disturbance, x);
         wire.linear = wire.compensated + wire.disturbance;
-        hold();
+        carry();
         fault = false;
     }
     /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis:
@@ -197,7 +197,7 @@ template <milling_boxes Boxes> struct milling_axis {
         if constexpr (requires { box.disturbance.disturbance(); })
             wire.disturbance = box.disturbance.disturbance();
         wire.linear = wire.compensated + wire.disturbance;
-        hold();
+        carry();
     }
     /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
     void shift(position by) noexcept {
@@ -237,7 +237,7 @@ private:
         else
             wire.learned = detail::settled(box.memory, position());
     }
-    void hold() noexcept {
+    void carry() noexcept {
         wire.feedback = wire.linear - wire.inertia - wire.drag;
         box.velocity_loop.settle(wire.velocity_error, wire.feedback);
         wire.wanted = wire.compensated + wire.friction;
