@@ -47,8 +47,9 @@ int main() {
     cascade<boxes> axis{.box = {soft, period}}, other{.box = {with(40.0 / 1_s, soft), period}};
     parameter_swap<boxes> tuning(axis.box);
     trajectory::stream_limiter<100> smooth({.velocity = 0.2_mps, .acceleration = 1_mps2}, period);
-    axis_enable<> power({.deceleration = 1_mps2, .emergency_deceleration = 2_mps2, .brake_time = 20_ms},
-                        period);
+    axis_enable<> power(
+        {.velocity = 0.2_mps, .deceleration = 1_mps2, .emergency_deceleration = 2_mps2, .brake_time = 20_ms},
+        period);
     following_error<> guard({.window = 100_um, .per_speed = 20_ms}, period);
     linear_motor<> motor({.mass = 340_kg,
                           .force_constant = 1450_N / 1_V,

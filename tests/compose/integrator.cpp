@@ -127,7 +127,9 @@ TEST_CASE(
 TEST_CASE(
     "emergency stop of a moving axis: ramp, brake, off; the following error trips an axis that is blocked") {
     cascade<boxes> axis{.box = {tuning(), T}};
-    axis_enable<> power{{.deceleration = 0.2_mps2, .emergency_deceleration = 1_mps2, .brake_time = 20_ms}, T};
+    axis_enable<> power{
+        {.velocity = 0.2_mps, .deceleration = 0.2_mps2, .emergency_deceleration = 1_mps2, .brake_time = 20_ms},
+        T};
     following_error<> guard{{.window = 50_um, .per_speed = 5_ms, .patience = 2_ms}, T};
     auto machine = motor();
     position y{};

@@ -156,7 +156,7 @@ inline const std::tuple blocks{
                                   T);
           }},
     entry{"axis_enable", 0.125,
-          []<class R>(values<R>& p) { return enabled<R>({p.fixed(2_mps2), p.fixed(8_mps2)}, T); }},
+          []<class R>(values<R>& p) { return enabled<R>({p.fixed(1_mps), p.fixed(2_mps2), p.fixed(8_mps2)}, T); }},
     entry{"following_error", 0.125,
           []<class R>(values<R>& p) {
               return watched<R>({p(31.3_mm), p(0.7_s)}, T);

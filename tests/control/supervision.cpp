@@ -17,7 +17,7 @@ using enum power_state;
 namespace {
 const duration T = 1_ms;
 const axis_enable<>::parameters stop{
-    .deceleration = 2_mps2, .emergency_deceleration = 8_mps2, .brake_time = 3_ms};
+    .velocity = 1.5_mps, .deceleration = 2_mps2, .emergency_deceleration = 8_mps2, .brake_time = 3_ms};
 constexpr power_request run{.enable = true}, idle{}, mushroom{.enable = true, .emergency_stop = true},
     tripping{.enable = true, .trip = true};
 const auto here = 10_mm;
@@ -83,6 +83,22 @@ TEST_CASE(
     CHECK(power.power() == off);
 }
 
+TEST_CASE("axis_enable: a stop in the sample in which the stream jumped begins with the highest speed that "
+          "there is") {
+    axis_enable<> power{stop, T};
+    power(run, 0_m);
+    double x = power(run, 100_mm).value(); // 100 m/s
+    for (int k = 0; k < 1000; ++k) x = power.on() ? power(mushroom, 100_mm).value() : x;
+    CHECK(power.power() == off);
+    power.reset();
+    power(run, 0_m);
+    power(run, -100_mm);
+    const auto at = power(idle, 0_m);
+    CHECK(at.value() == doctest::Approx(-0.1 - 1.499e-3));
+    for (int k = 0; k < 749; ++k) x = power(idle, 0_m).value();
+    CHECK(x == doctest::Approx(-0.1 - 1.5 * 1.5 / 4));
+}
+
 TEST_CASE("axis_enable: a reference that is not a number is held and told, a stop is obeyed all the same") {
     axis_enable<> power{stop, T};
     const auto bad = std::nan("") * 1_m;
@@ -125,6 +141,7 @@ TEST_CASE("axis_enable, following_error: refuse what no machine has") {
         change(p);
         CHECK_THROWS_AS((axis_enable<>{p, T}), invalid_parameter);
     };
+    without([](auto& p) { p.velocity = 0_mps; });
     without([](auto& p) { p.deceleration = 0_mps2; });
     without([](auto& p) { p.emergency_deceleration = -1_mps2; });
     without([](auto& p) { p.brake_time = -1_ms; });

@@ -32,9 +32,9 @@ struct power_request {
 /// nothing. The stream has to wait where the axis is; a `following_error` tells if it does not.
 /// State: last reference and its speed; `reset`: off, at zero; `settle(x)`: off, the stream at rest at x.
 /// `shift(by)`: the frame of positions moves (homing).
-/// Range: both decelerations finite, above 0; brake_time >= 0: how long the loop holds the axis at rest until the brake has closed.
+/// Range: velocity and both decelerations finite, above 0: no stop is longer than velocity^2/(2 a), whatever the stream did; brake_time >= 0: how long the loop holds the axis at rest until the brake has closed.
 /// NaN and infinities: holds the last reference, raises faulted(), does not switch on; stops and trips are obeyed all the same.
-/// Throws "axis_enable.<field> = ...: must ..." for period, deceleration, emergency_deceleration, brake_time.
+/// Throws "axis_enable.<field> = ...: must ..." for period, velocity, deceleration, emergency_deceleration, brake_time.
 /// Cost: a dozen comparisons. The stop has no jerk limit: put a `stream_limiter` behind it, or leave the jump to the notch.
 template <class Real = double> class axis_enable {
 public:
@@ -47,6 +47,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     struct parameters {
+        quantity<si::velocity, number> velocity; ///< of the stream at most, > 0: a stop begins with no more
         quantity<si::acceleration, number> deceleration;           ///< > 0, when enable falls
         quantity<si::acceleration, number> emergency_deceleration; ///< > 0
         duration brake_time{};                                     ///< >= 0
@@ -61,9 +62,10 @@ public:
     };
 
     axis_enable(const parameters& p, duration period)
-        : given_(p), period_(in_real<Real>(period)), gentle_(in_real<Real>(p.deceleration)),
-          hard_(in_real<Real>(p.emergency_deceleration)) {
+        : given_(p), period_(in_real<Real>(period)), fastest_(in_real<Real>(p.velocity)),
+          gentle_(in_real<Real>(p.deceleration)), hard_(in_real<Real>(p.emergency_deceleration)) {
         require_positive("axis_enable.period", period);
+        require_positive("axis_enable.velocity", p.velocity);
         require_positive("axis_enable.deceleration", p.deceleration);
         require_positive("axis_enable.emergency_deceleration", p.emergency_deceleration);
         require_not_negative("axis_enable.brake_time", p.brake_time);
@@ -115,6 +117,10 @@ private:
             state_.power = on;
         else if (state_.power == on && (r.emergency_stop || !r.enable)) {
             state_.power = stopping;
+            const velocity v = state_.speed;
+            state_.speed = v > fastest_    ? fastest_
+                           : v < -fastest_ ? -fastest_
+                                           : v; // the stream may have jumped
             state_.brake = brake_;
             state_.emergency = false;
         } else if (state_.power == stopping && state_.speed == velocity() && state_.brake-- == 0)
@@ -136,6 +142,7 @@ private:
 
     parameters given_;
     quantity<si::time, Real> period_;
+    velocity fastest_;
     acceleration gentle_, hard_;
     std::size_t brake_ = 0;
     state state_;
