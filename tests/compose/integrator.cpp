@@ -7,6 +7,7 @@
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/following_error.hpp>
 #include <quadrant/control/gain_schedule.hpp>
+#include <quadrant/friction/stribeck.hpp>
 #include <quadrant/literals.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
@@ -208,6 +209,51 @@ TEST_CASE("another tuning in motion, handed over whole: the command jumps by mil
     CHECK(most < 0.05); // V, with gains and corners changed by up to 1.65 times
     CHECK(most_naive > 1);
     CHECK(most_still < 1e-9);
+}
+
+TEST_CASE("milling_axis: another tuning in motion, observer and friction too") {
+    using observed =
+        milling_axis_boxes<stribeck<signal::velocity, signal::voltage>, disturbance_observer<signal::voltage>>;
+    std::mt19937 random(12);
+    const auto about = [&](auto q) { return std::exp(std::uniform_real_distribution(-0.3, 0.3)(random)) * q; };
+    const auto draw = [&] {
+        observed::parameters p{.position_gain = about(150.0 / 1_s),
+                               .velocity_gain = about(60_V / 1_mps),
+                               .velocity_integral = about(450_V / 1_m),
+                               .estimator_corner = about(150_Hz),
+                               .notch = {.centre = about(330_Hz), .damping = 0.06},
+                               .plant_gain = about(4.26_mps2 / 1_V),
+                               .plant_pole = 2.8 / 1_s,
+                               .friction = {about(0.08_V), 0.13_V, 2_mmps, about(0.2_V / 1_mps)},
+                               .limit = 10_V};
+        p.disturbance = {about(20_Hz), axis_model<signal::voltage>{p.plant_gain, p.plant_pole}};
+        return p;
+    };
+    const auto asked = [](int k) {
+        const double t = 0.002 * k, w = 4; // rad/s
+        return milling_axis<observed>::motion{20_mm * (1 - std::cos(t)), 0.02 * w * std::sin(t) * 1_mps,
+                                              0.02 * w * w * std::cos(t) * 1_mps2};
+    };
+    double most = 0, most_naive = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+        milling_axis<observed> axis{.box = {draw(), T}};
+        auto machine = motor();
+        position y{};
+        const int when = 500 + int(random() % 1000);
+        for (int k = 0; k < when; ++k) y = machine(axis(asked(k), y));
+        auto twin = axis, naive = axis;
+        const observed next{draw(), T};
+        naive.box = next;
+        axis.retune(next, asked(when - 1));
+        const double was = twin(asked(when), y).value();
+        most = std::max(most, std::abs(axis(asked(when), y).value() - was));
+        most_naive = std::max(most_naive, std::abs(naive(asked(when), y).value() - was));
+        for (int k = when + 1; k < 3000; ++k) y = machine(axis(asked(k), y));
+        CHECK(std::abs((asked(2999).position - y).value()) < 30e-6); // and it runs on
+    }
+    CAPTURE(most);
+    CHECK(most < 0.05); // V
+    CHECK(most_naive > 1);
 }
 
 TEST_CASE("homing: the frame of positions moves under a running axis, and no command changes") {

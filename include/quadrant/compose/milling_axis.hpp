@@ -85,7 +85,7 @@ template <signal_tag Command, class Real> struct milling_wires {
 /// added to the position error.
 /// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
 /// allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the same place gives u again.
-/// `track`, `shift`: enabled without a bump, homing; see docs/integrator.md.
+/// `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
 template <milling_boxes Boxes> struct milling_axis {
@@ -198,6 +198,32 @@ template <milling_boxes Boxes> struct milling_axis {
             wire.disturbance = box.disturbance.disturbance();
         wire.linear = wire.compensated + wire.disturbance;
         carry();
+    }
+    /// Other parameters from the next step on, each box as its own retune says; `ahead` as in the last step. What gains and
+    /// feedforward change goes into the integral: the last step, done once more, would give the same command.
+    void retune(const Boxes& next, const motion& ahead) noexcept {
+        detail::retune(box.memory, next.memory);
+        detail::retune(box.position_loop, next.position_loop);
+        detail::retune(box.reference_velocity, next.reference_velocity);
+        detail::retune(box.reference_notch, next.reference_notch);
+        detail::retune(box.measured_velocity, next.measured_velocity);
+        detail::retune(box.measured_notch, next.measured_notch);
+        detail::retune(box.inertia, next.inertia);
+        detail::retune(box.drag, next.drag);
+        detail::retune(box.disturbance, next.disturbance);
+        detail::retune(box.travel, next.travel);
+        detail::retune(box.friction, next.friction);
+        detail::retune(box.amplifier, next.amplifier);
+        detail::retune(box.dac, next.dac);
+        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.inertia = box.inertia(ahead.acceleration);
+        wire.drag = box.drag(ahead.velocity);
+        wire.friction = box.friction(wire.travel);
+        wire.compensated = wire.wanted - wire.friction;
+        wire.linear = wire.compensated + wire.disturbance;
+        wire.feedback = wire.linear - wire.inertia - wire.drag;
+        box.velocity_loop.retune(next.velocity_loop, wire.velocity_error, wire.feedback);
     }
     /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
     void shift(position by) noexcept {
