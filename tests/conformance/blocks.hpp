@@ -149,6 +149,24 @@ inline const std::tuple blocks{
           }},
     entry{"rate_limiter", 8,
           []<class R>(values<R>& p) { return rate_limiter<s::voltage, R>({p(3003_V / 1_s)}, T); }},
+    entry{"gain_schedule", 0.125,
+          []<class R>(values<R>& p) {
+              return scheduled<R>({{p(-71.3_mm), p(21.3_mm), p(93.1_mm)},
+                                   {p(7.0 / 1_s), p(19.0 / 1_s), p(-3.0 / 1_s)}},
+                                  T);
+          }},
+    entry{"axis_enable", 0.125,
+          []<class R>(values<R>& p) { return enabled<R>({p.fixed(1_mps), p.fixed(2_mps2), p.fixed(8_mps2)}, T); }},
+    entry{"following_error", 0.125,
+          []<class R>(values<R>& p) {
+              return watched<R>({p(31.3_mm), p(0.7_s)}, T);
+          }},
+    entry{"stream_limiter", 0.125,
+          []<class R>(values<R>& p) {
+              return trajectory::stream_limiter<2, R>(
+                  {p(3.01_mps), p(2003_mps2), p.fixed(4.1e6 * 1_mps2 / 1_s)}, T);
+          }},
+    entry{"gantry_pair", 0.125, []<class R>(values<R>& p) { return paired<R>({p(0.35), p.fixed(100_N)}, T); }},
     entry{"dead_band", 8, []<class R>(values<R>& p) { return dead_band<s::voltage, R>({p(1.01_V)}, T); }},
     entry{"quantizer", 8, []<class R>(values<R>& p) { return quantizer<s::voltage, R>({p.fixed(0.25_V)}, T); }},
     entry{"backward_difference", 0.125,

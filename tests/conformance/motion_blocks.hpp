@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <quadrant/compose/gantry_pair.hpp>
+#include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/axis_law.hpp>
+#include <quadrant/control/following_error.hpp>
+#include <quadrant/control/gain_schedule.hpp>
 #include <quadrant/feedforward/inverse_model.hpp>
 #include <quadrant/feedforward/preview.hpp>
 
@@ -57,6 +61,56 @@ template <class Command, class Real> struct inverted : quadrant::inverse_model<C
     std::complex<double> response(quadrant::frequency) const {
         const auto& p = this->given();
         return (1 + quadrant::detail::plain(p.damping)) / quadrant::detail::plain(p.gain);
+    }
+};
+
+/// An axis that is on.
+template <class Real> struct enabled : quadrant::axis_enable<Real> {
+    using base = quadrant::axis_enable<Real>;
+    using base::base;
+    using typename base::value;
+
+    value operator()(value x) noexcept { return base::operator()({.enable = true}, x); }
+    std::complex<double> response(quadrant::frequency) const { return 1; }
+};
+
+/// The share of the window, x for error and speed.
+template <class Real> struct watched : quadrant::following_error<Real> {
+    using base = quadrant::following_error<Real>;
+    using base::base;
+    using typename base::argument;
+    using typename base::value;
+
+    value operator()(argument x) noexcept { return base::operator()(x, as_motion(x).velocity); }
+    void settle(argument x) noexcept { base::settle(x, as_motion(x).velocity); }
+};
+
+/// x with a gain that depends on x.
+template <class Real>
+struct scheduled : quadrant::gain_schedule<quadrant::signal::position, quadrant::signal::position,
+                                           quadrant::signal::velocity, 3, Real> {
+    using base = quadrant::gain_schedule<quadrant::signal::position, quadrant::signal::position,
+                                         quadrant::signal::velocity, 3, Real>;
+    using base::base;
+    using typename base::argument;
+    using typename base::value;
+
+    value operator()(argument x) noexcept { return base::operator()(x, x); }
+    void settle(argument x) noexcept { base::settle(x, x); }
+};
+
+/// The mean of a beam with its ends at x and x/2.
+template <class Real> struct paired : quadrant::gantry_pair<quadrant::signal::force, Real> {
+    using base = quadrant::gantry_pair<quadrant::signal::force, Real>;
+    using input = quadrant::signal::position;
+    using output = quadrant::signal::position;
+    using value = typename base::position;
+    using base::base;
+
+    value operator()(value x) noexcept { return base::operator()(x, Real(0.5) * x).mean; }
+    void settle(value x) noexcept { base::settle(x, Real(0.5) * x); }
+    std::complex<double> response(quadrant::frequency) const {
+        return 0.5 + 0.5 * quadrant::detail::plain(this->given().share);
     }
 };
 

@@ -30,6 +30,9 @@ public:
     value operator()(argument x) noexcept { return finite(x) ? out_.keep(value()) : out_.hold(); }
     void reset() noexcept { out_.reset(); }
     void settle(argument x) noexcept { finite(x) ? out_.reset() : out_.raise(); }
+    void shift(argument by) noexcept {
+        if (!finite(by)) out_.raise();
+    }
 
     std::complex<double> response(frequency) const { return 0; }
     bool faulted() const noexcept { return out_.faulted(); }
@@ -64,6 +67,7 @@ public:
     value operator()(value x) noexcept { return finite(x) ? out_.keep(x) : out_.hold(); }
     void reset() noexcept { out_.reset(); }
     void settle(value x) noexcept { finite(x) ? out_.reset(x) : out_.raise(); }
+    void shift(value by) noexcept { finite(by) ? void(out_.keep(out_.last() + by)) : out_.raise(); }
 
     std::complex<double> response(frequency) const { return 1; }
     bool faulted() const noexcept { return out_.faulted(); }

@@ -67,6 +67,7 @@ template <signal_tag Command, class Real> struct cascade_wires {
 /// Ports: position reference and measured position in, command out (to act from this sample on).
 /// State: that of the boxes. `reset` as new (at rest at zero). `settle(start)` is the bumpless start in the middle of a
 /// motion: the next row, if the motion goes on as `start` says, gives start.command (as far as the limits allow).
+/// `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; the PI learns what was applied.
 template <axis_boxes Boxes> struct cascade {
@@ -87,15 +88,7 @@ template <axis_boxes Boxes> struct cascade {
             fault = true;
             return wire.command;
         }
-        wire.reference = reference;
-        wire.measured = measured;
-        wire.reference_velocity = box.reference_velocity(reference);
-        wire.reference_acceleration = box.reference_acceleration(wire.reference_velocity);
-        wire.measured_velocity = box.measured_velocity(measured);
-        wire.position_error = reference - measured;
-        wire.demand =
-            box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
-        wire.velocity_error = wire.demand - wire.measured_velocity;
+        look(reference, measured);
         wire.feedback = box.velocity_loop(wire.velocity_error);
         wire.damped = box.resonance(wire.feedback);
         wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
@@ -136,13 +129,52 @@ template <axis_boxes Boxes> struct cascade {
         wire.velocity_error = wire.demand - s.measured_velocity;
         wire.inertia = detail::settled(box.acceleration_feedforward, s.reference_acceleration);
         wire.friction = detail::settled(box.friction, s.reference_velocity);
-        wire.feedback = s.command - wire.inertia - wire.friction; // the notch has gain one at standstill
-        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
-        wire.damped = detail::settled(box.resonance, wire.feedback);
-        wire.wanted = wire.damped + wire.inertia + wire.friction;
-        wire.limited = detail::settled(box.amplifier, wire.wanted);
-        wire.command = detail::settled(box.dac, wire.limited);
+        carry(s.command);
         fault = false;
+    }
+    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis: the
+    /// estimators go on, the integral is what makes the next step give `applied` if no wire changes till then.
+    void track(position reference, position measured, command applied) noexcept {
+        if (!finite(reference, measured, applied)) {
+            fault = true;
+            return;
+        }
+        look(reference, measured);
+        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
+        wire.friction = box.friction(wire.reference_velocity);
+        carry(applied);
+    }
+    /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward change goes into
+    /// the integral: the last step, done once more, would give the same command.
+    void retune(const Boxes& next) noexcept {
+        const command before = wire.inertia + wire.friction;
+        detail::retune(box.reference_velocity, next.reference_velocity);
+        detail::retune(box.reference_acceleration, next.reference_acceleration);
+        detail::retune(box.measured_velocity, next.measured_velocity);
+        detail::retune(box.position_loop, next.position_loop);
+        detail::retune(box.velocity_feedforward, next.velocity_feedforward);
+        detail::retune(box.resonance, next.resonance);
+        detail::retune(box.acceleration_feedforward, next.acceleration_feedforward);
+        detail::retune(box.friction, next.friction);
+        detail::retune(box.amplifier, next.amplifier);
+        detail::retune(box.dac, next.dac);
+        wire.demand =
+            box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
+        wire.friction = box.friction(wire.reference_velocity);
+        const command less = before - (wire.inertia + wire.friction);
+        wire.feedback += less;
+        wire.damped += less;
+        box.velocity_loop.retune(next.velocity_loop, wire.velocity_error, wire.feedback);
+        box.resonance.shift(less);
+    }
+    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
+    void shift(position by) noexcept {
+        box.reference_velocity.shift(by);
+        box.measured_velocity.shift(by);
+        wire.reference += by;
+        wire.measured += by;
     }
     void reset() noexcept {
         std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));
@@ -159,6 +191,25 @@ template <axis_boxes Boxes> struct cascade {
     static constexpr auto taps() { return wires::taps(); }
 
 private:
+    [[gnu::always_inline]] inline void look(position reference, position measured) noexcept {
+        wire.reference = reference;
+        wire.measured = measured;
+        wire.reference_velocity = box.reference_velocity(reference);
+        wire.reference_acceleration = box.reference_acceleration(wire.reference_velocity);
+        wire.measured_velocity = box.measured_velocity(measured);
+        wire.position_error = reference - measured;
+        wire.demand =
+            box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+    }
+    void carry(command u) noexcept {
+        wire.feedback = u - wire.inertia - wire.friction; // the notch has gain one at standstill
+        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
+        wire.damped = detail::settled(box.resonance, wire.feedback);
+        wire.wanted = wire.damped + wire.inertia + wire.friction;
+        wire.limited = detail::settled(box.amplifier, wire.wanted);
+        wire.command = detail::settled(box.dac, wire.limited);
+    }
     static constexpr auto boxes(auto& b) noexcept {
         return std::tie(b.reference_velocity, b.reference_acceleration, b.measured_velocity, b.position_loop,
                         b.velocity_feedforward, b.velocity_loop, b.resonance, b.acceleration_feedforward,

@@ -3,6 +3,7 @@
 #include "../signal.hpp"
 
 #include <concepts>
+#include <type_traits>
 
 namespace quadrant {
 
@@ -32,6 +33,14 @@ template <class Block, class X> auto settled(Block& block, const X& x) {
     block.settle(x);
     Block copy = block;
     return copy(x);
+}
+/// The parameters of another block of the same type, the state of this one; a block without parameters stays as it is.
+template <class Block> void retune(Block& block, const Block& next) noexcept {
+    if constexpr (requires { block.retune(next); })
+        block.retune(next);
+    else
+        static_assert(std::is_empty_v<typename Block::parameters>,
+                      "this block cannot be retuned while it runs");
 }
 template <class Block>
 concept responds = requires(const Block& block, frequency f) {

@@ -85,6 +85,7 @@ template <signal_tag Command, class Real> struct milling_wires {
 /// added to the position error.
 /// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
 /// allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the same place gives u again.
+/// `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
 template <milling_boxes Boxes> struct milling_axis {
@@ -105,7 +106,8 @@ template <milling_boxes Boxes> struct milling_axis {
 
     Boxes box;
     wires wire{};
-    bool fault = false; ///< a sample was not finite; cleared by reset and settle
+    bool fault = false;    ///< a sample was not finite; cleared by reset and settle
+    bool tracking = false; ///< the last sample was a `track`: nothing is learnt
 
     command operator()(const motion& reference, position measured) noexcept {
         return (*this)(reference, reference, measured);
@@ -115,12 +117,9 @@ template <milling_boxes Boxes> struct milling_axis {
             fault = true;
             return wire.command;
         }
-        wire.reference = reference.position;
-        wire.measured = measured;
-        wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
-        wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
-        wire.position_error = reference.position - measured;
+        look(reference, measured);
         wire.learned = box.memory(wire.position_error);
+        tracking = false;
         wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.feedback = box.velocity_loop(wire.velocity_error);
@@ -152,11 +151,7 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.reference_velocity =
             detail::settled(box.reference_notch, detail::settled(box.reference_velocity, x));
         wire.measured_velocity = detail::settled(box.measured_notch, detail::settled(box.measured_velocity, x));
-        // Nothing learnt; one that integrates has to be told that it gives nothing.
-        if constexpr (requires { box.memory.settle(position(), position()); })
-            box.memory.settle(position(), position());
-        else
-            wire.learned = detail::settled(box.memory, position());
+        forget();
         wire.demand = detail::settled(box.position_loop, wire.learned) + wire.reference_velocity;
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.inertia = detail::settled(box.inertia, acceleration());
@@ -171,12 +166,73 @@ template <milling_boxes Boxes> struct milling_axis {
         } else
             wire.disturbance = detail::settled(box.disturbance, x);
         wire.linear = wire.compensated + wire.disturbance;
-        wire.feedback = wire.linear - wire.inertia - wire.drag;
-        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
-        wire.wanted = wire.compensated + wire.friction;
-        wire.limited = detail::settled(box.amplifier, wire.wanted);
-        wire.command = detail::settled(box.dac, wire.limited);
+        carry();
         fault = false;
+    }
+    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis:
+    /// estimators, friction and observer see what happens and what was applied, the memory has learnt nothing, and the
+    /// integral is what makes the next step give `applied` if no wire changes till then.
+    void track(const motion& reference, position measured, command applied) noexcept {
+        track(reference, reference, measured, applied);
+    }
+    void track(const motion& reference, const motion& ahead, position measured, command applied) noexcept {
+        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
+                    applied)) {
+            fault = true;
+            return;
+        }
+        look(reference, measured);
+        if (!tracking) forget();
+        tracking = true;
+        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.inertia = box.inertia(ahead.acceleration);
+        wire.drag = box.drag(ahead.velocity);
+        wire.travel = box.travel(ahead.position);
+        wire.friction = box.friction(wire.travel);
+        wire.compensated = applied - wire.friction;
+        wire.disturbance = estimate(measured, wire.compensated + wire.disturbance);
+        if constexpr (requires { box.disturbance.applied(wire.compensated); })
+            box.disturbance.applied(wire.compensated);
+        if constexpr (requires { box.disturbance.disturbance(); })
+            wire.disturbance = box.disturbance.disturbance();
+        wire.linear = wire.compensated + wire.disturbance;
+        carry();
+    }
+    /// Other parameters from the next step on, each box as its own retune says; `ahead` as in the last step. What gains and
+    /// feedforward change goes into the integral: the last step, done once more, would give the same command.
+    void retune(const Boxes& next, const motion& ahead) noexcept {
+        detail::retune(box.memory, next.memory);
+        detail::retune(box.position_loop, next.position_loop);
+        detail::retune(box.reference_velocity, next.reference_velocity);
+        detail::retune(box.reference_notch, next.reference_notch);
+        detail::retune(box.measured_velocity, next.measured_velocity);
+        detail::retune(box.measured_notch, next.measured_notch);
+        detail::retune(box.inertia, next.inertia);
+        detail::retune(box.drag, next.drag);
+        detail::retune(box.disturbance, next.disturbance);
+        detail::retune(box.travel, next.travel);
+        detail::retune(box.friction, next.friction);
+        detail::retune(box.amplifier, next.amplifier);
+        detail::retune(box.dac, next.dac);
+        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.inertia = box.inertia(ahead.acceleration);
+        wire.drag = box.drag(ahead.velocity);
+        wire.friction = box.friction(wire.travel);
+        wire.compensated = wire.wanted - wire.friction;
+        wire.linear = wire.compensated + wire.disturbance;
+        wire.feedback = wire.linear - wire.inertia - wire.drag;
+        box.velocity_loop.retune(next.velocity_loop, wire.velocity_error, wire.feedback);
+    }
+    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
+    void shift(position by) noexcept {
+        box.reference_velocity.shift(by);
+        box.measured_velocity.shift(by);
+        box.disturbance.shift(by);
+        box.travel.shift(by);
+        wire.reference += by;
+        wire.measured += by;
     }
     void reset() noexcept {
         std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));
@@ -193,6 +249,27 @@ template <milling_boxes Boxes> struct milling_axis {
     static constexpr auto taps() { return wires::taps(); }
 
 private:
+    [[gnu::always_inline]] inline void look(const motion& reference, position measured) noexcept {
+        wire.reference = reference.position;
+        wire.measured = measured;
+        wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
+        wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
+        wire.position_error = reference.position - measured;
+    }
+    void forget() noexcept { // one that integrates has to be told that it gives nothing
+        wire.learned = position();
+        if constexpr (requires { box.memory.settle(position(), position()); })
+            box.memory.settle(position(), position());
+        else
+            wire.learned = detail::settled(box.memory, position());
+    }
+    void carry() noexcept {
+        wire.feedback = wire.linear - wire.inertia - wire.drag;
+        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
+        wire.wanted = wire.compensated + wire.friction;
+        wire.limited = detail::settled(box.amplifier, wire.wanted);
+        wire.command = detail::settled(box.dac, wire.limited);
+    }
     command estimate(position measured, command wanted) noexcept {
         if constexpr (requires { box.disturbance(measured, wanted); })
             return box.disturbance(measured, wanted);

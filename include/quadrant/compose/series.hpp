@@ -14,6 +14,7 @@ namespace quadrant {
 ///   y = last(... second(first(x)))
 /// Ports: one scalar in, one scalar out, the same signal for all.
 /// State: that of the blocks, now() as a tuple; `reset` resets, `settle(x)` settles each at what the one before gives.
+/// `retune(next)` and `shift(by)` where each block has them.
 /// NaN and infinities: a bad input reaches no block, the last output is held; a block that overflows holds its own, the
 /// ones behind it go on. faulted() = any of that has happened.
 /// Throws what the blocks throw.
@@ -49,6 +50,12 @@ public:
         std::apply([&](auto&... block) { ((x = detail::settled(block, x)), ...); }, blocks_);
         out_.reset(x);
     }
+    void retune(const series& next) noexcept { retune_each(next, std::index_sequence_for<First, Rest...>()); }
+    void shift(value by) noexcept { ///< where each block has gain one at standstill
+        if (!finite(by)) return out_.raise();
+        std::apply([&](auto&... block) { (block.shift(by), ...); }, blocks_);
+        out_.keep(out_.last() + by);
+    }
 
     /// Of all blocks together, where each has one.
     std::complex<double> response(frequency f) const
@@ -71,6 +78,10 @@ private:
     template <std::size_t... I>
     series(const parameters& p, duration period, std::index_sequence<I...>)
         : blocks_(std::tuple_element_t<I, blocks>(std::get<I>(p), period)...) {}
+
+    template <std::size_t... I> void retune_each(const series& next, std::index_sequence<I...>) noexcept {
+        (detail::retune(std::get<I>(blocks_), std::get<I>(next.blocks_)), ...);
+    }
 
     blocks blocks_;
     held_output<value> out_;

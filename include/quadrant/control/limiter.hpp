@@ -10,6 +10,7 @@ namespace quadrant {
 /// Source: gap/FORMAT.md (limit of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was clipped.
+/// `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
 /// Range: low <= high; an infinite bound is no bound.
 /// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large demand).
 /// Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number".
@@ -49,6 +50,11 @@ public:
         if (!finite(x)) return out_.raise();
         limited_ = x > high_ || x < low_;
         out_.reset(clipped(x));
+    }
+    void retune(const limiter& next) noexcept {
+        low_ = next.low_;
+        high_ = next.high_;
+        given_ = next.given_;
     }
 
     bool limited() const noexcept { return limited_; }

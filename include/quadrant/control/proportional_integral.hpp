@@ -27,6 +27,9 @@ concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, co
 /// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is assumed.
 /// State: the integral and the excess output - applied, both in output units; `reset` leaves zero; `settle(e, u)` is
 /// the bumpless start: the next step with e gives u, as far as the limit of the integral allows.
+/// `retune(next, e[k-1])`: other gains from the next step on; the integral takes what the proportional part loses. Then
+/// |u'[k] - u[k-1]| <= gain' |e[k] - e[k-1]| + integral_gain' T |e[k]| + what the integral has beyond its new limit (+ T/tracking_time'
+/// times the excess): the step that the new gains would have made anyway.
 /// Range: gains not negative; integral_gain = 0 is a plain gain that keeps its integral; limit > 0, infinite = none.
 /// u itself is never clipped: a notch and feedforward follow, then a `limiter`. limited() = the integral was restrained.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -107,6 +110,21 @@ public:
         state_ = {integral, value()};
         limited_ = false;
         out_.reset(u);
+    }
+    /// The last step once more, with the new gains: as if it had been given e and had put out u (of one argument: u).
+    void retune(const proportional_integral& next, argument e) noexcept { retune(next, e, out_.last()); }
+    void retune(const proportional_integral& next, argument e, value u) noexcept {
+        const value integral = u - next.gain_ * e;
+        if (next.period_ != period_ || !finite(integral)) return out_.raise();
+        const held_output<value> out = out_;
+        const state before = state_;
+        *this = next;
+        out_ = out;
+        state_ = before;
+        if constexpr (std::same_as<AntiWindup, integral_clamp>)
+            state_.integral = clamped(integral);
+        else
+            state_.integral = integral;
     }
 
     /// Of the unrestrained loop.

@@ -43,6 +43,10 @@ public:
         const value y = rounded(x);
         finite(x, y) ? out_.reset(y) : out_.raise();
     }
+    void retune(const quantizer& next) noexcept { ///< J <= half of both steps
+        step_ = next.step_;
+        given_ = next.given_;
+    }
 
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }

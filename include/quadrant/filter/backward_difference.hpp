@@ -49,6 +49,7 @@ public:
         state_.x = x;
         out_.reset(rate);
     }
+    void shift(argument by) noexcept { finite(by) ? void(state_.x += by) : out_.raise(); }
 
     std::complex<double> response(frequency f) const {
         const double angle = 2 * std::numbers::pi * f.value() * period_.value();

@@ -44,6 +44,12 @@ public:
     value operator()(value x) noexcept { return step(coefficients_, state_, out_, x); }
     void reset() noexcept { settle(value()); }
     void settle(value x) noexcept { quadrant::settle(coefficients_, state_, out_, x); }
+    void retune(const butterworth& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        quadrant::retune(coefficients_, next.coefficients_, state_, out_.last());
+        given_ = next.given_;
+    }
+    void shift(value by) noexcept { quadrant::shift(coefficients_, state_, out_, by); }
 
     std::complex<double> response(frequency f) const { return quadrant::response(coefficients_, f, period_); }
     bool faulted() const noexcept { return out_.faulted(); }

@@ -15,6 +15,8 @@ namespace quadrant {
 /// Ports: one scalar in, its rate out; sign kept.
 /// State: the last input and the last output; `reset` leaves 0, so a first sample y0 reads as a jump: `settle(y0)` first.
 /// `settle(y)` stands still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.
+/// `retune(next)`: another corner from the next step on, J = |b' - b| |(y[k] - y[k-1])/T - v[k-1]|, b = 2 wc T/(2 + wc T): none
+/// in even motion. `shift(by)`: the frame of positions moves, the rate does not.
 /// Range: corner > 0. Above the sampling rate / pi (wc T > 2) the pole is negative and the output rings, but decays.
 /// The gain of a ramp is exactly one; the -3 dB point lies below corner by the bilinear warp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -57,6 +59,13 @@ public:
         state_ = {y, rate};
         out_.reset(rate);
     }
+    void retune(const filtered_derivative& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        keep_ = next.keep_;
+        take_ = next.take_;
+        given_ = next.given_;
+    }
+    void shift(argument by) noexcept { finite(by) ? void(state_.y += by) : out_.raise(); }
 
     std::complex<double> response(frequency f) const {
         const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());

@@ -16,6 +16,8 @@ namespace quadrant {
 /// Source: [Franklin1998] ch. 6; LinuxCNC lowpass is the zero-order-hold form of the same filter.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, gain one at standstill.
 /// State: the last input and the last output; `reset` leaves zero, `settle(x)` the state of a constant x.
+/// `retune(next)`: another corner from the next step on, J = |b' - b| |x[k] + x[k-1] - 2 y[k-1]|, b = t/(1+t). `shift(by)`: as
+/// if all inputs so far had been higher by so much.
 /// Range: 0 < corner < half the sampling rate; zero gain at half the sampling rate.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "lowpass.corner = ...: must lie between 0 and half the sampling rate (...)".
@@ -54,6 +56,17 @@ public:
         if (!finite(x)) return out_.raise();
         state_ = {x, x};
         out_.reset(x);
+    }
+
+    void retune(const lowpass& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        b_ = next.b_;
+        given_ = next.given_;
+    }
+    void shift(value by) noexcept {
+        if (!finite(by)) return out_.raise();
+        state_.x += by, state_.y += by;
+        out_.keep(out_.last() + by);
     }
 
     std::complex<double> response(frequency f) const {

@@ -12,6 +12,8 @@ namespace quadrant {
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
 /// State: two numbers in the unit of the output (transposed direct form II); `reset` leaves zero, `settle(x)` the
 /// state of a constant x (gain one at standstill).
+/// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all
+/// inputs so far had been higher by so much.
 /// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz).
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Cost: 4 multiplications (b0 = b2, b1 = a1), 24 bytes of state. For a dip of limited depth use `transfer_function`.
@@ -46,6 +48,12 @@ public:
     value operator()(value x) noexcept { return step(coefficients_, state_, out_, x); }
     void reset() noexcept { settle(value()); }
     void settle(value x) noexcept { quadrant::settle(coefficients_, state_, out_, x); }
+    void retune(const notch& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        quadrant::retune(coefficients_, next.coefficients_, state_, out_.last());
+        given_ = next.given_;
+    }
+    void shift(value by) noexcept { quadrant::shift(coefficients_, state_, out_, by); }
 
     std::complex<double> response(frequency f) const { return quadrant::response(coefficients_, f, period_); }
     bool faulted() const noexcept { return out_.faulted(); }

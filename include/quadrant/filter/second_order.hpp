@@ -45,6 +45,29 @@ void settle(const second_order_coefficients<Real>& c, second_order_state<Signal,
     out.reset(y);
 }
 
+/// Other coefficients in the next step, for a filter whose gain at standstill is one: the state goes on as if the last input
+/// had stood for ever under either. Nothing changes for a constant input; else the next output is off by (b0' - b0)(x[k] - x[k-1])
+/// from what it would have been.
+template <signal_tag Signal, class Real>
+void retune(second_order_coefficients<Real>& c, const second_order_coefficients<Real>& next,
+            second_order_state<Signal, Real>& state, const quantity_of<Signal, Real>& last) noexcept {
+    const quantity_of<Signal, Real> x = (state.s[1] + c.a2 * last) / c.b2; // the last input
+    const quantity_of<Signal, Real> s0 = state.s[0] + (c.b0 - next.b0) * x,
+                                    s1 = state.s[1] + ((next.b2 - c.b2) + (c.a2 - next.a2)) * x;
+    c = next;
+    if (finite(s0, s1)) state.s = {s0, s1};
+}
+
+/// As if all inputs so far had been higher by so much, for the same filters.
+template <signal_tag Signal, class Real>
+void shift(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
+           held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> by) noexcept {
+    if (!finite(by)) return out.raise();
+    state.s[0] += by - c.b0 * by;
+    state.s[1] += (c.b2 - c.a2) * by;
+    out.keep(out.last() + by);
+}
+
 template <class Real>
 std::complex<double> response(const second_order_coefficients<Real>& c, frequency f, duration period) {
     const auto number = [](const Real& x) { return detail::plain(x); };

@@ -13,7 +13,7 @@ namespace quadrant {
 /// Source: gap/FORMAT.md (velocity_estimator two_sample_mean).
 /// Ports: one scalar in, its rate out; sign kept.
 /// State: the last two inputs; `reset` leaves 0, so a first sample reads as a jump: `settle(y0)` first. `settle(y)` stands
-/// still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.
+/// still at y; `settle(y, rate)` has been moving at that rate and y was its last sample. `shift(by)`: the frame moves.
 /// Range: late by one period exactly, at all frequencies; zero gain at half the sampling rate.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "two_sample_derivative.period = ...: must be finite and above 0".
@@ -49,6 +49,10 @@ public:
         if (!finite(before, rate)) return out_.raise();
         state_ = {y, before};
         out_.reset(rate);
+    }
+    void shift(argument by) noexcept {
+        if (!finite(by)) return out_.raise();
+        state_.y1 += by, state_.y2 += by;
     }
 
     std::complex<double> response(frequency f) const {

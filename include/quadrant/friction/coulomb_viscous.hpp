@@ -46,6 +46,12 @@ public:
         const value y = at(v);
         finite(y) ? out_.reset(y) : out_.raise();
     }
+    void
+    retune(const coulomb_viscous& next) noexcept { ///< J <= the change of coulomb + that of viscous times |v|
+        coulomb_ = next.coulomb_;
+        viscous_ = next.viscous_;
+        given_ = next.given_;
+    }
 
     /// Magnitude of the dry part: what holds a resting axis, and what brakes a moving one.
     value breakaway() const noexcept { return coulomb_; }

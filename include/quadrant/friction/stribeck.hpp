@@ -58,6 +58,11 @@ public:
         const value y = at(v);
         finite(y) ? out_.reset(y) : out_.raise();
     }
+    void retune(const stribeck& next) noexcept { ///< J: what the curve changes at v
+        const held_output<value> out = out_;
+        *this = next;
+        out_ = out;
+    }
 
     /// Magnitude of the dry part: what holds a resting axis, and what brakes a moving one.
     value breakaway() const noexcept { return coulomb_ + excess_; }

@@ -16,6 +16,7 @@ namespace quadrant {
 /// State: the last Capacity + 1 inputs, whatever the length; `reset` leaves zeros and the length of the parameters,
 /// `settle(x)` fills it with x. `length(n)` changes the length between two steps: a longer delay reads inputs that were
 /// really there (zeros before the first), a shorter one skips some; nothing is ever read that was not put in.
+/// At a change the output jumps by x[k-n'] - x[k-n]: at most |n' - n| times the largest step of those inputs. `shift(by)`: the frame moves.
 /// Range: 0 <= length <= Capacity; length(n) above saturates, and limited() tells. Length 0 is a piece of wire.
 /// NaN and infinities: holds the last output, takes nothing in (the line stands still), raises faulted().
 /// Throws "delay_line.length = ...: must not exceed the capacity (...)".
@@ -58,6 +59,12 @@ public:
         state_.x.fill(x);
         state_.next = 0;
         out_.reset(x);
+    }
+
+    void shift(value by) noexcept {
+        if (!finite(by)) return out_.raise();
+        for (value& each : state_.x) each += by;
+        out_.keep(out_.last() + by);
     }
 
     void length(std::size_t periods) noexcept {

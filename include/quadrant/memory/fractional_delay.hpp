@@ -18,6 +18,8 @@ namespace quadrant {
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: the last Capacity + Order + 1 inputs, whatever the delay; `reset` leaves zeros and the delay of the parameters,
 /// `settle(x)` fills it with x. `delay(d)` changes the delay between two steps.
+/// At a change the output jumps by at most g |d' - d|/T times the largest step of the inputs that are read between, and beside,
+/// both delays: g = 1 (Order 1), 4/3 (Order 3), the steepest slope of the cubic. `shift(by)`: the frame moves.
 /// Range: Order 1 (straight line): 0 <= delay <= Capacity periods; Order 3 (cubic): one period <= delay <= Capacity
 /// periods, because it needs a sample on either side. delay(d) outside saturates, and limited() tells. Exact for
 /// polynomials up to Order, for any signal at whole periods; gain at 1/8 of the sampling rate and half a period between
@@ -73,6 +75,12 @@ public:
         state_.x.fill(x);
         state_.next = 0;
         out_.reset(x);
+    }
+
+    void shift(value by) noexcept {
+        if (!finite(by)) return out_.raise();
+        for (value& each : state_.x) each += by;
+        out_.keep(out_.last() + by);
     }
 
     void delay(quantity<si::time, number> d) noexcept {

@@ -25,6 +25,9 @@ namespace quadrant {
 /// no way out (weights, Q or L of sum zero) has no state for a y but zero: settle(x, y) then leaves that of a constant x.
 /// `cycle(d)` changes N between two steps; the memory is read in the old and the new way and one is faded into the other
 /// during `fade`, so y never jumps. A change asked for during a fade starts after it; the last one asked for wins.
+/// The r that L reads then moves by 1/F of what the two ways differ by, each of the F steps of the fade, y by sum |l| times that.
+/// `retune(next)`: other filters, weights and cycle (by fading), the same ahead; what was learnt stays. J = |sum l_j' r_j' - l_j r_j|
+/// <= sum |l' - l| max |r| + 1.25 |l_0'| sum |w' - w| max |p|, p = Q (e + r); the new Q is heard a cycle later.
 /// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates, and
 /// limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity: analysis/repetitive_design.hpp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -146,6 +149,15 @@ public:
         wanted_ = periods;
         pending_ = state_.fading > 0;
         if (!pending_) start(periods);
+    }
+    void retune(const repetitive& next) noexcept {
+        if (next.period_ != period_ || next.given_.ahead != given_.ahead) return out_.raise();
+        given_ = next.given_;
+        weights_ = next.weights_;
+        learning_ = next.learning_;
+        smoothing_ = next.smoothing_;
+        reader_ = reader(periods_);
+        cycle(given_.cycle);
     }
     quantity<si::time, number> cycle() const noexcept {
         return periods_ * quantity<si::time, number>::from_value(number(period_.value()));

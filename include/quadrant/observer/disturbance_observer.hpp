@@ -28,6 +28,9 @@ namespace quadrant {
 /// State: n + zeros of the plant numbers in the unit of the command, last z, last u; `reset`: at rest at zero, nothing pushes;
 /// `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest at z while -d is applied against d (a following step with
 /// wanted = 0 gives d). A plant that does not integrate needs the wanted command z/Gn(0) to stay there.
+/// `retune(next)`: another corner, another plant from the next step on; nothing changes at rest and in even motion, else the
+/// coming d is off by J = |p0 (x[k] - x[k-1]) - q0 (u[k] - u[k-1])| / (1 - q0'), x: z or its difference, p0 and q0: what the
+/// first coefficients of Q/Gn and Q change, q0' the new one. `shift(by)`: the frame of positions moves.
 /// Range: 0 < corner < half the sampling rate; n - m not below the relative degree of the plant, else it does not compile;
 /// zeros of the plant left of the axis. |Q| is -3 dB below the corner (n = 2, m = 0: at 0.644 of it). Gn carries no delay;
 /// an inverse-model feedforward must use the same Gn. In float up to n = 3.
@@ -54,7 +57,8 @@ public:
     struct state {
         std::array<value, order> s{};
         argument measured{};
-        value command{}; ///< that was taken for applied
+        argument moved{}; ///< what entered: its last difference, where the plant integrates
+        value command{};  ///< that was taken for applied
     };
 
     disturbance_observer(const parameters& p, duration period) : given_(checked(p, period)), period_(period) {
@@ -96,7 +100,7 @@ public:
         }
         stepped_ = good;
         if (!good) return out_.hold();
-        state_ = {next, measured, u};
+        state_ = {next, measured, x, u};
         return out_.keep(d);
     }
     /// What was really applied of the last command, without what was added after it (friction feedforward).
@@ -119,18 +123,35 @@ public:
     void settle(argument measured, value d) noexcept {
         const argument x = integrates_ ? argument() : measured;
         const value u = standstill_ * measured - d;
-        std::array<value, order> s;
+        const std::array<value, order> s = standing(x, u, d);
         bool good = finite(measured, d);
-        for (std::size_t i = order; i-- > 0;) {
-            s[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
-            if (i + 1 < order) s[i] += s[i + 1];
-            if (i == 0) s[i] = d - from_measured_[0] * x + from_command_[0] * u;
-            good = good && finite(s[i]);
-        }
+        for (const value& each : s) good = good && finite(each);
         if (!good) return out_.raise();
-        state_ = {s, measured, u};
+        state_ = {s, measured, x, u};
         stepped_ = false;
         out_.reset(d);
+    }
+    void retune(const disturbance_observer& next) noexcept {
+        if (next.period_ != period_ || next.integrates_ != integrates_) return out_.raise();
+        const value d = out_.last();
+        const auto before = standing(state_.moved, state_.command, d),
+                   after = next.standing(state_.moved, state_.command, d);
+        const held_output<value> out = out_;
+        const bool stepped = stepped_;
+        state s = state_;
+        bool good = true;
+        for (std::size_t i = 0; i < order; ++i) {
+            s.s[i] += after[i] - before[i];
+            good = good && finite(s.s[i]);
+        }
+        if (!good) return out_.raise();
+        *this = next;
+        state_ = s;
+        out_ = out;
+        stepped_ = stepped;
+    }
+    void shift(argument by) noexcept { ///< where the plant integrates; else a position of its own holds it
+        finite(by) && integrates_ ? void(state_.measured += by) : out_.raise();
     }
 
     /// From the measured signal to the disturbance with wanted = 0, the loop through the command closed: (Q/Gn) / (1 - Q).
@@ -166,6 +187,16 @@ private:
         require(detail::plain(p.plant.denominator.back()) != 0, "disturbance_observer.plant.denominator",
                 p.plant.denominator.back(), "highest coefficient must not be zero");
         return p;
+    }
+    /// The state as if these had stood for ever.
+    std::array<value, order> standing(argument x, value u, value d) const noexcept {
+        std::array<value, order> s;
+        for (std::size_t i = order; i-- > 0;) {
+            s[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
+            if (i + 1 < order) s[i] += s[i + 1];
+            if (i == 0) s[i] = d - from_measured_[0] * x + from_command_[0] * u;
+        }
+        return s;
     }
     std::complex<double> shift(frequency f) const {
         return std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());

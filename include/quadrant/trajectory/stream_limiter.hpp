@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+#include "limits.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace quadrant::trajectory {
+
+/// Keeps a stream of positions within limits of velocity, acceleration and jerk, sample by sample, whatever comes in: a hand
+/// wheel, a joint of a robot, an external planner that jumps.
+///   1. E = x[k] - p[k-1] - s,  s = x[k] - x[k-1]:   step p by s + sign(E) c w,  c = acceleration T^2,
+///      (n+1) w - n (n+1)/2 = |E|/c,  n = largest whole number with n (n+1)/2 <= |E|/c:   the greatest speed relative to the
+///      stream from which it still stops at the stream, slowing down by c a sample; held to velocity and acceleration
+///   2. y = mean of the last N of p,   N = ceil(2 acceleration / (jerk T))
+/// Then |y'| <= velocity, |y''| <= acceleration, |y'''| <= jerk for the differences of y, always: a mean exceeds nothing, and
+/// the acceleration changes by (a[k] - a[k-N])/(N T) at most. Without a jerk limit (infinite) N = 1.
+/// Source: step 1 is a discrete form of what LinuxCNC's limit3 does; step 2 is the moving average behind a CNC's interpolator.
+/// Ports: position in, position out. A stream within the limits passes unchanged but late by delay() = (N-1) T/2.
+/// Overshoot: none towards a stream that stands or moves evenly, unless it turned away harder than the limits allow.
+/// Time: a move from rest takes that of the best acceleration-limited one plus N T, where the best jerk-limited takes
+/// acceleration/jerk = N T/2 more.
+/// State: p, its last step, the last input, N values of p; `reset` at rest at zero, `settle(x)` at rest at x. `shift(by)`: the
+/// frame of positions moves. limited() = the last sample could not follow.
+/// Range: velocity > 0, may be infinite; acceleration finite, > 0; jerk > 0, may be infinite; N <= Capacity.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted().
+/// Throws "stream_limiter.<field> = ...: must ..." for period, velocity, acceleration, jerk.
+/// Cost: 1 square root, 2 divisions, 8 (Capacity + 6) bytes. Whole moves that are known: `interpolator`; no acceleration limit:
+/// `rate_limiter`.
+template <std::size_t Capacity, class Real = double>
+requires(Capacity >= 1) class stream_limiter {
+public:
+    using input = signal::position;
+    using output = signal::position;
+    using argument = quantity_of<signal::position, Real>;
+    using value = argument;
+    using number = parameter_real<Real>; ///< of parameters
+
+    struct parameters {
+        quantity<si::velocity, number> velocity;         ///< > 0, may be infinite
+        quantity<si::acceleration, number> acceleration; ///< > 0
+        quantity<jerk_unit, number> jerk = quantity<jerk_unit, number>::from_value(number(unlimited)); ///< > 0
+    };
+    struct state {
+        value x{}, p{}, step{};           ///< last input, last p, p minus the one before
+        std::array<value, Capacity> of{}; ///< a ring of p
+        std::size_t next = 0;
+        value sum{}, fresh{}; ///< of the ring; of what was written since it began anew
+    };
+
+    stream_limiter(const parameters& p, duration period) : given_(p) {
+        require_positive("stream_limiter.period", period);
+        const char* const rule = "must be above 0 (infinite: no bound)";
+        require(quadrant::detail::plain(p.velocity) > 0, "stream_limiter.velocity", p.velocity, rule);
+        require_positive("stream_limiter.acceleration", p.acceleration);
+        require(quadrant::detail::plain(p.jerk) > 0, "stream_limiter.jerk", p.jerk, rule);
+        const double T = period.value(), a = quadrant::detail::plain(p.acceleration),
+                     j = quadrant::detail::plain(p.jerk);
+        const double length = std::fmax(1, std::ceil(2 * a / (j * T) * (1 - 1e-12)));
+        require(length <= double(Capacity), "stream_limiter.jerk", p.jerk,
+                "needs a mean of " + quadrant::detail::shortest(length) + " samples, and the capacity is " +
+                    quadrant::detail::shortest(double(Capacity)));
+        length_ = std::size_t(length);
+        delay_ = 0.5 * (length - 1) * period;
+        fastest_ = value::from_value(Real(p.velocity.value() * number(T)));
+        change_ = value::from_value(Real(p.acceleration.value() * number(T * T)));
+    }
+
+    value operator()(argument x) noexcept {
+        const value s = within(x - state_.x, fastest_), E = (x - state_.p) - s;
+        const bool back = E < value();
+        const Real share = (back ? -E : E) / change_;
+        const double n = std::floor(0.5 * (std::sqrt(1 + 8 * quadrant::detail::plain(share)) - 1));
+        const value w = Real((share + Real(0.5 * n * (n + 1))) / Real(n + 1)) * change_;
+        const value wanted = back ? s - w : s + w;
+        const value step = state_.step + within(within(wanted, fastest_) - state_.step, change_);
+        const bool lands = n == 0 && step == wanted;
+        const value p = lands ? x : value(state_.p + step), gone = state_.of[state_.next];
+        const value sum = state_.sum + (p - gone), fresh = state_.fresh + p;
+        if (!finite(share, p, sum, fresh)) return out_.hold();
+        limited_ = !lands;
+        state_.x = x;
+        state_.step = lands ? within(p - state_.p, fastest_) : step;
+        state_.p = p;
+        state_.of[state_.next] = p;
+        const bool around = ++state_.next == length_; // the sum is made anew: no rounding piles up
+        if (around) state_.next = 0;
+        state_.sum = around ? fresh : sum;
+        state_.fresh = around ? value() : fresh;
+        return out_.keep(length_ == 1 ? p : value(state_.sum / Real(double(length_))));
+    }
+    void reset() noexcept { settle(value()); }
+    void settle(value x) noexcept {
+        const value sum = Real(double(length_)) * x;
+        if (!finite(x, sum)) return out_.raise();
+        state_ = {};
+        state_.x = state_.p = x;
+        state_.of.fill(x);
+        state_.sum = sum;
+        limited_ = false;
+        out_.reset(x);
+    }
+    void shift(value by) noexcept {
+        if (!finite(by)) return out_.raise();
+        state_.x += by, state_.p += by;
+        for (value& each : state_.of) each += by;
+        state_.sum += Real(double(length_)) * by;
+        state_.fresh += Real(double(state_.next)) * by;
+        out_.keep(out_.last() + by);
+    }
+
+    duration delay() const noexcept { return delay_; }
+    bool limited() const noexcept { return limited_; }
+    bool faulted() const noexcept { return out_.faulted(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static value within(value x, value most) noexcept { return x > most ? most : x < -most ? -most : x; }
+
+    parameters given_;
+    std::size_t length_ = 1;
+    duration delay_{};
+    value fastest_, change_; ///< of p, in one sample
+    state state_;
+    bool limited_ = false;
+    held_output<value> out_;
+};
+
+} // namespace quadrant::trajectory

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSL-1.0
+// Other parameters in the middle of a random signal, beside a twin that keeps its own: what the coming output is off by is
+// bounded by the formula in the block's doc comment, for every pair of parameters, and the bound is reached.
+#include <quadrant/compose/series.hpp>
+#include <quadrant/control/proportional.hpp>
+#include <quadrant/control/proportional_integral.hpp>
+#include <quadrant/filter/butterworth.hpp>
+#include <quadrant/filter/filtered_derivative.hpp>
+#include <quadrant/filter/lowpass.hpp>
+#include <quadrant/filter/notch.hpp>
+#include <quadrant/literals.hpp>
+#include <quadrant/memory/delay_line.hpp>
+#include <quadrant/memory/fractional_delay.hpp>
+#include <quadrant/memory/repetitive.hpp>
+#include <quadrant/observer/disturbance_observer.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace quadrant;
+using namespace quadrant::literals;
+
+namespace {
+const duration T = 500_us;
+
+struct random_numbers {
+    std::mt19937 engine{42};
+    double between(double low, double high) { return std::uniform_real_distribution(low, high)(engine); }
+    double decades(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+    /// Offset, sine and noise of any shares and sizes.
+    std::vector<double> signal(std::size_t samples) {
+        const double size = decades(1e-3, 1e3), offset = between(-1, 1), w = decades(1e-3, 3),
+                     noise = decades(1e-4, 1);
+        std::vector<double> x(samples);
+        for (std::size_t k = 0; k < samples; ++k)
+            x[k] = size * (offset + std::sin(w * double(k)) + noise * between(-1, 1));
+        return x;
+    }
+};
+/// How much of its bound a jump took; `rounding` relative to what was added up.
+struct verdict {
+    double most = 0;
+    int broken = 0;
+    void operator()(double jump, double bound, double rounding) {
+        broken += !(std::abs(jump) <= bound + rounding);
+        if (bound > 1e3 * rounding) most = std::max(most, std::abs(jump) / bound);
+    }
+};
+double largest(const std::vector<double>& x) {
+    double most = 0;
+    for (const double each : x) most = std::max(most, std::abs(each));
+    return most;
+}
+template <class Block> double step(Block& block, double x) {
+    return block(Block::argument::from_value(x)).value();
+}
+template <class Block> double first(Block fresh) { return step(fresh, 1); } ///< of an impulse: b0
+
+/// `bound(x, y, b, next_b)` from the signal, the twin's outputs, and the first coefficients of both.
+template <class Block> void check_filter(auto draw, auto bound) {
+    random_numbers random;
+    verdict said;
+    for (int trial = 0; trial < 3000; ++trial) {
+        const Block other(draw(random), T);
+        Block twin(draw(random), T), kept = twin;
+        const auto x = random.signal(60);
+        std::vector<double> y;
+        for (std::size_t k = 0; k + 1 < x.size(); ++k) y.push_back(step(twin, x[k])), step(kept, x[k]);
+        const double b = first(Block(twin.given(), T)), other_b = first(other);
+        kept.retune(other);
+        const double was = step(twin, x.back()), is = step(kept, x.back());
+        said(is - was, bound(x, y, b, other_b), 1e-11 * largest(x) * (b + other_b));
+    }
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.999); // the formula is an equality
+    CHECK(said.most < 1.001);
+
+    // At a constant input nothing happens, then or later.
+    double off = 0;
+    for (int trial = 0; trial < 100; ++trial) {
+        Block block(draw(random), T);
+        block.settle(Block::argument::from_value(7));
+        const double before = step(block, 7);
+        block.retune(Block(draw(random), T));
+        for (int k = 0; k < 100; ++k) off = std::max(off, std::abs(step(block, 7) - before));
+    }
+    CHECK(off <= 1e-10);
+}
+double moved(const std::vector<double>& x) { return std::abs(x.back() - x[x.size() - 2]); }
+} // namespace
+
+TEST_CASE("retune: notch and butterworth, the output is off by (b0' - b0)(x[k] - x[k-1]), and by nothing at a "
+          "constant input") {
+    const auto bound = [](const auto& x, const auto&, double b, double next) {
+        return std::abs(next - b) * moved(x);
+    };
+    check_filter<notch<signal::force>>(
+        [](auto& r) {
+            return notch<signal::force>::parameters{.centre = r.decades(10, 900) * 1_Hz,
+                                                    .damping = r.decades(0.01, 2)};
+        },
+        bound);
+    check_filter<butterworth<signal::force>>(
+        [](auto& r) { return butterworth<signal::force>::parameters{r.decades(10, 900) * 1_Hz}; }, bound);
+}
+
+TEST_CASE(
+    "retune: lowpass and filtered derivative, the output is off by the change of b times what b multiplies") {
+    check_filter<lowpass<signal::force>>(
+        [](auto& r) { return lowpass<signal::force>::parameters{r.decades(1, 900) * 1_Hz}; },
+        [](const auto& x, const auto& y, double b, double next) {
+            return std::abs((next - b) * (x.back() + x[x.size() - 2] - 2 * y.back()));
+        });
+    using derivative = filtered_derivative<signal::position, signal::velocity>;
+    check_filter<derivative>(
+        [](auto& r) { return derivative::parameters{r.decades(1, 900) * 1_Hz}; },
+        [](const auto& x, const auto& y, double b, double next) { // b/T is what an impulse gives
+            const double rate = (x.back() - x[x.size() - 2]) / T.value();
+            return std::abs((next - b) * T.value() * (rate - y.back()));
+        });
+}
+
+TEST_CASE("retune: a series retunes each of its blocks") {
+    using two = series<notch<signal::force>, notch<signal::force>>;
+    two pair({{330_Hz, 0.1}, {200_Hz, 0.2}}, T);
+    const two other({{340_Hz, 0.1}, {180_Hz, 0.3}}, T);
+    for (int k = 0; k < 50; ++k) step(pair, std::sin(0.1 * k));
+    pair.retune(other);
+    CHECK(std::get<1>(pair.given()).centre == 180_Hz);
+    pair.settle(3_N);
+    pair.retune(two({{100_Hz, 0.1}, {90_Hz, 0.3}}, T));
+    CHECK(step(pair, 3) == doctest::Approx(3).epsilon(1e-14));
+    pair.shift(2_N);
+    CHECK(step(pair, 5) == doctest::Approx(5).epsilon(1e-14));
+}
+
+TEST_CASE("retune: a gain jumps by its change times the input") {
+    proportional<signal::position, signal::velocity> kv{{150.0 / 1_s}, T};
+    kv.retune({{160.0 / 1_s}, T});
+    CHECK(kv(2_mm).value() == doctest::Approx(0.32));
+}
+
+TEST_CASE_TEMPLATE("retune: the PI's next output moves by no more than its new gains would have moved it", Rule,
+                   integral_clamp, conditional_integration, back_calculation) {
+    using pi_loop = proportional_integral<signal::velocity, signal::voltage, Rule>;
+    random_numbers random;
+    const auto draw = [&](double limit) {
+        typename pi_loop::parameters p{random.decades(1, 100) * (1_V / 1_mps),
+                                       random.decades(1, 1e5) * (1_V / 1_m), limit * 1_V};
+        if constexpr (std::same_as<Rule, back_calculation>) p.anti_windup = {10_ms};
+        return p;
+    };
+    verdict said;
+    for (int trial = 0; trial < 3000; ++trial) {
+        const double limit = trial % 3 == 0 ? random.decades(0.1, 100) : 1e9; // restrained or free
+        pi_loop loop(draw(limit), T);
+        const pi_loop other(draw(random.between(0.5, 1) * limit), T);
+        const auto e = random.signal(60);
+        double u = 0;
+        for (std::size_t k = 0; k + 1 < e.size(); ++k) u = step(loop, e[k]);
+        const double last = e[e.size() - 2], now = e.back(), integral = u - other.given().gain.value() * last;
+        loop.retune(other, last * 1_mps);
+        double bound = other.given().gain.value() * std::abs(now - last) +
+                       other.given().integral_gain.value() * T.value() * std::abs(now);
+        if (std::same_as<Rule, integral_clamp>)
+            bound += std::max(0.0, std::abs(integral) - other.given().limit.value());
+        if constexpr (std::same_as<Rule, back_calculation>)
+            bound += T.value() / 0.01 * std::abs(loop.now().excess.value());
+        said(step(loop, now) - u, bound, 1e-13 * (std::abs(u) + other.given().gain.value() * std::abs(last)));
+    }
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.999);
+}
+
+TEST_CASE("retune: the observer's estimate is off by the formula, and by nothing in even motion") {
+    using observer = disturbance_observer<signal::voltage>;
+    random_numbers random;
+    const auto draw = [&] {
+        return observer(
+            {random.decades(5, 300) * 1_Hz,
+             axis_model<signal::voltage>{random.decades(1, 10) * (1_mps2 / 1_V), random.between(0, 50) / 1_s}},
+            T);
+    };
+    const auto coefficients = [](observer fresh) { // d = (p0 x - q0 wanted)/(1 - q0), from rest
+        observer twin = fresh;
+        const double to_wanted = fresh(0_m, 1_V).value(), to_measured = twin(1_m, 0_V).value();
+        const double q0 = to_wanted / (to_wanted - 1);
+        return std::array{to_measured * (1 - q0), q0};
+    };
+    verdict said;
+    for (int trial = 0; trial < 2000; ++trial) {
+        observer kept = draw(), twin = kept;
+        const observer other = draw();
+        const auto z = random.signal(60), wanted = random.signal(60);
+        const auto give = [](observer& o, double at, double w) { return o(1e-6 * at * 1_m, w * 1_V).value(); };
+        const auto tell = [&](observer& o) { // something was clipped
+            o.applied(o.now().command + 0.1 * wanted[3] * 1_V);
+        };
+        for (std::size_t k = 0; k < 59; ++k) {
+            give(kept, z[k], wanted[k]), give(twin, z[k], wanted[k]);
+            if (k % 4 == 0) tell(kept), tell(twin);
+        }
+        const double before = twin.now().command.value();
+        kept.retune(other);
+        const double was = give(twin, z[59], wanted[59]), is = give(kept, z[59], wanted[59]);
+        const auto [p, q] = coefficients(observer(twin.given(), T));
+        const auto [next_p, next_q] = coefficients(other);
+        const double x = 1e-6 * (z[59] - 2 * z[58] + z[57]), u = wanted[59] - was - before;
+        said(is - was, std::abs(((next_p - p) * x - (next_q - q) * u) / (1 - next_q)),
+             1e-9 * (largest(wanted) + std::abs(was) + 1e-6 * largest(z) * (p + next_p)));
+    }
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.999);
+    CHECK(said.most < 1.001);
+
+    observer o({60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V, 28.57 / 1_s}}, T);
+    double off = 0, before = 0;
+    for (int k = 0; k < 3000; ++k) {
+        if (k == 2000)
+            o.retune(observer({200_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V, 28.57 / 1_s}}, T));
+        o(50e-6 * k * 1_m, 1_V); // 0.1 m/s
+        o.applied(1_V);
+        const double d = o.disturbance().value();
+        if (k >= 2000) off = std::max(off, std::abs(d - before));
+        if (k == 1999) before = d;
+    }
+    CHECK(off <= 1e-9); // rounding of positions over T, through the inverse
+}
+
+TEST_CASE(
+    "retune: a delay jumps by at most its change times the largest step of the inputs (4/3 of that, cubic)") {
+    random_numbers random;
+    std::array<verdict, 3> said;
+    for (int trial = 0; trial < 3000; ++trial) {
+        const auto x = random.signal(40);
+        // The steepest step that either delay, or what lies between, is read from; one more beside, for the cubic.
+        const auto steepest = [&](double a, double b) {
+            double most = 0;
+            const auto from = std::size_t(std::min(a, b)), to = std::size_t(std::ceil(std::max(a, b)));
+            for (std::size_t age = from > 0 ? from - 1 : 0; age < to + 1; ++age)
+                most = std::max(most, std::abs(x[39 - age] - x[38 - age]));
+            return most;
+        };
+        const std::size_t n = random.engine() % 21, next_n = random.engine() % 21;
+        delay_line<signal::force, 20> whole({n}, T), whole_twin = whole;
+        const double d = random.between(1, 20),
+                     next = trial % 2 == 0 ? random.between(1, 20) : std::min(20.0, d + 0.01);
+        fractional_delay<signal::force, 20, 1> line({d * T}, T), line_twin = line;
+        fractional_delay<signal::force, 20, 3> cubic({d * T}, T), cubic_twin = cubic;
+        for (std::size_t k = 0; k < 39; ++k)
+            step(whole, x[k]), step(whole_twin, x[k]), step(line, x[k]), step(line_twin, x[k]),
+                step(cubic, x[k]), step(cubic_twin, x[k]);
+        whole.length(next_n), line.delay(next * T), cubic.delay(next * T);
+        const double by = std::abs(next - d), most = steepest(d, next), rounding = 1e-12 * largest(x);
+        said[0](step(whole, x[39]) - step(whole_twin, x[39]),
+                std::abs(double(next_n) - double(n)) * steepest(double(n), double(next_n)), rounding);
+        said[1](step(line, x[39]) - step(line_twin, x[39]), by * most, rounding);
+        said[2](step(cubic, x[39]) - step(cubic_twin, x[39]), 4.0 / 3 * by * most, rounding);
+    }
+    for (const verdict& each : said) {
+        CHECK(each.broken == 0);
+        CHECK(each.most > 0.9);
+    }
+}
+
+namespace {
+using memory = repetitive<signal::position, 40, 2, 5, 3>;
+memory learner(random_numbers& random, double cycle) {
+    memory::parameters p{.cycle = cycle * T, .weights = {random.between(0.5, 2), 0}, .ahead = 2, .fade = 5_ms};
+    p.weights[1] = 1 - p.weights[0];
+    for (double& each : p.learning) each = random.between(-0.4, 0.4);
+    p.smoothing[0] = p.smoothing[2] = random.between(0, 0.3);
+    p.smoothing[1] = 1 - 2 * p.smoothing[0];
+    return {p, T};
+}
+double sum_of(const auto& taps) {
+    double sum = 0;
+    for (const double each : taps) sum += std::abs(each);
+    return sum;
+}
+double peak(const auto& ring) {
+    double most = 0;
+    for (const auto& each : ring) most = std::max(most, std::abs(each.value()));
+    return most;
+}
+} // namespace
+
+TEST_CASE("retune: a memory's new length is faded in, nothing at the first sample and a share of the "
+          "difference at each") {
+    random_numbers random;
+    verdict said;
+    int jumps = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        memory kept = learner(random, random.between(10, 30)), twin = kept;
+        const auto e = random.signal(160);
+        for (std::size_t k = 0; k < 140; ++k) step(kept, e[k]), step(twin, e[k]);
+        kept.cycle(random.between(10, 39) * T);
+        if (!kept.fading()) continue;
+        double off = 0;
+        for (std::size_t j = 0; j < 8; ++j) { // till a change comes round again
+            const double range = 2 * 1.25 * sum_of(kept.given().weights) * peak(twin.now().p);
+            const double more = step(kept, e[140 + j]) - step(twin, e[140 + j]);
+            jumps += j == 0 && std::abs(more) > 1e-14 * range;
+            said(more - off, sum_of(kept.given().learning) * range / 10, 1e-12 * range); // 5 ms are 10 steps
+            off = more;
+        }
+    }
+    CHECK(jumps == 0);
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.9); // of the worst that could have been learnt
+}
+
+TEST_CASE("retune: a memory keeps what it has learnt under other filters and weights") {
+    random_numbers random;
+    verdict said;
+    for (int trial = 0; trial < 2000; ++trial) {
+        const double cycle = random.between(10, 39);
+        memory kept = learner(random, cycle), twin = kept;
+        const memory other = learner(random, cycle);
+        const auto e = random.signal(100);
+        for (std::size_t k = 0; k < 99; ++k) step(kept, e[k]), step(twin, e[k]);
+        kept.retune(other);
+        const double was = step(twin, e[99]), is = step(kept, e[99]);
+        std::array<double, 5> taps{};
+        for (std::size_t i = 0; i < 5; ++i) taps[i] = other.given().learning[i] - twin.given().learning[i];
+        const double weights =
+            std::abs(other.given().weights[0] - twin.given().weights[0]) * 2; // both move alike
+        said(is - was,
+             sum_of(taps) * peak(twin.now().r) +
+                 1.25 * std::abs(other.given().learning[0]) * weights * peak(twin.now().p),
+             1e-12 * (peak(twin.now().r) + peak(twin.now().p)));
+    }
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.9);
+}
+
+TEST_CASE("retune: with the same parameters nothing changes, bit for bit; another period is refused") {
+    random_numbers random;
+    const auto x = random.signal(200);
+    const auto check = [&](auto block, const auto& same, const auto& other_period) {
+        auto twin = block;
+        bool equal = true;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            if (k == 100) block.retune(same);
+            equal = equal && step(block, x[k]) == step(twin, x[k]);
+        }
+        CHECK(equal);
+        CHECK_FALSE(block.faulted());
+        block.retune(other_period);
+        CHECK(block.faulted());
+        CHECK(step(block, x[7]) == step(twin, x[7]));
+    };
+    const auto both = [&]<class Block>(const typename Block::parameters& p) {
+        check(Block(p, T), Block(p, T), Block(p, 1_ms));
+    };
+    both.operator()<notch<signal::force>>({330_Hz, 0.1});
+    both.operator()<lowpass<signal::force>>({100_Hz});
+    both.operator()<disturbance_observer<signal::voltage>>(
+        {60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V, 28.57 / 1_s}});
+    memory m = learner(random, 17);
+    check(m, m, memory({.cycle = 20_ms, .ahead = 2}, 1_ms));
+}
