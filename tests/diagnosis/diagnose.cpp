@@ -50,13 +50,21 @@ TEST_CASE("diagnose: two effects, one found on top of the other") {
     auto file = described(real);
     file.axes[0].plant.coulomb_N.reset();
     real.cogging = 12;
-    const auto d = diagnosed(file, real, three_strokes);
+    const auto log = as_log(run(real, three_strokes));
+    std::size_t tried = 0, tried_fast = 0;
+    const auto count = [](std::size_t& n) { return [&n](const std::string&) { ++n; }; };
+    const auto d = diagnose(file, log, nullptr, count(tried));
     CHECK(std::string(name_of(d.verdict)) == "explained");
     CHECK(claims(d) == std::vector<std::string>{"coulomb_friction", "cogging"});
     // Added one after the other, the gap falls each time.
     REQUIRE(d.causes.size() == 2);
     CHECK(d.causes[1].gap_before_force_rms_N.value == d.causes[0].gap_after_force_rms_N.value);
     CHECK(d.causes[1].gap_after_force_rms_N.value < d.causes[1].gap_before_force_rms_N.value);
+    // Shorter looks say the same, with fewer models tried.
+    const auto fast = diagnose(file, log, nullptr, count(tried_fast), fast_rules());
+    CHECK(fast.verdict == d.verdict);
+    CHECK(claims(fast) == claims(d));
+    CHECK(tried_fast < tried);
 }
 
 TEST_CASE("diagnose: a cause that the owner excludes is not replaced by the nearest name") {

@@ -105,11 +105,11 @@ inline std::vector<parameter> resumed(const fit_result& f) {
     return ps;
 }
 
-/// A first look at `from` with one more effect: two steps from every start that the effect offers, the slopes of the
+/// A first look at `from` with one more effect: a step or two from every start that the effect offers, the slopes of the
 /// parameters that `from` has taken from there; the best kept, less what its parameters cost. No score yet. An effect that offers no start leaves an
 /// infinite objective.
 inline candidate sketch(const axis_record& record, const candidate& from, const effect& added,
-                        const screening& look, const std::vector<std::vector<double>>& slopes) {
+                        const screening& look, const std::vector<std::vector<double>>& slopes, int steps) {
     const fitter fit(record.observer, record.score);
     candidate best{.effects = from.effects};
     best.effects.push_back(&added);
@@ -131,7 +131,7 @@ inline candidate sketch(const axis_record& record, const candidate& from, const 
             known.push_back(&slopes[i]);
         }
         ps.insert(ps.end(), start.begin(), start.end());
-        auto trial = fit.fit(plant, ps, 2, known);
+        auto trial = fit.fit(plant, ps, steps, known, 0);
         if (const double cost = trial.objective + detail::flexibility(trial); cost < least) {
             least = cost;
             best.fit = std::move(trial);

@@ -48,7 +48,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     std::erase(others, own);
     const candidate without = c.models.with(others);
     std::vector<rival> out{{.model = c.best(), .name = own}};
-    for (const auto& model : c.models.with_each(without))
+    for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
         for (const effect* e : model.effects)
             if (!search::has(without, e) && e != own) {
                 out.push_back({.model = model, .name = e});
@@ -58,7 +58,8 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
     if (!c.clean()) {
-        const auto models = c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()});
+        const auto models = c.models.with_these(
+            without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
             if (c.takes_off(models[i], c.best()) > 0.3 &&
                 !c.models.pays(c.models.with(models[i], own), models[i]))

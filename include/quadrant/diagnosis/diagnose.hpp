@@ -60,7 +60,8 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
         const auto with_form =
-            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()});
+            c.models.with_these(
+                c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < with_form.size(); ++i)
             if (const double share = c.takes_off(with_form[i], c.best());
                 share > 0.5 && c.models.pays(with_form[i], c.best()))

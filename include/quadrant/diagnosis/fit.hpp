@@ -64,31 +64,48 @@ public:
 
     /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
     /// at one more effect: the others' slopes are those of the model without it.
+    /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again. Slopes cost a pass
+    /// for each parameter, a step costs one; the last steps are taken with new slopes in any case.
     fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations,
-                   const std::vector<const std::vector<double>*>& known = {}) const {
+                   const std::vector<const std::vector<double>*>& known = {}, int chords = 4) const {
         const auto n = static_cast<Eigen::Index>(ps.size());
         fit_result best{.plant = start, .parameters = ps, .x = Eigen::VectorXd(n)};
         for (Eigen::Index i = 0; i < n; ++i) best.x[i] = p(ps, i).to_fit(p(ps, i).start);
         evaluate(best);
-        double damping = 1e-3;
-        for (int iteration = 0;; ++iteration) {
-            linearize(best, known);
-            if (iteration == iterations || n == 0) break;
+        double damping = 1e-3, since = 0; // what was gained with these slopes
+        int old = 0;
+        std::vector<std::vector<double>> d = slopes(best, known);
+        linearize(best, d, known);
+        for (int iteration = 0; iteration < iterations && n > 0; ++iteration) {
             bool better = false;
             double gain = 0;
+            const double damping_before = damping;
             for (int attempt = 0; attempt < 6 && !better; ++attempt, damping *= 8) {
                 fit_result trial{.plant = best.plant, .parameters = ps, .x = step(best, damping)};
                 evaluate(trial);
                 if (trial.objective < best.objective) {
                     gain = best.objective - trial.objective;
+                    trial.quadratic = std::move(best.quadratic);
+                    trial.quadratic_mean = std::move(best.quadratic_mean);
                     best = std::move(trial);
                     better = true;
                     damping = std::max(1e-6, damping / 24);
                 }
             }
-            if (!better || gain < 0.1) { // a hair beside the margins of the selection
-                if (better) linearize(best, known);
+            since += gain;
+            const bool settled = gain < 0.1; // a hair beside the margins of the selection
+            if ((settled && since < 1) || iteration + 1 == iterations) {
+                if (better) follow(best, d, known);
                 break;
+            }
+            if (settled || ++old > chords) {
+                d = slopes(best, known);
+                linearize(best, d, known);
+                since = 0;
+                old = 0;
+                if (!better) damping = damping_before;
+            } else {
+                follow(best, d, known);
             }
         }
         return best;
@@ -145,39 +162,50 @@ private:
         return out;
     }
 
-    void linearize(fit_result& r, const std::vector<const std::vector<double>*>& known) const {
-        const auto found = slopes(r, known);
-        std::vector<const std::vector<double>*> d;
-        std::vector<std::vector<double>> dm;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            d.push_back(i < known.size() && known[i] ? known[i] : &found[i]);
-            dm.push_back(detail::means(*d.back(), scoring_.skip, scoring_.mean));
-        }
-        std::vector<const std::vector<double>*> of_means;
-        for (const auto& m : dm) of_means.push_back(&m);
-        r.quadratic = quadratics(r.innovation, d, scoring_.skip, scoring_.block, r.ms.size());
-        r.quadratic_mean = quadratics(detail::means(r.innovation, scoring_.skip, scoring_.mean), of_means, 0,
-                                      scoring_.block / scoring_.mean, r.ms_mean.size());
+    using columns = std::vector<const std::vector<double>*>;
+    static columns pointers(const std::vector<std::vector<double>>& d, const columns& known = {}) {
+        columns out;
+        for (std::size_t i = 0; i < d.size(); ++i)
+            out.push_back(i < known.size() && known[i] ? known[i] : &d[i]);
+        return out;
     }
-
-    static std::vector<block_quadratic> quadratics(const std::vector<double>& e,
-                                                   const std::vector<const std::vector<double>*>& d,
-                                                   std::size_t first, std::size_t block, std::size_t count) {
+    std::vector<std::vector<double>> means_of(const columns& d) const {
+        std::vector<std::vector<double>> out;
+        for (const auto* x : d) out.push_back(detail::means(*x, scoring_.skip, scoring_.mean));
+        return out;
+    }
+    /// The blocks as quadratics, with these slopes.
+    void linearize(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known) const {
+        r.quadratic.assign(r.ms.size(), {});
+        r.quadratic_mean.assign(r.ms_mean.size(), {});
+        quadratics(r, found, known, true);
+    }
+    /// The same at another point with the slopes kept.
+    void follow(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known) const {
+        quadratics(r, found, known, false);
+    }
+    void quadratics(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known,
+                    bool curvature) const {
+        const auto d = pointers(found, known);
+        const auto dm = means_of(d);
+        quadratics(r.quadratic, r.innovation, d, scoring_.skip, scoring_.block, curvature);
+        quadratics(r.quadratic_mean, detail::means(r.innovation, scoring_.skip, scoring_.mean), pointers(dm), 0,
+                   scoring_.block / scoring_.mean, curvature);
+    }
+    static void quadratics(std::vector<block_quadratic>& out, const std::vector<double>& e, const columns& d,
+                           std::size_t first, std::size_t block, bool curvature) {
         const auto n = static_cast<Eigen::Index>(d.size());
-        std::vector<block_quadratic> out(count);
         Eigen::MatrixXd j(static_cast<Eigen::Index>(block), n);
-        for (std::size_t b = 0; b < count; ++b) {
+        for (std::size_t b = 0; b < out.size(); ++b) {
             const auto k0 = first + b * block;
             for (Eigen::Index i = 0; i < n; ++i)
-                for (std::size_t k = 0; k < block; ++k)
-                    j(static_cast<Eigen::Index>(k), i) = (*d[static_cast<std::size_t>(i)])[k0 + k];
+                std::copy_n(d[static_cast<std::size_t>(i)]->data() + k0, block, j.col(i).data());
             const Eigen::Map<const Eigen::VectorXd> eb(e.data() + k0, static_cast<Eigen::Index>(block));
             const double inverse = 1 / static_cast<double>(block);
-            out[b] = {.ms = eb.squaredNorm() * inverse,
-                      .g = j.transpose() * eb * inverse,
-                      .a = j.transpose() * j * inverse};
+            out[b].ms = eb.squaredNorm() * inverse;
+            out[b].g = j.transpose() * eb * inverse;
+            if (curvature) out[b].a = j.transpose() * j * inverse;
         }
-        return out;
     }
 
     Eigen::VectorXd step(const fit_result& r, double damping) const {

@@ -66,21 +66,18 @@ public:
 
     /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end, the
     /// others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
-    std::vector<candidate> with_each(const candidate& from) const {
+    std::vector<candidate> with_each(const candidate& from) const { return with_each(from, suspects()); }
+    std::vector<candidate> with_each(const candidate& from, const std::vector<const effect*>& among) const {
         std::vector<candidate> out;
         std::vector<std::size_t> rank; // of those that were not met before
-        for (const effect* e : suspects()) {
+        for (const effect* e : among) {
             if (has(from, e)) continue;
             const candidate* known = tried(from, e);
             if (!known) rank.push_back(out.size());
             out.push_back(known ? *known : joined(from, e));
         }
         sketch_each(from, rank, out);
-        std::stable_sort(rank.begin(), rank.end(),
-                         [&](auto a, auto b) { return out[a].fit.objective < out[b].fit.objective; });
-        on_all_cores(rank.size(), rules_.threads, [&](std::size_t i) {
-            i < rules_.finalists ? finish(record_, out[rank[i]]) : judge(record_, out[rank[i]]);
-        });
+        finish_best(rank, rules_.finalists, out);
         for (std::size_t i : rank) {
             tell_(describe(out[i]));
             tried_.push_back(out[i]);
@@ -91,8 +88,9 @@ public:
     candidate with(const candidate& from, const effect* added) const {
         return with_these(from, {added}).front();
     }
-    /// `from` with each of these added, all of them fitted to the end.
-    std::vector<candidate> with_these(const candidate& from, const std::vector<const effect*>& added) const {
+    /// `from` with each of these added, the most promising fitted to the end, `most` of those that were not met before.
+    std::vector<candidate> with_these(const candidate& from, const std::vector<const effect*>& added,
+                                      std::size_t most = std::numeric_limits<std::size_t>::max()) const {
         std::vector<candidate> out;
         std::vector<std::size_t> fresh;
         for (const effect* e : added) {
@@ -101,7 +99,7 @@ public:
             out.push_back(known ? *known : joined(from, e));
         }
         sketch_each(from, fresh, out);
-        on_all_cores(fresh.size(), rules_.threads, [&](std::size_t i) { finish(record_, out[fresh[i]]); });
+        finish_best(fresh, most, out);
         for (std::size_t i : fresh) {
             tell_(describe(out[i]));
             tried_.push_back(out[i]);
@@ -119,6 +117,18 @@ public:
         std::vector<const effect*> out;
         for (const effect* e : plant_effects)
             if (std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end()) out.push_back(e);
+        return out;
+    }
+
+    /// The suspects to exchange a cause for that was found on top of `before`; with rules.near_rivals those only that gained
+    /// something there, as far as they were tried.
+    std::vector<const effect*> relatives(const candidate& before) const {
+        std::vector<const effect*> out = suspects();
+        if (rules_.near_rivals)
+            std::erase_if(out, [&](const effect* e) {
+                const candidate* there = tried(before, e);
+                return there && !(there->total > before.total + rules_.margin);
+            });
         return out;
     }
 
@@ -277,7 +287,15 @@ private:
         const auto slopes = fit.slopes(here);
         on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
             candidate& c = models[which[i]];
-            c = sketch(record_, from, *c.effects.back(), look, slopes);
+            c = sketch(record_, from, *c.effects.back(), look, slopes, rules_.first_look);
+        });
+    }
+    /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by promise.
+    void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models) const {
+        std::stable_sort(which.begin(), which.end(),
+                         [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
+        on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
+            i < most ? finish(record_, models[which[i]]) : judge(record_, models[which[i]]);
         });
     }
     const candidate* tried(const candidate& from, const effect* added) const {
