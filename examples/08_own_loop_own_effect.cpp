@@ -74,20 +74,20 @@ machine_log record(double seconds) {
     return {.file = "log", .sample_period_s = period, .samples = x.position.size(), .axes = {x}, .notes = {}};
 }
 
-/// What its simulation believes: what a machine file says, and the controller as code, with the numbers that may be others.
+/// What its simulation believes: a machine file, and the controller as code with the numbers that may be others.
 machine_description believed() {
-    axis_description x;
-    x.name = "x";
-    x.plant.mass_kg = 202;
-    x.plant.force_constant_N_per_V = 1000;
-    x.plant.viscous_N_s_per_m = 290;
-    x.plant.coulomb_N = 41;
-    x.tolerance.given = {{"mass", 0.02}, {"force_constant", 0.01}, {"viscous", 0.1}, {"coulomb", 0.05}};
-    x.encoder.resolution_m = 1e-7;
+    auto machine = read_machine(std::string_view(R"({
+        "schema": "quadrant.machine/1", "sample_period_s": 0.001,
+        "excluded_effects": ["cogging", "force_ripple", "encoder_cyclic_error", "cutting_force", "sample_loss"],
+        "axes": {"x": {
+            "plant": {"mass_kg": 202, "force_constant_N_per_V": 1000, "viscous_N_s_per_m": 290, "coulomb_N": 41},
+            "tolerance": {"mass": 0.02, "force_constant": 0.01, "viscous": 0.1, "coulomb": 0.05},
+            "encoder": {"resolution_m": 1e-7}, "controller": {"kind": "lead_pid"}}}})"),
+                                "machine.json");
     const auto make = [](std::span<const double> n) { return lead_pid{n[0], n[1], n[2]}; };
-    x.controller =
+    machine.axes[0].controller =
         own_controller({{"gain_V_per_m", 2500}, {"lead_s", 0.025}, {"integral_V_per_m_s", 20000}}, make);
-    return {.file = "machine", .sample_period_s = period, .excluded_effects = {}, .axes = {x}, .notes = {}};
+    return machine;
 }
 
 void print(const char* title, const diagnosis_result& d) {

@@ -172,10 +172,11 @@ TEST_CASE("own effect: it is named with its number, is written and read, and the
     CHECK(found.low < found.value);
     CHECK(found.high > found.value);
     CHECK(d.own_effects == std::vector<std::string>{"air_drag", "cable_chain"});
-    CHECK(to_json(read_diagnosis(to_json(d).dump(), "d.json")) == to_json(d));
+    const nlohmann::json written = to_json(d), again = to_json(read_diagnosis(written.dump(), "d.json"));
+    CHECK(again == written);
 
     const auto mended = apply(file, d);
-    const auto other = workshop::as_log(workshop::run(real, 5.1, 7));
+    const auto other = workshop::as_log(workshop::run(real, workshop::three_strokes, 7));
     const auto before = only(simulate(file, other)), after = only(simulate(mended, other));
     CHECK(after.gap.position_rms_m < 0.2 * before.gap.position_rms_m);
     CHECK(after.gap.force_rms_N < 0.2 * before.gap.force_rms_N);
@@ -189,7 +190,7 @@ TEST_CASE("own effect: one that remembers and is no straight line in its numbers
     };
     auto file = exact(real);
     file.axes[0].own_effects = {own_effect<chain>};
-    const auto d = diagnose(file, workshop::as_log(workshop::run(real, 5.1)));
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
     REQUIRE(!d.causes.empty());
     CHECK(d.causes[0].effect == "cable_chain");
     CHECK(workshop::near(d.causes[0].parameters.at(0).values.at(0).value, 40, 0.05));
