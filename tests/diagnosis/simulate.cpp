@@ -182,6 +182,20 @@ TEST_CASE("own effect: it is named with its number, is written and read, and the
     CHECK(after.gap.force_rms_N < 0.2 * before.gap.force_rms_N);
 }
 
+TEST_CASE("own controller: with the stock cascade behind it the diagnosis is the same to the bit") {
+    workshop::machine real;
+    auto file = workshop::described(real);
+    real.constant_force = 25;
+    const auto log = workshop::as_log(workshop::run(real, 2.2));
+    const auto stock = to_json(diagnose(file, log));
+    auto& axis = file.axes[0];
+    axis.controller = with_cascade(*axis.controller, axis.actuator, workshop::period,
+                                   [](const auto& loop) { return own_controller(loop); });
+    const auto own = to_json(diagnose(file, log));
+    CHECK(stock["causes"].size() > 0);
+    CHECK(own.dump() == stock.dump());
+}
+
 TEST_CASE("own effect: one that remembers and is no straight line in its numbers") {
     workshop::machine real;
     real.stranger = [bent = 0.0](double, double v, double) mutable {

@@ -9,9 +9,9 @@ namespace quadrant::diagnosis {
 
 /// Where the axis is when a force of your own is asked for.
 struct force_point {
-    double position = 0, velocity = 0; ///< of the motor [m], [m/s]
+    double position = 0, velocity = 0; ///< of the motor, in the middle of the step and before it [m], [m/s]
     double command = 0;                ///< that acts now, in the unit of the log's column
-    double time = 0;                   ///< of this period, from the first row of the log [s]
+    double time = 0;                   ///< of the middle of the step, from the first row of the log [s]
     double step = 0;                   ///< length of the simulation's step [s], for a memory that integrates
 };
 
@@ -31,9 +31,9 @@ struct own_force {
     std::string_view name{}, box = "mechanics"; ///< or actuator, process
     std::string_view exciting_motion{};         ///< what motion shows it
     std::array<number, most_numbers> numbers{};
-    /// Force on the axis [N], positive where it pushes towards larger positions. Asked once a step, in order and from several threads:
-    /// what it remembers belongs into the memory. Taken at the beginning of the step: a force that changes with the
-    /// velocity by more than M / step per m/s is too stiff for it.
+    /// Force on the axis [N], positive where it pushes towards larger positions. Asked once a step, in order and from several
+    /// threads: what it remembers belongs into the memory. The velocity is that before the step: a force that changes with it
+    /// by more than M / step per m/s is too stiff.
     double (*law)(const force_point&, const values&, memory&) = nullptr;
 
     constexpr std::size_t count() const {
