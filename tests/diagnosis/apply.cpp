@@ -188,6 +188,28 @@ TEST_CASE("apply: values that no machine file may hold are refused, with the key
     CHECK_THROWS_AS(apply("{}", "m.json", of({})), bad_input);
 }
 
+TEST_CASE(
+    "apply: an effect of the caller's own is left out of a file with a note, and the others are written") {
+    auto d = of({named("x", "air_drag", {value("air_drag_N_s2_per_m2", {3000})}),
+                 named("x", "constant_force", {value("constant_force_N", {12.5})})});
+    d.own_effects = {"air_drag"};
+    const auto out = applied(d);
+    CHECK(out.changes.size() == 1);
+    REQUIRE(out.notes.size() == 1);
+    CHECK(out.notes[0] ==
+          "air_drag of axis x is left out: it is an effect of your own, and a machine file has no key for it");
+}
+
+TEST_CASE("apply: the numbers of a controller of the caller's own are mended in a description, and it stays") {
+    auto machine = read_machine(std::string_view(machine_text), "m.json");
+    auto& x = machine.axes[0].name == "x" ? machine.axes[0] : machine.axes[1];
+    x.controller->own = own_control{{{"gain", 2}, {"lead", 3}}, {}};
+    const auto out = apply(machine, of({named("x", "controller_mismatch", {value("lead", {4})}, true)}));
+    const auto& keys = (out.axes[0].name == "x" ? out.axes[0] : out.axes[1]).controller->own->keys;
+    CHECK(keys[0].value == 2);
+    CHECK(keys[1].value == 4);
+}
+
 TEST_CASE("write_machine: what is read from it is what was written, for every key of the format") {
     nlohmann::json all = nlohmann::json::parse(machine_text);
     auto& x = all["axes"]["x"];
@@ -259,6 +281,12 @@ TEST_CASE("read_diagnosis: what is wrong is told by its key") {
     CHECK(with("/axes/x/gap/force_rms_N", nullptr) == "d.json: axes.x.gap.force_rms_N: must be a number");
     CHECK(with("/notes", "no").find("notes: must be an array") != std::string::npos);
     CHECK(with("/of_a_later_version", 1) == "accepted");
+    CHECK(with("/own_effects", nlohmann::ordered_json::array({"gremlins"})) == "accepted");
+    auto gremlins = to_json(full());
+    gremlins["causes"][0]["effect"] = "gremlins";
+    CHECK(read_back_refusal(gremlins).find("\"gremlins\" is not an effect") != std::string::npos);
+    gremlins["own_effects"] = {"gremlins"};
+    CHECK(read_back_refusal(gremlins) == "accepted");
     auto bare = to_json(full()); // FORMAT.md's keys alone
     for (const char* key :
          {"described", "readings", "gap_before_command_rms_V", "gap_after_command_rms_V", "exciting_motion"})

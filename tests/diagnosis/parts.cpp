@@ -191,6 +191,110 @@ TEST_CASE("controller box: replay agrees to one DAC step, from the start and fro
     CHECK(std::sqrt(sum / static_cast<double>(part.size() - 100)) < 3 * workshop::dac);
 }
 
+namespace {
+
+/// A law of the user's own, no cascade: PID with a lead, the derivative filtered.
+struct lead_pid {
+    double gain = 3000, lead = 0.02, integral = 20000;
+    double last = 0, slope = 0, sum = 0;
+    double operator()(double reference, double measured) noexcept {
+        const double e = reference - measured;
+        slope += 0.5 * ((e - last) / workshop::period - slope);
+        last = e;
+        sum += integral * workshop::period * e;
+        return gain * (e + lead * slope) + sum;
+    }
+    void settle(const loop_start& row) noexcept {
+        last = row.reference - row.measured;
+        slope = row.reference_velocity - row.measured_velocity;
+        sum = row.command - gain * (last + lead * slope);
+    }
+};
+
+controller_description keyed(const lead_pid& described) {
+    return own_controller({{"gain_V_per_m", described.gain}, {"lead_s", described.lead}, {"offset_V", 0}},
+                          [described](std::span<const double> v) {
+                              if (!(v[1] > 0.5 * described.lead)) throw std::runtime_error("no such lead");
+                              return [law = lead_pid{v[0], v[1], described.integral},
+                                      offset = v[2]](double r, double y) mutable { return law(r, y) + offset; };
+                          });
+}
+
+controller_finding judged(const controller_description& c, const axis_log& log) {
+    const auto file = workshop::described({});
+    return judge_controller(c, file.axes[0].actuator, log, prepare(log, workshop::period, workshop::count));
+}
+
+} // namespace
+
+TEST_CASE("own controller: the stock cascade behind it is replayed and simulated to the bit as by itself") {
+    const workshop::machine real;
+    const auto log = workshop::run(real, workshop::three_strokes);
+    auto axis = workshop::described(real).axes[0];
+    for (const double integral : {300.0, 0.0}) {
+        auto& stock = *axis.controller;
+        stock.velocity_integral_V_per_m = integral;
+        const auto own = with_cascade(stock, axis.actuator, workshop::period,
+                                      [](const auto& loop) { return own_controller(loop); });
+        const auto replay = [&](const controller_description& c) {
+            return replay_controller(c, axis.actuator, workshop::period, std::span(log.reference).subspan(1000),
+                                     std::span(log.position).subspan(1000),
+                                     std::span(log.command).subspan(1000));
+        };
+        CHECK(replay(own) == replay(stock));
+        const plant_model plant(axis);
+        const auto a = simulate_closed_loop(own, axis, plant, workshop::period, log),
+                   b = simulate_closed_loop(stock, axis, plant, workshop::period, log);
+        CHECK(a.position == b.position);
+        CHECK(a.command == b.command);
+    }
+}
+
+TEST_CASE("own controller: another law is replayed; with a gain changed it differs, and the key that is given "
+          "is named") {
+    workshop::machine real;
+    real.law = lead_pid{};
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto right = judged(own_controller(lead_pid{}), log);
+    CHECK_FALSE(right.differs);
+    CHECK(right.difference_rms < 2 * workshop::dac);
+
+    lead_pid described;
+    described.gain = 2400;
+    const auto unkeyed = judged(own_controller(described), log);
+    CHECK(unkeyed.differs);
+    CHECK(unkeyed.key == "");
+    CHECK_FALSE(unkeyed.mended);
+    const auto named = judged(keyed(described), log);
+    CHECK(named.mended);
+    CHECK(named.key == "gain_V_per_m");
+    CHECK(named.described == 2400);
+    CHECK(workshop::near(named.value, 3000, 1e-3));
+    CHECK(named.low < named.value);
+}
+
+TEST_CASE("own controller: it begins in the middle of a motion, by its own settle") {
+    workshop::machine real;
+    real.law = lead_pid{};
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto file = workshop::described(real);
+    const auto from = [](const std::vector<double>& v) { return std::span(v).subspan(1000); };
+    const auto part = replay_controller(own_controller(lead_pid{}), file.axes[0].actuator, workshop::period,
+                                        from(log.reference), from(log.position), from(log.command));
+    double worst = 0;
+    for (std::size_t k = 100; k < part.size(); ++k)
+        worst = std::max(worst, std::abs(part[k] - log.command[k + 1000]));
+    CHECK(worst < 20 * workshop::dac); // the noise of one reading is in the integral
+}
+
+TEST_CASE("own controller: one that runs away is refused with its row") {
+    const auto log = workshop::run({}, 1);
+    const auto runs_away = [n = 0](double, double) mutable { return ++n < 500 ? 0.0 : std::nan(""); };
+    CHECK_THROWS_WITH_AS(judged(own_controller(runs_away), log),
+                         "the controller of axis x: its command at row 499 is not finite",
+                         std::invalid_argument);
+}
+
 TEST_CASE("closed loop: the simulation of the right machine follows its log within a few counts") {
     const workshop::machine real;
     const auto log = workshop::run(real);

@@ -189,6 +189,11 @@ for path, to in [
         (["next_experiment"], ...), (["colour"], 1)]:
     refuse(diagnosis, changed(good_diagnosis, path, to), f"diagnosis with {path} = {to}")
 
+own = changed(good_diagnosis, ["causes", 0, "effect"], "gremlins")
+accept(diagnosis, own | {"own_effects": ["gremlins"]}, "a diagnosis with an effect of the caller's own")
+for key, to in (("confusable_with", ["gremlins"]), ("readings", [{"effect": "gremlins", "parameters": {}}])):
+    refuse(diagnosis, changed(good_diagnosis, ["causes", 0, key], to), f"diagnosis with gremlins in {key}")
+
 good_simulation = {"schema": "quadrant.simulation/1", "notes": [], "axes": {"x": {
     "closed_loop": True, "command_unit": "V", "gap": gap, "where": [{"view": "velocity", "finding": "", "share": 0.5}]}}}
 accept(simulation, good_simulation, "the simulation of this test")

@@ -2,6 +2,8 @@
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/diagnose.hpp"
+#include "quadrant/diagnosis/own_effect.hpp"
+#include "quadrant/diagnosis/write_diagnosis.hpp"
 #include "quadrant/diagnosis/write_simulation.hpp"
 #include "workshop.hpp"
 
@@ -125,4 +127,108 @@ TEST_CASE("simulate: its JSON holds the numbers of each axis") {
     CHECK(json["schema"] == "quadrant.simulation/1");
     CHECK(json["axes"]["x"]["gap"]["force_rms_N"] == s.axes[0].gap.force_rms_N);
     CHECK(json["axes"]["x"]["command_unit"] == "V");
+}
+
+namespace {
+
+constexpr own_force drag{.name = "air_drag",
+                         .exciting_motion = "fast strokes",
+                         .numbers = {{{.key = "air_drag_N_s2_per_m2", .low = 0, .high = 50000}}},
+                         .law = [](const auto& now, const auto& number, auto&) {
+                             return -number[0] * now.velocity * std::abs(now.velocity);
+                         }};
+/// A cable chain: follows the axis by a length, then drags; its numbers are no straight line.
+constexpr own_force chain{
+    .name = "cable_chain",
+    .numbers = {{{.key = "chain_N", .start = 20, .low = 0, .high = 500},
+                 {.key = "chain_m", .start = 0.003, .low = 1e-4, .high = 0.1, .logarithmic = true}}},
+    .law = [](const auto& now, const auto& number, auto& bent) {
+        bent[0] = std::clamp(bent[0] + now.step * now.velocity, -number[1], number[1]);
+        return -number[0] * bent[0] / number[1];
+    }};
+constexpr own_force of_the_list = [] {
+    own_force f = drag;
+    f.name = "mass";
+    return f;
+}();
+
+} // namespace
+
+TEST_CASE("own effect: it is named with its number, is written and read, and the mended machine predicts "
+          "another log") {
+    workshop::machine real;
+    real.stranger = [](double, double v, double) { return -3000 * v * std::abs(v); };
+    auto file = exact(real);
+    file.axes[0].own_effects = {own_effect<drag>, own_effect<chain>};
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
+    CHECK(d.verdict == verdict::explained);
+    REQUIRE(d.causes.size() == 1);
+    const cause& c = d.causes[0];
+    CHECK(c.effect == "air_drag");
+    CHECK(c.probability > 0.5);
+    CHECK_FALSE(c.described);
+    const estimate& found = c.parameters.at(0).values.at(0);
+    CHECK(workshop::near(found.value, 3000, 0.03));
+    CHECK(found.low < found.value);
+    CHECK(found.high > found.value);
+    CHECK(d.own_effects == std::vector<std::string>{"air_drag", "cable_chain"});
+    const nlohmann::json written = to_json(d), again = to_json(read_diagnosis(written.dump(), "d.json"));
+    CHECK(again == written);
+
+    const auto mended = apply(file, d);
+    const auto other = workshop::as_log(workshop::run(real, workshop::three_strokes, 7));
+    const auto before = only(simulate(file, other)), after = only(simulate(mended, other));
+    CHECK(after.gap.position_rms_m < 0.2 * before.gap.position_rms_m);
+    CHECK(after.gap.force_rms_N < 0.2 * before.gap.force_rms_N);
+}
+
+TEST_CASE("own controller: with the stock cascade behind it the diagnosis is the same to the bit") {
+    workshop::machine real;
+    auto file = workshop::described(real);
+    real.constant_force = 25;
+    const auto log = workshop::as_log(workshop::run(real, 2.2));
+    const auto stock = to_json(diagnose(file, log));
+    auto& axis = file.axes[0];
+    axis.controller = with_cascade(*axis.controller, axis.actuator, workshop::period,
+                                   [](const auto& loop) { return own_controller(loop); });
+    const auto own = to_json(diagnose(file, log));
+    CHECK(stock["causes"].size() > 0);
+    CHECK(own.dump() == stock.dump());
+}
+
+TEST_CASE("own effect: one that remembers and is no straight line in its numbers") {
+    workshop::machine real;
+    real.stranger = [bent = 0.0](double, double v, double) mutable {
+        bent = std::clamp(bent + v * workshop::period / 20, -0.005, 0.005);
+        return -40 * bent / 0.005;
+    };
+    auto file = exact(real);
+    file.axes[0].own_effects = {own_effect<chain>};
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes[0].effect == "cable_chain");
+    CHECK(workshop::near(d.causes[0].parameters.at(0).values.at(0).value, 40, 0.05));
+    CHECK(workshop::near(d.causes[0].parameters.at(1).values.at(0).value, 0.005, 0.05));
+}
+
+TEST_CASE("own effect: a machine without it is not blamed for it, nor one with an effect of the list") {
+    workshop::machine real;
+    auto file = exact(real);
+    file.axes[0].own_effects = {own_effect<drag>, own_effect<chain>};
+    CHECK(diagnose(file, workshop::as_log(workshop::run(real, workshop::three_strokes))).causes.empty());
+    real.viscous = 600;
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
+    REQUIRE(d.causes.size() == 1);
+    CHECK(d.causes[0].effect == "viscous_friction");
+}
+
+TEST_CASE("own effect: with a name of the list, or twice the same, it is refused") {
+    auto file = exact({});
+    const auto log = workshop::as_log(workshop::run({}, 2.1));
+    file.axes[0].own_effects = {own_effect<of_the_list>};
+    CHECK_THROWS_WITH_AS(diagnose(file, log), "own_effects of axis x: mass is a name of the list",
+                         std::invalid_argument);
+    file.axes[0].own_effects = {own_effect<drag>, own_effect<drag>};
+    CHECK_THROWS_WITH_AS(diagnose(file, log), "own_effects of axis x: air_drag is there twice",
+                         std::invalid_argument);
 }

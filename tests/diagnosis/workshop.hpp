@@ -39,6 +39,8 @@ struct machine {
     double bristle = 2e-7;
     double noise = 8e-8; ///< of the encoder, white [m]
     controller control;
+    std::function<double(double, double)>
+        law; ///< in the controller's place: reference, reading, then the command [V]
 };
 
 inline constexpr double period = 0.0005, count = 2.5e-7, limit = 10, dac = 20.0 / 65536;
@@ -118,6 +120,7 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
                    m.control.coulomb_feedforward * (vr > 0   ? 1
                                                     : vr < 0 ? -1
                                                              : 0);
+        if (m.law) u = m.law(r, y);
         u = std::round(std::clamp(u, -limit, limit) / dac) * dac;
         const bool lost = m.loss > 0 && k > 0 && std::uniform_real_distribution<double>(0, 1)(random) < m.loss;
         commands.push_back(lost ? commands.back() : u);

@@ -41,6 +41,11 @@ public:
                     "counts on it, which took the force from {:.3g} N to {:.3g} N",
                     c.effect, c.axis, c.probability, at_least_, c.gap_before_force_rms_N.value,
                     c.gap_after_force_rms_N.value));
+            else if (std::find(d.own_effects.begin(), d.own_effects.end(), c.effect) != d.own_effects.end())
+                out_.notes.push_back(
+                    fmt::format("{} of axis {} is left out: it is an effect of your own, and a machine "
+                                "file has no key for it",
+                                c.effect, c.axis));
             else if (c.parameters.empty())
                 out_.notes.push_back(fmt::format(
                     "{} of axis {} is left out: the diagnosis gives no value for it", c.effect, c.axis));
@@ -158,6 +163,31 @@ private:
     applied_diagnosis out_;
 };
 
+/// Takes the causes that are code in a machine out of a diagnosis, and into the axis: the numbers of its own controller, a
+/// force of its own.
+inline void take_own(axis_description& axis, diagnosis_result& d, double at_least) {
+    std::erase_if(d.causes, [&](const cause& c) {
+        if (c.axis != axis.name || c.probability < at_least) return false;
+        if (c.effect == "controller_mismatch" && axis.controller && axis.controller->own) {
+            for (own_key& k : axis.controller->own->keys)
+                for (const parameter_estimate& p : c.parameters)
+                    if (p.key == k.key) k.value = p.values.at(0).value;
+            return true;
+        }
+        for (const own_suspect& own : axis.own_effects)
+            if (own.force->name == c.effect) {
+                axis_description::valued_force found{own.force, {}};
+                for (std::size_t i = 0; i < own.force->count(); ++i)
+                    for (const parameter_estimate& p : c.parameters)
+                        if (p.key == own.force->numbers[i].key) found.values[i] = p.values.at(0).value;
+                std::erase_if(axis.own_forces, [&](const auto& f) { return f.force == own.force; });
+                axis.own_forces.push_back(found);
+                return true;
+            }
+        return false;
+    });
+}
+
 } // namespace detail
 
 /// Writes the causes of a diagnosis that are at least as probable as `at_least` into a machine file: its JSON text in, the
@@ -170,12 +200,22 @@ inline applied_diagnosis apply(std::string_view machine_text, std::string_view m
     return detail::corrector(json, machine_file, at_least).take(d);
 }
 
-/// The same on a description that was read or made before. A controller of unknown kind is not in it, and so not in the
-/// result.
-inline machine_description apply(const machine_description& machine, const diagnosis_result& d,
+/// The same on a description that was read or made before, with its code: the numbers of a controller of your own are mended, and
+/// an effect of your own becomes a force of the axis. A controller of unknown kind is not in it, and so not in the result.
+inline machine_description apply(const machine_description& machine, diagnosis_result d,
                                  double at_least = 0.5) {
+    std::vector<axis_description> code = machine.axes;
+    for (axis_description& axis : code) detail::take_own(axis, d, at_least);
     const std::string file = machine.file.empty() ? "the machine" : machine.file;
-    return read_machine(apply(to_json(machine).dump(), file, d, at_least).machine.dump(), file);
+    auto out = read_machine(apply(to_json(machine).dump(), file, d, at_least).machine.dump(), file);
+    for (axis_description& axis : out.axes)
+        for (axis_description& own : code)
+            if (axis.name == own.name) {
+                if (own.controller && own.controller->own) axis.controller = std::move(own.controller);
+                axis.own_effects = std::move(own.own_effects);
+                axis.own_forces = std::move(own.own_forces);
+            }
+    return out;
 }
 
 } // namespace quadrant::diagnosis

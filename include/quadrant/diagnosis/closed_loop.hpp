@@ -19,7 +19,7 @@ struct closed_loop_run {
 inline closed_loop_run simulate_closed_loop(const controller_description& c, const axis_description& axis,
                                             const plant_model& plant, double period, const axis_log& log,
                                             std::span<const double> sensor_noise = {}, int substeps = 4) {
-    return with_cascade(c, axis.actuator, period, [&](auto controller) {
+    return with_controller(c, axis.actuator, period, [&](auto controller) {
         closed_loop_run out;
         const std::size_t n = log.reference.size();
         out.position.resize(n);

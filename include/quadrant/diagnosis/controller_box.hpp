@@ -2,7 +2,7 @@
 #pragma once
 #include "../compose/cascade_p_pi.hpp"
 #include "../filter/two_sample_derivative.hpp"
-#include "machine.hpp"
+#include "own_controller.hpp"
 #include "signals.hpp"
 
 #include <limits>
@@ -45,6 +45,22 @@ cascade<cascade_p_pi_boxes<Estimator, Notch>> described(const controller_descrip
     return {.box = {p, duration::from_value(period)}};
 }
 
+/// A controller of the user's own on the ports of a cascade, behind it the limit and the DAC that the machine file describes.
+struct own_axis {
+    using volts = quantity_of<signal::voltage>;
+    running_loop loop;
+    double limit, dac_step;
+    own_axis(const own_control& own, const actuator_description& a)
+        : loop(own.made()), limit(a.limit_V.value_or(std::numeric_limits<double>::infinity())),
+          dac_step(a.dac_bits && a.dac_range_V ? *a.dac_range_V / std::exp2(*a.dac_bits) : 0) {}
+
+    volts operator()(quantity_of<signal::position> reference, quantity_of<signal::position> measured) {
+        const double u = std::clamp(loop(nullptr, reference.value(), measured.value()), -limit, limit);
+        return volts::from_value(dac_step > 0 ? std::round(u / dac_step) * dac_step : u);
+    }
+    void settle(const loop_start& row) { loop(&row, 0, 0); }
+};
+
 } // namespace detail
 
 /// Calls f with the cascade that the machine file describes, as a value of its own type.
@@ -58,16 +74,21 @@ auto with_cascade(const controller_description& c, const actuator_description& a
                    : f(described<filtered_estimate, no_notch>(c, a, period));
 }
 
-/// Puts a cascade into the middle of a motion: row 0 of a log is its past, the differences to row 1 its velocities,
+/// Calls f with the controller that is described: the machine file's cascade, or the user's own.
+template <class F>
+auto with_controller(const controller_description& c, const actuator_description& a, double period, F f) {
+    return c.own ? f(detail::own_axis(*c.own, a)) : with_cascade(c, a, period, f);
+}
+
+/// Puts a controller into the middle of a motion: row 0 of a log is its past, the differences to row 1 its velocities,
 /// the command of row 0 fixes the integral (a controller without one starts with none).
-template <class Cascade>
-void start_at_row_0(Cascade& axis, double r0, double r1, double y0, double y1, double u0, double period) {
-    axis.settle({.reference = quantity_of<signal::position>::from_value(r0),
-                 .measured = quantity_of<signal::position>::from_value(y0),
-                 .reference_velocity = quantity_of<signal::velocity>::from_value((r1 - r0) / period),
-                 .measured_velocity = quantity_of<signal::velocity>::from_value((y1 - y0) / period),
-                 .command = quantity_of<signal::voltage>::from_value(u0)});
-    if (axis.box.velocity_loop.given().integral_gain.value() == 0) axis.box.velocity_loop.reset();
+template <class Controller>
+void start_at_row_0(Controller& axis, double r0, double r1, double y0, double y1, double u0, double period) {
+    settle_at(axis, {.reference = r0,
+                     .measured = y0,
+                     .reference_velocity = (r1 - r0) / period,
+                     .measured_velocity = (y1 - y0) / period,
+                     .command = u0});
 }
 
 /// The controller box alone: fed the logged reference and position, it puts out what the described controller would
@@ -78,7 +99,7 @@ inline std::vector<double> replay_controller(const controller_description& c, co
                                              double period, std::span<const double> reference,
                                              std::span<const double> position,
                                              std::span<const double> command) {
-    return with_cascade(c, a, period, [&](const auto& described) {
+    return with_controller(c, a, period, [&](const auto& described) {
         std::vector<double> out(reference.size());
         const auto pass = [&](double start) {
             auto axis = described;
@@ -90,7 +111,7 @@ inline std::vector<double> replay_controller(const controller_description& c, co
                              .value();
         };
         pass(command[0]);
-        if (c.velocity_integral_V_per_m != 0) {
+        if (c.own || c.velocity_integral_V_per_m != 0) {
             std::vector<double> offset(out.size());
             for (std::size_t k = 0; k < out.size(); ++k) offset[k] = command[k] - out[k];
             pass(command[0] + quantile(offset, 0.5));

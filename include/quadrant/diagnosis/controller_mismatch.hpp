@@ -3,6 +3,11 @@
 #include "controller_box.hpp"
 #include "record.hpp"
 
+#include <fmt/format.h>
+
+#include <random>
+#include <stdexcept>
+
 namespace quadrant::diagnosis {
 
 /// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is not the
@@ -22,13 +27,20 @@ struct controller_finding {
 namespace detail {
 
 struct controller_key {
-    const char* key;
-    double& (*of)(controller_description&);
+    std::string key;
+    std::function<double&(controller_description&)> of;
     double scale; ///< a sensible size when the described value is zero
 };
 
 inline std::vector<controller_key> controller_keys(const controller_description& c) {
     using d = controller_description;
+    if (c.own) {
+        std::vector<controller_key> own;
+        for (std::size_t i = 0; i < c.own->keys.size(); ++i)
+            own.push_back({c.own->keys[i].key, [i](d& x) -> double& { return x.own->keys[i].value; },
+                           c.own->keys[i].scale});
+        return own;
+    }
     std::vector<controller_key> keys{
         {"position_gain_per_s", [](d& x) -> double& { return x.position_gain_per_s; }, 1},
         {"velocity_gain_V_s_per_m", [](d& x) -> double& { return x.velocity_gain_V_s_per_m; }, 1},
@@ -61,6 +73,22 @@ inline double replay_rounding(const controller_description& c, const actuator_de
            y * c.velocity_gain_V_s_per_m * (c.position_gain_per_s + 2 / period);
 }
 
+/// The same for a controller that is code: the columns are shaken by as much as they were rounded.
+template <class Replay>
+double replay_rounding(const actuator_description& a, const axis_log& log, std::size_t from,
+                       const std::vector<double>& replayed, Replay replay) {
+    std::mt19937_64 random(20080901);
+    const auto shaken = [&](std::vector<double> column, double step) {
+        for (double& x : column) x += step * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
+        return column;
+    };
+    const auto moved =
+        replay(shaken(log.reference, log.reference_step), shaken(log.position, log.position_step));
+    double most = a.dac_bits && a.dac_range_V ? *a.dac_range_V / std::exp2(*a.dac_bits) : 0;
+    for (std::size_t k = from; k < moved.size(); ++k) most = std::max(most, std::abs(moved[k] - replayed[k]));
+    return most + log.command_step;
+}
+
 } // namespace detail
 
 inline controller_finding judge_controller(const controller_description& described,
@@ -77,13 +105,25 @@ inline controller_finding judge_controller(const controller_description& describ
     const auto replay = [&](const controller_description& c) {
         return replay_controller(c, actuator, record.period, log.reference, log.position, log.command);
     };
-    const double rounding = replay_rounding(described, actuator, log, record.period);
+    out.replayed = replay(described);
+    const auto broken =
+        std::find_if_not(out.replayed.begin(), out.replayed.end(), [](double u) { return std::isfinite(u); });
+    if (described.own && broken != out.replayed.end())
+        throw std::invalid_argument(
+            fmt::format("the controller of axis {}: its command at row {} is not finite", log.name,
+                        broken - out.replayed.begin()));
+    const double rounding =
+        described.own ? replay_rounding(actuator, log, from, out.replayed,
+                                        [&](const auto& reference, const auto& position) {
+                                            return replay_controller(described, actuator, record.period,
+                                                                     reference, position, log.command);
+                                        })
+                      : replay_rounding(described, actuator, log, record.period);
     const auto score = [&](const std::vector<double>& d) {
         double sum = 0;
         for (double ms : block_ms(d, 0, record.score.block)) sum += std::log(ms + rounding * rounding);
         return sum;
     };
-    out.replayed = replay(described);
     const auto d0 = difference(out.replayed);
     out.difference_rms = rms(d0);
     out.floor_rms = rounding;
@@ -93,27 +133,35 @@ inline controller_finding judge_controller(const controller_description& describ
     out.after_rms = out.difference_rms;
     if (!out.differs) return out;
 
+    constexpr double none = std::numeric_limits<double>::infinity();
     double best = score(d0), width = 0;
     for (const auto& key : controller_keys(described)) {
         controller_description trial = described;
         double& value = key.of(trial);
         const double given = value, scale = given != 0 ? std::abs(given) : key.scale;
         const double nyquist = 0.499 / record.period;
-        const bool is_frequency = std::string(key.key).ends_with("_Hz");
+        const bool is_frequency = key.key.ends_with("_Hz"), is_own = described.own.has_value();
         const auto at = [&](double x) {
             value = is_frequency ? std::min(x, nyquist) : x;
-            return score(difference(replay(trial)));
+            try {
+                const double s = score(difference(replay(trial)));
+                return std::isfinite(s) ? s : none;
+            } catch (const std::exception&) { // a controller of the user's own that cannot have this value
+                if (!is_own) throw;
+                return none;
+            }
         };
         // A coarse scan over ratios finds the valley, golden section its bottom.
         std::vector<double> grid;
+        const double sign = given < 0 ? -1 : 1;
         for (double x :
              {0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.25, 1.5, 1.8, 2.3, 3.0, 4.5})
-            if (!(is_frequency || key.key == std::string("notch.damping")) || x > 0) grid.push_back(x * scale);
+            if (!(is_frequency || key.key == "notch.damping") || x > 0) grid.push_back(sign * x * scale);
         if (given == 0)
             for (double x : {0.03, 10.0, 30.0}) grid.push_back(x * scale);
         std::sort(grid.begin(), grid.end());
         std::size_t low_at = 0;
-        double low_score = std::numeric_limits<double>::infinity();
+        double low_score = none;
         for (std::size_t i = 0; i < grid.size(); ++i)
             if (const double s = at(grid[i]); s < low_score) {
                 low_score = s;
@@ -147,7 +195,7 @@ inline controller_finding judge_controller(const controller_description& describ
             const auto d = difference(out.mended_command);
             out.after_rms = rms(d);
             // What rounding of the command leaves open, from the command's sensitivity to the value.
-            const double h = 1e-3 * scale;
+            const double h = 1e-3 * scale * (is_own && x > given ? -1 : 1); // towards what it can have
             value = x + h;
             auto moved = replay(trial);
             for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - out.mended_command[k]) / h;

@@ -4,6 +4,7 @@
 #include "block_places.hpp"
 #include "calibrated.hpp"
 #include "causes.hpp"
+#include "effect_names.hpp"
 #include "how_far.hpp"
 #include "neighbour.hpp"
 
@@ -118,11 +119,30 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     out.axes.push_back(std::move(result));
 }
 
+/// Effects of the caller's own have names of their own.
+inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
+    const auto& own = axis.own_effects;
+    for (auto e = own.begin(); e != own.end(); ++e) {
+        const auto refuse = [&](const std::string& why) {
+            throw std::invalid_argument(fmt::format("own_effects of axis {}: {}", axis.name, why));
+        };
+        if (!e->force || !e->searched) refuse("one is null");
+        const auto same = [&](const auto& other) { return other.name == e->force->name; };
+        if (std::any_of(effect_names.begin(), effect_names.end(), same))
+            refuse(fmt::format("{} is a name of the list", e->force->name));
+        if (std::any_of(own.begin(), e, [&](const own_suspect& before) { return same(*before.force); }))
+            refuse(fmt::format("{} is there twice", e->force->name));
+        if (std::find(names.begin(), names.end(), e->force->name) == names.end())
+            names.emplace_back(e->force->name);
+    }
+}
+
 } // namespace detail
 
 /// From a machine file and a log to where they differ, why, how surely, and how far the gap shrinks with each cause.
 /// Deterministic. Machine and log match (match.hpp); a log below 2 s is refused (bad_input). Cost: linear in rows; each suspect costs a few dozen passes of the
-/// plant over the log.
+/// plant over the log. A controller of your own (own_controller.hpp) and effects of your own (own_effect.hpp) stand in the machine;
+/// what is wrong with them is an std::invalid_argument.
 inline diagnosis_result diagnose(
     const machine_description& machine, const machine_log& log, const machine_log* holdout = nullptr,
     const progress& tell = [](const std::string&) {}, const rules& r = {}) {
@@ -146,6 +166,11 @@ inline diagnosis_result diagnose(
         std::optional<axis_log> other;
         if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
             other = detail::with_neighbour(*holdout, *found, machine.sample_period_s);
+        detail::add_own_effects(out.own_effects, axis);
+        if (axis.controller && axis.controller->own) // its file's kind is known after all
+            std::erase_if(out.notes, [&](const std::string& note) {
+                return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
+            });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
         detail::diagnose_axis(out, axis_case(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
                                              machine.excluded_effects, r, tell));

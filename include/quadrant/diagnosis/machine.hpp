@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "own_force.hpp"
+
+#include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +50,31 @@ struct notch_description {
     double frequency_Hz = 0, damping = 0;
 };
 
+/// The last row before the next call of a controller that begins in the middle of a motion, SI.
+struct loop_start {
+    double reference = 0, measured = 0, reference_velocity = 0, measured_velocity = 0, command = 0;
+};
+/// A controller as it runs: one sample, reference and measured position in, command out; or, with a row to start from, that.
+using running_loop = std::function<double(const loop_start*, double reference, double measured)>;
+
+/// A number of a controller of your own that may be found to be another.
+struct own_key {
+    std::string key;
+    double value = 0;
+    double scale = 1; ///< a sensible size when the value is 0
+};
+
+/// What no machine file can say: a controller as code (own_controller.hpp).
+struct own_control {
+    std::vector<own_key> keys;
+    std::function<running_loop(std::span<const double> values)> make; ///< as new, from the values of the keys
+    running_loop made() const {
+        std::vector<double> values;
+        for (const own_key& k : keys) values.push_back(k.value);
+        return make(values);
+    }
+};
+
 /// The controller kind `cascade_p_pi` of FORMAT.md.
 struct controller_description {
     enum class estimator { filtered_derivative, two_sample_mean };
@@ -59,6 +88,7 @@ struct controller_description {
     double viscous_feedforward_V_s_per_m = 0;
     double coulomb_feedforward_V = 0;
     std::optional<notch_description> notch;
+    std::optional<own_control> own{}; ///< in its place, with the numbers above unused; in no file
 };
 
 struct actuator_description {
@@ -93,6 +123,13 @@ struct axis_description {
     process_description process;
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
+    // What no file holds: code of the caller's.
+    struct valued_force {
+        const own_force* force;
+        own_force::values values;
+    };
+    std::vector<own_suspect> own_effects{}; ///< beside those of the list (own_effect.hpp)
+    std::vector<valued_force> own_forces{}; ///< that the simulation has
 };
 
 struct machine_description {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "free_curve.hpp"
 #include "friction_contact.hpp"
 #include "harmonics.hpp"
 #include "machine.hpp"
@@ -39,7 +38,7 @@ struct plant_model {
     double spring = 0;         ///< [N/m], about position 0
     double coupling = 0;       ///< of the other axis' acceleration
     harmonics cogging;         ///< [N] over position
-    free_curve unlisted;       ///< a force that no effect of the list names
+    diagnosis::own_forces own; ///< forces that no list names
     struct mode_box {          ///< a second mass on a spring, not seen by the encoder
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
     } mode;
@@ -92,6 +91,7 @@ struct plant_model {
             cutting = {1 / *a.process.fundamental_Hz, a.process.force_N, a.process.phase_rad};
         cutting_mean = a.process.mean_N.value_or(0);
         cyclic = one(a.encoder.cyclic_m, a.encoder.cyclic_period_m, a.encoder.cyclic_phase_rad);
+        for (const auto& f : a.own_forces) own.of(*f.force) = f.values;
     }
 
 private:

@@ -15,10 +15,11 @@ public:
     diagnosis_reader(std::string_view text, std::string_view file)
         : root_(parse_json(text, file)), top_{&root_, "", file} {}
 
-    diagnosis_result read() const {
+    diagnosis_result read() {
         need_schema(top_, "quadrant.diagnosis/1");
         diagnosis_result out;
         out.verdict = verdict_of(top_.need("verdict"));
+        if (const auto own = top_.find("own_effects")) own_ = out.own_effects = words(*own);
         const json_node axes = top_.need("axes").object();
         for (const auto& [name, axis] : axes.value->items())
             out.axes.push_back(read_axis(name, axes.at(name, axis)));
@@ -61,10 +62,11 @@ private:
             if (node.text() == name_of(v)) return v;
         node.refuse("must be explained, partly_explained, unexplained, within_tolerance or no_gap");
     }
-    static std::string effect_of(const json_node& node) {
+    std::string effect_of(const json_node& node) const {
         constexpr auto known = names_of(effect_names);
         const std::string& name = node.text();
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (std::find(known.begin(), known.end(), name) == known.end() &&
+            std::find(own_.begin(), own_.end(), name) == own_.end())
             node.refuse(fmt::format("{} is not an effect{}", in_quotes(name), suggestion(name, known)));
         return name;
     }
@@ -136,7 +138,7 @@ private:
         if (const auto on = node.find("evaluated_on")) a.evaluated_on = on->text();
         return a;
     }
-    static cause read_cause(const json_node& node, const diagnosis_result& whole) {
+    cause read_cause(const json_node& node, const diagnosis_result& whole) const {
         cause c;
         const json_node axis = node.object().need("axis");
         c.axis = axis.text();
@@ -169,6 +171,7 @@ private:
 
     nlohmann::json root_;
     json_node top_;
+    std::vector<std::string> own_;
 };
 
 } // namespace detail

@@ -109,6 +109,7 @@ struct diagnosis_result {
     std::string remaining_structure;
     experiment next;
     std::vector<std::string> notes;
+    std::vector<std::string> own_effects; ///< names beside the list that were suspects, too (own_effect.hpp)
     std::string machine_file, log_file, holdout_file;
 };
 

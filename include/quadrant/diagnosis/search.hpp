@@ -115,8 +115,12 @@ public:
 
     std::vector<const effect*> suspects() const {
         std::vector<const effect*> out;
-        for (const effect* e : plant_effects)
-            if (std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end()) out.push_back(e);
+        const auto allowed = [&](const effect* e) {
+            return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end();
+        };
+        std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
+        for (const own_suspect& own : axis_.own_effects)
+            if (allowed(own.searched)) out.push_back(own.searched);
         return out;
     }
 

@@ -13,6 +13,7 @@ struct plant_state {
     double q = 0, w = 0;      ///< of the second mass against the first [m], [m/s]
     std::array<double, friction_contact::most> deflection{}; ///< of the contact's elements [m]
     std::array<bool, friction_contact::most> slipping{};
+    own_forces::memories remembered{}; ///< by the own forces
 
     void shift(double dx, double dv) { // an observer's correction moves the whole axis
         x += dx;
@@ -82,7 +83,7 @@ public:
         if (forces_)
             drive = drive + cogging_.at(x) + cutting_.at(time + plant_.cutting_start) + plant_.cutting_mean +
                     plant_.mass * plant_.coupling * now.other_acceleration;
-        if (plant_.unlisted.of != free_curve::over::nothing) drive += unlisted(x, s.v, command, time);
+        if (!plant_.own.empty()) drive += plant_.own.at({x, s.v, command, time, h_}, s.remembered);
         double push = inertia_ * s.v + h_ * drive; // momentum before friction
         if (plant_.mode.mass > 0) push -= plant_.mode.mass * (wq_ * s.q + (ww_ - 1) * s.w);
         const double v = one_element_ ? behind_one(s, push, time) : behind_friction(s, push, time);
@@ -118,15 +119,6 @@ private:
             command += from * lag_mean_;
         }
         return plant_.force_constant * (1 + ripple_.at(x)) * command;
-    }
-
-    double unlisted(double x, double v, double command, double time) const {
-        using over = free_curve::over;
-        const auto& curve = plant_.unlisted;
-        return curve.at(curve.of == over::position   ? x
-                        : curve.of == over::velocity ? v
-                        : curve.of == over::time     ? time
-                                                     : command);
     }
 
     double level_now(const side& d, const plant_state& s, double time) const {

@@ -95,7 +95,7 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
     ordered_json axes = ordered_json::object(), causes = ordered_json::array();
     for (const auto& a : d.axes) axes[a.name] = detail::axis_json(a);
     for (const auto& c : d.causes) causes.push_back(detail::cause_json(c));
-    return {
+    ordered_json out = {
         {"schema", "quadrant.diagnosis/1"},
         {"verdict", name_of(d.verdict)},
         {"axes", axes},
@@ -105,6 +105,8 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
         {"next_experiment",
          {{"motion", d.next.motion}, {"separates", d.next.separates}, {"expected_gain", d.next.expected_gain}}},
         {"notes", d.notes}};
+    if (!d.own_effects.empty()) out["own_effects"] = d.own_effects;
+    return out;
 }
 
 /// Writes beside `path` and renames: a reader sees the old file or the whole new one. Throws bad_input.

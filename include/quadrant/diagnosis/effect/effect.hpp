@@ -21,7 +21,8 @@ struct key_value {
     std::vector<double> values; ///< one, or one a harmonic
 };
 
-/// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp.
+/// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp; a user's own needs neither
+/// (own_effect.hpp).
 struct effect {
     std::string_view name, box;
     std::string_view exciting_motion; ///< what motion shows it
