@@ -95,16 +95,28 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
     ordered_json axes = ordered_json::object(), causes = ordered_json::array();
     for (const auto& a : d.axes) axes[a.name] = detail::axis_json(a);
     for (const auto& c : d.causes) causes.push_back(detail::cause_json(c));
-    return {
-        {"schema", "quadrant.diagnosis/1"},
-        {"verdict", name_of(d.verdict)},
-        {"axes", axes},
-        {"causes", causes},
-        {"remaining",
-         {{"share_of_gap_unexplained", d.share_unexplained}, {"structure", d.remaining_structure}}},
-        {"next_experiment",
-         {{"motion", d.next.motion}, {"separates", d.next.separates}, {"expected_gain", d.next.expected_gain}}},
-        {"notes", d.notes}};
+    return {{"schema", "quadrant.diagnosis/1"},
+            {"verdict", name_of(d.verdict)},
+            {"axes", axes},
+            {"causes", causes},
+            {"remaining",
+             {{"share_of_gap_unexplained", d.share_unexplained}, {"structure", d.remaining_structure}}},
+            {"next_experiment",
+             {{"motion", d.next.motion},
+              {"separates", d.next.separates},
+              {"expected_gain", d.next.expected_gain},
+              {"gain_of_log", d.next.gain_of_log},
+              {"finding", d.next.finding},
+              {"axis", d.next.axis}}},
+            {"notes", d.notes}};
+}
+
+/// The reference of the next experiment as a log's first columns (CSV), for the machine to drive.
+inline std::string reference_csv(const experiment& e) {
+    std::string out = fmt::format("t_s,{}_ref_m\n", e.axis);
+    for (std::size_t k = 0; k < e.reference.size(); ++k)
+        out += fmt::format("{:.9g},{:.12f}\n", static_cast<double>(k) * e.period_s, e.reference[k]);
+    return out;
 }
 
 /// Writes beside `path` and renames: a reader sees the old file or the whole new one. Throws bad_input.
