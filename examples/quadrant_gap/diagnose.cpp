@@ -19,7 +19,7 @@ namespace quadrant_gap {
 namespace {
 
 struct diagnose_options {
-    std::string machine, log, holdout, json, report;
+    std::string machine, log, holdout, json, report, next_motion;
     std::size_t threads = 0;
     bool fast = false;
     terminal say;
@@ -70,7 +70,11 @@ void run(const diagnose_options& o) {
         write_aside(o.json,
                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.report.empty()) write_aside(o.report, html_report(result));
+    if (!o.next_motion.empty() && !result.next.reference.empty())
+        write_aside(o.next_motion, reference_csv(result.next));
     if (!o.say.quiet) std::fputs(summary(result).c_str(), stdout);
+    if (!o.next_motion.empty() && result.next.reference.empty() && !o.say.quiet)
+        std::printf("Note: no motion was found to propose: %s is not written\n", o.next_motion.c_str());
 }
 
 } // namespace
@@ -86,6 +90,9 @@ void add_diagnose(CLI::App& app) {
                         "log of another motion of the same machine, to judge the forecast on");
     command->add_option("--json", o->json, "write the diagnosis (JSON)");
     command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    command->add_option("--next-motion", o->next_motion,
+                        "write the reference of the next experiment (CSV: time, position), if one is proposed: "
+                        "no further, faster or stronger than the log");
     command->add_option("--threads", o->threads,
                         "at most; 0: as many as there are cores. The answer is the same");
     command->add_flag("--fast", o->fast,

@@ -29,8 +29,8 @@ inline std::string html_report(const diagnosis_result& d) {
          {std::pair{"Machine", d.machine_file}, {"Log", d.log_file}, {"Hold-out log", d.holdout_file}})
         if (!file.empty()) files += fmt::format("<dt>{}</dt><dd>{}</dd>", name, escape(file));
     const bool gap = d.verdict > verdict::within_tolerance;
-    const std::string separates =
-        d.next.separates.empty() ? "" : fmt::format("It separates {}.", named(d.next.separates, "and"));
+    std::string next = paragraph(capital(d.next.motion));
+    for (const std::string& line : experiment_lines(d.next)) next += paragraph(line);
     return report_page(
         {{"title", escape(d.log_file + " against " + d.machine_file)},
          {"badge", badge(d.verdict)},
@@ -40,9 +40,9 @@ inline std::string html_report(const diagnosis_result& d) {
          {"remaining", gap ? paragraph(percent(d.share_unexplained) + " of the gap stays unexplained.") +
                                  paragraph(d.remaining_structure)
                            : "<p class=\"empty\">Nothing that matters.</p>"},
-         {"next", d.next.motion.empty()
-                      ? "<p class=\"empty\">None is needed.</p>"
-                      : paragraph(d.next.motion) + paragraph(separates) + paragraph(experiment_gain(d.next))},
+         {"next", !d.next.motion.empty() ? next
+                  : gap                  ? "<p class=\"empty\">None is proposed.</p>"
+                                         : "<p class=\"empty\">None is needed.</p>"},
          {"axes", charts},
          {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
          {"files", "<dl>" + files + "</dl>"},

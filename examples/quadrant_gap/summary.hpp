@@ -104,10 +104,9 @@ inline std::string summary(const diagnosis_result& d) {
                 wrapped(d.remaining_structure, 2) + "\n";
     }
     if (!d.next.motion.empty()) {
-        text += "Next experiment\n" + wrapped(d.next.motion, 2);
-        if (!d.next.separates.empty())
-            text += wrapped("It separates " + named(d.next.separates, "and") + ".", 2);
-        text += wrapped(experiment_gain(d.next), 2) + "\n";
+        text += "Next experiment\n" + wrapped(capital(d.next.motion), 2);
+        for (const std::string& line : experiment_lines(d.next)) text += wrapped(line, 2);
+        text += "\n";
     }
     for (const std::string& note : d.notes) text += wrapped("Note: " + note, 0);
     return text;

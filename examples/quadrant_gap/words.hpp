@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "quadrant/diagnosis/result.hpp"
+#include "quadrant/diagnosis/rules.hpp"
 
 /// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
 namespace quadrant_gap {
@@ -299,9 +300,20 @@ inline std::string verdict_sentence(const diagnosis_result& d) {
 
 inline std::string experiment_gain(const experiment& e) {
     if (e.expected_gain <= 0) return "";
-    return fmt::format("Expected to separate them by a log-score of {}, odds of {} to 1.",
-                       number(e.expected_gain),
-                       e.expected_gain > 7 ? "more than 1000" : fixed(std::exp(e.expected_gain), 0));
+    const double score = e.expected_gain / rules().temperature; // as the probabilities are weighed
+    return fmt::format("Expected to separate them by a log-score of {} or more, odds of {} to 1.",
+                       number(e.expected_gain), score > 7 ? "more than 1000" : number(std::exp(score)));
+}
+
+/// What is said below the motion, a sentence a line.
+inline std::vector<std::string> experiment_lines(const experiment& e) {
+    std::vector<std::string> out;
+    if (!e.separates.empty() && !e.motion.starts_with("none"))
+        out.push_back(fmt::format("{} {}{}.", e.expected_gain > 0 ? "It separates" : "It is meant to separate",
+                                  named(e.separates, "and"), e.axis.empty() ? "" : ", axis " + e.axis));
+    if (e.expected_gain > 0) out.push_back(experiment_gain(e));
+    if (!e.finding.empty()) out.push_back(capital(e.finding) + ".");
+    return out;
 }
 
 inline bool closed_loop(const axis_result& a) { return !a.signals.simulated_position_before.empty(); }

@@ -31,6 +31,55 @@ TEST_CASE("diagnose: a constant force, and its second reading") {
     named(d, "constant_force", "constant_force_N", 25, 0.03);
     // Coulomb friction that differs by direction is the same model (gap/FORMAT.md), and is said to be.
     CHECK(d.causes.front().confusable_with == std::vector<std::string>{"asymmetric_friction"});
+    // No motion is proposed for one model under two names.
+    CHECK(d.next.motion == "none: no motion of this axis tells constant_force and asymmetric_friction apart");
+    CHECK(d.next.finding.find("known equivalence") != std::string::npos);
+    CHECK(d.next.expected_gain == 0);
+    CHECK(d.next.reference.empty());
+}
+// Swings of one frequency under noise: a lag and a delay are one signal. The machine is that of the other simulator.
+TEST_CASE(
+    "diagnose: the next experiment names what the log could not, by at least the gain that was forecast") {
+    machine real;
+    auto file = described(real);
+    file.excluded_effects = {"stribeck_friction",
+                             "presliding_friction",
+                             "position_dependent_friction",
+                             "friction_drift",
+                             "backlash",
+                             "structural_resonance",
+                             "cogging",
+                             "force_ripple",
+                             "encoder_cyclic_error",
+                             "cutting_force",
+                             "sample_loss"}; // time
+    real.lag = 0.001;
+    real.noise = 5e-7;
+    std::vector<double> swings;
+    for (int k = 0; k < 5000; ++k)
+        swings.push_back(
+            0.02 * (1 - std::cos(2 * std::numbers::pi * std::max(0.0, 2 * (k - 200) * workshop::period))));
+    const auto before = diagnose(file, as_log(run(real, 2.5, 3, swings)));
+    REQUIRE(!before.causes.empty());
+    CHECK(before.causes[0].group_probability > 0.9);
+    CHECK(before.causes[0].probability < 0.8);
+    const experiment& next = before.next;
+    REQUIRE(next.separates.size() == 2);
+    CHECK(next.axis == "x");
+    CHECK(next.gain_of_log < 15);
+    CHECK(next.expected_gain > 30);
+    CHECK(next.motion.starts_with("multi-sine"));
+
+    const auto seconds = static_cast<double>(next.reference.size()) * workshop::period;
+    const auto log = run(real, seconds, 4, next.reference);
+    const auto after = diagnose(file, as_log(log));
+    named(after, "actuator_lag", "actuator.lag_s", 0.001, 0.1);
+    CHECK(after.causes[0].confusable_with.empty());
+    const auto record = prepare(log, workshop::period, workshop::count);
+    const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
+    const double kept = models.with({&suspect::actuator_lag}).total - models.with({&suspect::time_delay}).total;
+    CAPTURE(next.expected_gain);
+    CHECK(kept > 0.7 * next.expected_gain);
 }
 TEST_CASE("diagnose: another controller, by replay, with its key") {
     machine real;

@@ -89,8 +89,9 @@ inline double motion(double t) {
 
 inline constexpr double three_strokes = 2.95, strokes = 4.15; ///< of motion(), where the rest is not needed [s]
 
-/// The log of a machine that follows motion() under its controller.
-inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15, unsigned seed = 1) {
+/// The log of a machine that follows motion() under its controller, or a reference of one position a row.
+inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15, unsigned seed = 1,
+                                         const std::vector<double>& reference = {}) {
     quadrant::diagnosis::axis_log log;
     log.name = "x";
     std::mt19937 random(seed);
@@ -101,7 +102,8 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
     double estimate = 0, y1 = 0, integral = 0, r1 = 0, v1 = 0;
     std::vector<double> commands;
     for (std::size_t k = 0; k < static_cast<std::size_t>(seconds / period); ++k) {
-        const double r = std::round(motion(static_cast<double>(k) * period) * 1e12) / 1e12;
+        const double asked = reference.empty() ? motion(static_cast<double>(k) * period) : reference[k];
+        const double r = std::round(asked * 1e12) / 1e12;
         const double seen = m.backlash > 0 ? load : x;
         const double y = std::round((seen + m.cyclic * std::sin(2 * std::numbers::pi * seen / m.cyclic_period) +
                                      (k > 0 ? noise(random) : 0)) /

@@ -16,7 +16,9 @@ diagnosis_result one_cause() {
     d.verdict = verdict::explained;
     d.share_unexplained = 0.125;
     d.remaining_structure = "nothing";
-    d.next = {"Move slowly.", {"mass", "force_constant"}, 1.5};
+    d.next = {"Move slowly.", {"mass", "force_constant"}, 1.5, 0.25, "simulated", "x"};
+    d.next.period_s = 0.5;
+    d.next.reference = {0.1, 0.125};
     d.notes = {"a note"};
     axis_result a;
     a.name = "x";
@@ -186,12 +188,19 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
    "mass",
    "force_constant"
   ],
-  "expected_gain": 1.5
+  "expected_gain": 1.5,
+  "gain_of_log": 0.25,
+  "finding": "simulated",
+  "axis": "x"
  },
  "notes": [
   "a note"
  ]
 })");
+}
+
+TEST_CASE("reference_csv: time and position of the axis that moves, as in a log") {
+    CHECK(reference_csv(one_cause().next) == "t_s,x_ref_m\n0,0.100000000000\n0.5,0.125000000000\n");
 }
 
 TEST_CASE("to_json: the same diagnosis gives the same bytes") {

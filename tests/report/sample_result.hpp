@@ -85,7 +85,9 @@ inline diagnosis_result explained() {
     d.next = {
         "Reverse slowly ten times within 1 mm, at 0.5 mm/s, and once with the axis turned by 180 degrees.",
         {"constant_force", "asymmetric_friction"},
-        4.2};
+        21,
+        1.25,
+        "simulated beforehand"};
     axis_result a;
     a.name = "x";
     a.verdict = verdict::explained;

@@ -20,6 +20,9 @@ struct rival {
 
 inline double square(double x) { return x * x; }
 
+/// Two that are one model (gap/FORMAT.md) stay one name while their predictions differ by less than this share in energy.
+inline constexpr double alike = 0.2;
+
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
 /// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A hold-out log counts as it
 /// stands.
@@ -78,7 +81,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
-        const bool equivalent = r.name->name == own->equivalent && excess() < 0.2 * energy;
+        const bool equivalent = r.name->name == own->equivalent && excess() < alike * energy;
         if (within) r.weight = std::max(r.weight, std::exp(-excess() / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
@@ -145,8 +148,10 @@ inline void widen(std::vector<parameter_estimate>& mine, const std::vector<param
 
 } // namespace detail
 
-/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings.
-inline std::vector<cause> plant_causes(const axis_case& c) {
+/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings. `kept`: the
+/// models that each was weighed against.
+inline std::vector<cause> plant_causes(const axis_case& c,
+                                       std::vector<std::vector<detail::rival>>* kept = nullptr) {
     const auto& effects = c.best().effects;
     std::vector<std::vector<detail::rival>> rivals;
     for (std::size_t i = 0; i < effects.size(); ++i) rivals.push_back(detail::rivals_of(c, i));
@@ -187,6 +192,7 @@ inline std::vector<cause> plant_causes(const axis_case& c) {
         named.group_probability *= known;
         out.push_back(std::move(named));
     }
+    if (kept) *kept = std::move(rivals);
     return out;
 }
 

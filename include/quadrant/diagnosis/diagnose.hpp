@@ -7,6 +7,7 @@
 #include "effect_names.hpp"
 #include "how_far.hpp"
 #include "neighbour.hpp"
+#include "next_experiment.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -78,23 +79,11 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text;
 }
 
-/// The motion to record next: what separates the first group.
-inline void propose(diagnosis_result& out, const std::vector<cause>& causes) {
-    if (!out.next.motion.empty()) return;
-    for (const cause& x : causes)
-        if (!x.confusable_with.empty()) {
-            out.next.motion = x.exciting_motion;
-            out.next.separates = {x.effect};
-            out.next.separates.insert(out.next.separates.end(), x.confusable_with.begin(),
-                                      x.confusable_with.end());
-            return;
-        }
-}
-
 inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
-    auto causes = plant_causes(c);
+    std::vector<std::vector<rival>> rivals;
+    auto causes = plant_causes(c, &rivals);
     if (auto of_controller = controller_cause(c)) { // the first explains most
         const double command = rms(c.command_difference(c.log, *c.axis.controller));
         const bool first = command > rms(c.models.residual(c.models.given()));
@@ -114,7 +103,7 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         describe_rest(out, c, result, causes);
-        propose(out, causes);
+        propose(out, c, causes, rivals);
     }
     out.axes.push_back(std::move(result));
 }

@@ -30,6 +30,9 @@ public:
         const json_node next = top_.need("next_experiment").object();
         out.next = {next.need("motion").text(), words(next.need("separates")),
                     finite(next.need("expected_gain"))};
+        if (const auto gain = next.find("gain_of_log")) out.next.gain_of_log = finite(*gain);
+        if (const auto finding = next.find("finding")) out.next.finding = finding->text();
+        if (const auto axis = next.find("axis")) out.next.axis = axis->text();
         if (const auto notes = top_.find("notes")) out.notes = words(*notes);
         return out;
     }

@@ -95,10 +95,17 @@ struct axis_result {
     axis_signals signals;
 };
 
+/// The motion to record next. A log-score of `rules::margin` counts as told apart.
 struct experiment {
-    std::string motion;
+    std::string motion; ///< in words, with its numbers; "none: ..." when no motion tells them apart
     std::vector<std::string> separates;
-    double expected_gain = 0; ///< log-score by which the motion would separate them; 0: not simulated
+    double expected_gain =
+        0; ///< log-score by which the motion would separate them, at least; 0: not simulated, or not at all
+    double gain_of_log = 0; ///< by which the log that was diagnosed does
+    std::string finding{};  ///< how the gain was found, or what is left if no motion separates them
+    std::string axis{};
+    double period_s = 0;             ///< of the reference below
+    std::vector<double> reference{}; ///< of the axis, one entry a sample [m]; empty: no motion was simulated
 };
 
 struct diagnosis_result {

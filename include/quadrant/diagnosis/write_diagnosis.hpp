@@ -103,9 +103,22 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
         {"remaining",
          {{"share_of_gap_unexplained", d.share_unexplained}, {"structure", d.remaining_structure}}},
         {"next_experiment",
-         {{"motion", d.next.motion}, {"separates", d.next.separates}, {"expected_gain", d.next.expected_gain}}},
+         {{"motion", d.next.motion},
+          {"separates", d.next.separates},
+          {"expected_gain", d.next.expected_gain},
+          {"gain_of_log", d.next.gain_of_log},
+          {"finding", d.next.finding},
+          {"axis", d.next.axis}}},
         {"notes", d.notes}};
     if (!d.own_effects.empty()) out["own_effects"] = d.own_effects;
+    return out;
+}
+
+/// The reference of the next experiment as a log's first columns (CSV), for the machine to drive.
+inline std::string reference_csv(const experiment& e) {
+    std::string out = fmt::format("t_s,{}_ref_m\n", e.axis);
+    for (std::size_t k = 0; k < e.reference.size(); ++k)
+        out += fmt::format("{:.9g},{:.12f}\n", static_cast<double>(k) * e.period_s, e.reference[k]);
     return out;
 }
 
