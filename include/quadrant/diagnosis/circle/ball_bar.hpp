@@ -10,6 +10,7 @@ namespace quadrant::diagnosis {
 
 struct circle_options {
     std::vector<std::string> excluded_effects{}; ///< of the machine file: what this machine cannot have
+    std::array<std::string, 2> axes{"x", "y"};   ///< what the first and second axis are called in the files
     double shortest_period = 0; ///< of a cyclic error that is sought [m]; 0: a hundredth of the largest radius
 };
 
@@ -43,7 +44,7 @@ public:
         }
         name_columns(fit);
         name_periodic(periodic, limits);
-        name_stick_slip(left, std::max(fit.floor, 0.0));
+        name_stick_slip(left, fit.floor);
         rank();
         double before = 0, after = 0;
         const auto setup = fit.left_of(cleaned, true);
@@ -55,6 +56,7 @@ public:
             }
         }
         out_.source = runs_[0].source;
+        out_.first_axis = options_.axes[0], out_.second_axis = options_.axes[1];
         out_.explained = before > 0 ? 1 - after / before : 0;
         notes();
         return std::move(out_);
@@ -209,6 +211,8 @@ private:
     }
 
     void notes() {
+        if (options_.axes != std::array<std::string, 2>{"x", "y"})
+            out_.notes.push_back(fmt::format("x stands for axis {}, y for axis {}.", options_.axes[0], options_.axes[1]));
         bool both[2] = {false, false};
         double slow = HUGE_VAL, fast = 0;
         for (const circle_run& r : runs_)

@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Jumps back and forth of one axis within 25 degrees after its reversals, of what is quicker than 3 degrees in what the other
-/// errors leave. A jump counts when it is eight times what is left 30 to 60 degrees from the reversals.
+/// Jumps back and forth of one axis within 25 degrees after its reversals, of what is quicker than 6 degrees in what the other
+/// errors leave. A jump counts when it is eight times the
+/// usual size of what is left more than 35 degrees from the reversals.
 struct stick_slip_found {
     double swings = 0; ///< a reversal, median
     double height = 0, error = 0; ///< of a swing, and its standard error
@@ -24,13 +25,14 @@ inline stick_slip_found stick_slip_of(const circle_run& r, const std::vector<dou
         return (sums[to] - sums[from]) / double(to - from);
     };
     std::vector<double> quick(n);
-    double squares = 0, count = 0;
+    std::vector<double> elsewhere;
     for (std::size_t k = 0; k < n; ++k) {
-        quick[k] = mean(k, 0.2 * degree) - mean(k, 3 * degree);
-        if (from_reversal(r.angle[k]) > 30 * degree) squares += quick[k] * quick[k], ++count;
+        quick[k] = mean(k, 0.2 * degree) - mean(k, 6 * degree);
+        if (from_reversal(r.angle[k]) > 35 * degree) elsewhere.push_back(std::abs(quick[k]));
     }
     stick_slip_found out;
-    out.threshold = 8 * std::sqrt(squares / std::max(1.0, count));
+    if (elsewhere.empty()) return out;
+    out.threshold = 8 * median(elsewhere) / 0.67;
     std::vector<double> swings, heights;
     const auto close = [&](double number) { swings.push_back(number); };
     double number = 0, low = 0, high = 0, last = HUGE_VAL;
