@@ -42,8 +42,8 @@ void run(const circle_command& o) {
             const auto [first, second] = circle_axes(log);
             const std::array<std::string, 2> names{first->name, second->name};
             if (k > 0 && names != options.axes)
-                throw bad_input(o.logs[k], fmt::format("moves axes {} and {}, the logs before it {} and {}", names[0],
-                                                       names[1], options.axes[0], options.axes[1]));
+                throw bad_input(o.logs[k], fmt::format("moves axes {} and {}, the logs before it {} and {}",
+                                                       names[0], names[1], options.axes[0], options.axes[1]));
             options.axes = names;
             more = find_circles(log, k);
         }
@@ -51,7 +51,8 @@ void run(const circle_command& o) {
     }
     const auto result = ball_bar(std::move(runs), options);
     if (!o.json.empty())
-        write_aside(o.json, to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        write_aside(o.json,
+                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.report.empty()) write_aside(o.report, circle::page(result));
     if (!o.say.quiet) std::fputs(circle::summary(result, o.say.verbose).c_str(), stdout);
 }
@@ -61,11 +62,14 @@ void run(const circle_command& o) {
 void add_circle(CLI::App& app) {
     const auto o = std::make_shared<circle_command>();
     auto* command = app.add_subcommand("circle", "circles of two axes, diagnosed as a ball-bar would");
-    command->add_option("--log", o->logs, "servo log (CSV) with circles, or the radius file of an instrument; several")
+    command
+        ->add_option("--log", o->logs,
+                     "servo log (CSV) with circles, or the radius file of an instrument; several")
         ->required();
     command->add_option("--machine", o->machine, "machine file (JSON): its excluded effects are not blamed");
-    command->add_option("--shortest-period", o->shortest_mm,
-                        "of a cyclic error that is sought, in mm; default a hundredth of the largest radius")
+    command
+        ->add_option("--shortest-period", o->shortest_mm,
+                     "of a cyclic error that is sought, in mm; default a hundredth of the largest radius")
         ->check(CLI::PositiveNumber);
     command->add_option("--json", o->json, "write the errors (JSON)");
     command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");

@@ -20,31 +20,39 @@ inline std::string bars(const circle_result& r) {
     if (found.empty()) return "<p class=\"empty\">No error of the list is above its detection limit.</p>\n";
     std::string rows, remarks_of_all;
     for (const circle_error* e : found)
-        rows += fmt::format("<dt>{}</dt><dd><span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span></dd><dd>{}, {}</dd>\n",
-                            escape(claim(*e)), 100 * e->circularity / found[0]->circularity,
-                            escape(micrometres(e->circularity)), escape(percent(e->share)));
+        rows += fmt::format(
+            "<dt>{}</dt><dd><span class=\"bar\"><i style=\"width:{:.1f}%\"></i></span></dd><dd>{}, {}</dd>\n",
+            escape(claim(*e)), 100 * e->circularity / found[0]->circularity,
+            escape(micrometres(e->circularity)), escape(percent(e->share)));
     for (const circle_error* e : found) {
-        remarks_of_all += fmt::format("<tr data-error=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span>", e->name,
-                                      escape(capital(claim(*e))));
+        remarks_of_all += fmt::format("<tr data-error=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span>",
+                                      e->name, escape(capital(claim(*e))));
         for (const std::string& line : remarks(*e)) remarks_of_all += "<small>" + escape(line) + "</small>";
         remarks_of_all += fmt::format("</th><td>{}</td></tr>\n", escape(value_text(*e)));
     }
     return "<dl class=\"shares\">" + rows +
-           "</dl>\n<p class=\"hint\">Circular error if that were the only one, and its share of their sum.</p>\n"
-           "<table><thead><tr><th scope=\"col\">Error</th><th scope=\"col\">Value with 95 % interval</th></tr></thead><tbody>\n" +
+           "</dl>\n<p class=\"hint\">Circular error if that were the only one, and its share of their "
+           "sum.</p>\n"
+           "<table><thead><tr><th scope=\"col\">Error</th><th scope=\"col\">Value with 95 % "
+           "interval</th></tr></thead><tbody>\n" +
            remarks_of_all + "</tbody></table>\n";
 }
 
 inline std::string runs(const circle_result& r) {
     std::string rows;
     for (const circle_run_result& k : r.runs)
-        rows += fmt::format("<tr><th scope=\"row\">{}<small>{}</small></th><td>{} mm/s</td><td>{} mm</td><td>{}</td><td>{}</td></tr>\n",
-                            direction(k.run), escape(k.run.file), number(1e3 * k.run.feed), number(1e3 * k.run.radius),
-                            escape(micrometres(k.circular_error)), escape(micrometres(k.remaining)));
-    return "<div class=\"wide\"><table><thead><tr><th scope=\"col\">Run</th><th scope=\"col\">Feed</th><th scope=\"col\">"
+        rows += fmt::format("<tr><th scope=\"row\">{}<small>{}</small></th><td>{} mm/s</td><td>{} "
+                            "mm</td><td>{}</td><td>{}</td></tr>\n",
+                            direction(k.run), escape(k.run.file), number(1e3 * k.run.feed),
+                            number(1e3 * k.run.radius), escape(micrometres(k.circular_error)),
+                            escape(micrometres(k.remaining)));
+    return "<div class=\"wide\"><table><thead><tr><th scope=\"col\">Run</th><th scope=\"col\">Feed</th><th "
+           "scope=\"col\">"
            "Radius</th><th scope=\"col\">G</th><th scope=\"col\">Left</th></tr></thead><tbody>\n" +
-           rows + "</tbody></table></div>\n<p class=\"hint\">G: least distance of two concentric circles that hold the run "
-                  "(ISO 230-4). Left: root mean square of what no error explains.</p>\n";
+           rows +
+           "</tbody></table></div>\n<p class=\"hint\">G: least distance of two concentric circles that hold "
+           "the run "
+           "(ISO 230-4). Left: root mean square of what no error explains.</p>\n";
 }
 
 inline constexpr std::string_view style = R"css(
@@ -70,27 +78,35 @@ inline std::string page(const circle_result& r) {
     std::string notes, body;
     for (const std::string& n : r.notes) notes += "<li>" + escape(n) + "</li>";
     const bool encoder = r.source == circle_source::encoder;
-    body += fmt::format("<header><p class=\"kind\">Circular test from {}, axes {} and {}</p>\n<h1>{}</h1></header>\n<main>\n",
-                        encoder ? "the encoders" : "an instrument", escape(r.first_axis), escape(r.second_axis),
-                        escape(sentence(r)));
-    body += "<section id=\"plots\"><h2>The circle</h2>\n<p class=\"key\"><b>Solid: counterclockwise.</b> <i>Dashed: "
+    body += fmt::format(
+        "<header><p class=\"kind\">Circular test from {}, axes {} and {}</p>\n<h1>{}</h1></header>\n<main>\n",
+        encoder ? "the encoders" : "an instrument", escape(r.first_axis), escape(r.second_axis),
+        escape(sentence(r)));
+    body += "<section id=\"plots\"><h2>The circle</h2>\n<p class=\"key\"><b>Solid: counterclockwise.</b> "
+            "<i>Dashed: "
             "clockwise.</i> Outward is larger.</p>\n<div class=\"polars\">" +
             polar_plots(r) + "</div></section>\n";
-    body += "<section id=\"errors\"><h2>What it is made of</h2>\n" + detail::bars(r) + "</section>\n<div class=\"pair\">\n";
+    body += "<section id=\"errors\"><h2>What it is made of</h2>\n" + detail::bars(r) +
+            "</section>\n<div class=\"pair\">\n";
     const std::string below = below_text(r);
     body += "<section id=\"below\"><h2>Looked for and not found</h2>\n" +
-            paragraphs(below.empty() ? std::vector<std::string>{} : std::vector<std::string>{below + "."}, "None.") +
+            paragraphs(below.empty() ? std::vector<std::string>{} : std::vector<std::string>{below + "."},
+                       "None.") +
             "<p class=\"hint\">In brackets: what these runs would have shown.</p></section>\n";
     auto open = inseparable_text(r);
     for (std::string& line : invisible_text(r)) open.push_back("Not visible to encoders: " + line);
-    body += "<section id=\"open\"><h2>What these runs cannot say</h2>\n" + paragraphs(open, "Nothing of the list.") +
-            "</section>\n</div>\n";
+    body += "<section id=\"open\"><h2>What these runs cannot say</h2>\n" +
+            paragraphs(open, "Nothing of the list.") + "</section>\n</div>\n";
     body += "<section id=\"runs\"><h2>Runs</h2>\n" + detail::runs(r) +
-            fmt::format("<p>The errors explain {} of the mean square of the radial deviation.</p>", percent(r.explained)) +
+            fmt::format("<p>The errors explain {} of the mean square of the radial deviation.</p>",
+                        percent(r.explained)) +
             "</section>\n<section id=\"notes\"><h2>Notes</h2>\n" +
-            (notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>") + "</section>\n</main>\n";
-    body += "<footer><p>Written by quadrant-gap circle. This file is complete: it loads nothing from the network.</p></footer>\n";
-    return quadrant_page::document("Circular test", joined(files::report_css) + std::string(detail::style), body);
+            (notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>") +
+            "</section>\n</main>\n";
+    body += "<footer><p>Written by quadrant-gap circle. This file is complete: it loads nothing from the "
+            "network.</p></footer>\n";
+    return quadrant_page::document("Circular test", joined(files::report_css) + std::string(detail::style),
+                                   body);
 }
 
 } // namespace quadrant_gap::circle

@@ -42,18 +42,22 @@ inline std::string polar_plot(const std::vector<const circle_run_result*>& runs,
     const double magnification = step / division / (zero / first.radius);
     const std::string title =
         fmt::format("{} mm at {} mm/s", number(1e3 * first.radius), number(1e3 * first.feed));
-    const std::string label = fmt::format("Radial deviation of the circle of {}, magnified {:.0f} times", title, magnification);
-    std::string svg = fmt::format("<svg viewBox=\"-300 -300 600 600\" role=\"img\" aria-label=\"{}\">\n", escape(label));
+    const std::string label =
+        fmt::format("Radial deviation of the circle of {}, magnified {:.0f} times", title, magnification);
+    std::string svg =
+        fmt::format("<svg viewBox=\"-300 -300 600 600\" role=\"img\" aria-label=\"{}\">\n", escape(label));
     for (const int ring : {-2, -1, 0, 1, 2})
-        svg += fmt::format("<circle class=\"ring{}\" r=\"{}\"/>", ring == 0 ? " nominal" : "", zero + ring * step);
+        svg +=
+            fmt::format("<circle class=\"ring{}\" r=\"{}\"/>", ring == 0 ? " nominal" : "", zero + ring * step);
     svg += "<path class=\"ring\" d=\"M-290 0H290M0 -290V290\"/>\n";
     for (const auto* k : runs) svg += path_of(*k, zero, step / division);
     for (const int ring : {-1, 1})
         svg += fmt::format("<text x=\"{0:.0f}\" y=\"{1:.0f}\">{2}</text>", 0.707 * (zero + ring * step),
                            -0.707 * (zero + ring * step), (ring > 0 ? "+" : "−") + micrometres(division));
     svg += "<text x=\"288\" y=\"-8\">x</text><text x=\"14\" y=\"-282\">y</text></svg>\n";
-    return fmt::format("<figure><h3>{}</h3><figcaption>A division is {}: magnified {:.0f} times.</figcaption>{}</figure>\n",
-                       escape(title), escape(micrometres(division)), magnification, svg);
+    return fmt::format(
+        "<figure><h3>{}</h3><figcaption>A division is {}: magnified {:.0f} times.</figcaption>{}</figure>\n",
+        escape(title), escape(micrometres(division)), magnification, svg);
 }
 
 } // namespace detail

@@ -33,14 +33,18 @@ inline std::string limit_text(const circle_error& e) {
     const auto [factor, unit] = shown(e.unit);
     return fmt::format("{} {}", number(factor * e.limit), unit);
 }
-inline std::string label(const circle_error& e) { return spaced(e.name) + (e.axis.empty() ? "" : " " + e.axis); }
+inline std::string label(const circle_error& e) {
+    return spaced(e.name) + (e.axis.empty() ? "" : " " + e.axis);
+}
 /// "squareness or servo mismatch" where the runs do not say which.
 inline std::string claim(const circle_error& e) {
     std::vector<std::string> names{label(e)};
     for (const std::string& other : e.together_with) names.push_back(spaced(other));
     return listed(names, "or");
 }
-inline std::string direction(const circle_run& r) { return r.counterclockwise ? "counterclockwise" : "clockwise"; }
+inline std::string direction(const circle_run& r) {
+    return r.counterclockwise ? "counterclockwise" : "clockwise";
+}
 
 inline std::vector<const circle_error*> with(const circle_result& r, circle_verdict v) {
     std::vector<const circle_error*> out;
@@ -81,7 +85,8 @@ inline std::vector<std::string> inseparable_text(const circle_result& r) {
     for (const circle_error* e : with(r, circle_verdict::not_separable)) {
         std::vector<std::string> others;
         for (const std::string& o : e->together_with) others.push_back(spaced(o));
-        lines.push_back(fmt::format("{} cannot be told from {}: {}.", capital(label(*e)), listed(others), e->needs));
+        lines.push_back(
+            fmt::format("{} cannot be told from {}: {}.", capital(label(*e)), listed(others), e->needs));
     }
     return lines;
 }
@@ -97,25 +102,27 @@ inline std::vector<std::string> remarks(const circle_error& e) {
     if (!e.reading.empty()) lines.push_back(capital(e.reading) + ".");
     if (e.name == "reversal_spikes")
         for (const circle_detail& d : e.details)
-            lines.push_back(fmt::format("{}: {}, {} wide.", d.what, micrometres(d.size.value), quantity(d.width_s, "s")));
+            lines.push_back(
+                fmt::format("{}: {}, {} wide.", d.what, micrometres(d.size.value), quantity(d.width_s, "s")));
     if (!e.effects.empty()) lines.push_back("In a machine file: " + named(e.effects, "or") + ".");
     return lines;
 }
 
 inline std::string summary(const circle_result& r, bool verbose) {
     std::string text = wrapped(sentence(r), 0) + "\n";
-    text += fmt::format("  {:<18}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "run", "feed", "radius", "G", "max", "min",
-                        "left");
+    text += fmt::format("  {:<18}{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "run", "feed", "radius", "G", "max",
+                        "min", "left");
     for (const circle_run_result& k : r.runs)
         text += fmt::format("  {:<18}{:>5} mm/s{:>9} mm", direction(k.run), number(1e3 * k.run.feed),
                             number(1e3 * k.run.radius)) +
                 fmt::format("{:>9} um{:>9} um{:>9} um{:>9} um\n", number(1e6 * k.circular_error),
                             number(1e6 * k.radial_max), number(1e6 * k.radial_min), number(1e6 * k.remaining));
     const auto found = with(r, circle_verdict::found);
-    if (!found.empty()) text += "\n  " + padded("error", 30) + padded("value (95 %)", 42) + padded("alone", 12) + "share\n";
+    if (!found.empty())
+        text += "\n  " + padded("error", 30) + padded("value (95 %)", 42) + padded("alone", 12) + "share\n";
     for (const circle_error* e : found) {
-        text += "  " + padded(label(*e), 30) + padded(value_text(*e), 42) + padded(micrometres(e->circularity), 12) +
-                percent(e->share) + "\n";
+        text += "  " + padded(label(*e), 30) + padded(value_text(*e), 42) +
+                padded(micrometres(e->circularity), 12) + percent(e->share) + "\n";
         if (!e->together_with.empty()) text += wrapped("or " + claim(*e).substr(label(*e).size() + 4), 4);
         if (verbose)
             for (const std::string& line : remarks(*e)) text += wrapped(line, 4);

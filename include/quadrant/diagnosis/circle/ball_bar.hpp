@@ -31,10 +31,12 @@ public:
         joint_fit fit(cleaned, groups_);
         std::vector<periodic_error> periodic;
         residuals left;
-        for (int round = 0; round < 3; ++round) { // what is periodic is in the way of the others, and they of it
+        for (int round = 0; round < 3;
+             ++round) { // what is periodic is in the way of the others, and they of it
             left = fit.left_of(runs_);
             cleaned = runs_;
-            periodic = take_periodic(cleaned, left, groups_.of_run, options_.shortest_period, fit.floor / 2, limits);
+            periodic =
+                take_periodic(cleaned, left, groups_.of_run, options_.shortest_period, fit.floor / 2, limits);
             if (periodic.empty() && round == 0) break;
             double largest = 0;
             for (const auto& p : periodic)
@@ -76,13 +78,16 @@ private:
         for (std::size_t c = 0; c < fit.columns.size(); ++c) {
             const auto& [p, k] = std::tie(fit.patterns[c], fit.columns[c]);
             if (p.of_setup || p.name == "reversal_spikes") continue;
-            circle_error e = named_error(p.name, p.axis, p.unit, options_.excluded_effects);
+            const bool lag = p.name == "backlash" && excluded("backlash"); // the same pattern by another name
+            circle_error e =
+                named_error(lag ? "reversal_lag" : p.name, p.axis, p.unit, options_.excluded_effects);
             e.verdict = k.verdict, e.limit = k.limit, e.value = interval_of(k.value, k.standard_error);
             e.circularity = std::abs(k.value) * k.circularity;
             for (const std::size_t other : k.together)
                 if (other != c)
-                    e.together_with.push_back(fit.patterns[other].name +
-                                              (fit.patterns[other].axis.empty() ? "" : " " + fit.patterns[other].axis));
+                    e.together_with.push_back(
+                        fit.patterns[other].name +
+                        (fit.patterns[other].axis.empty() ? "" : " " + fit.patterns[other].axis));
             if (p.name == "backlash") e.reading = reading_of_backlash();
             out_.errors.push_back(std::move(e));
         }
@@ -105,7 +110,8 @@ private:
         if (excluded("backlash"))
             return "play is excluded on this machine: friction that the position loop does not integrate away";
         if (runs_[0].source == circle_source::encoder)
-            return "play between drive and encoder, or friction that the position loop does not integrate away; play "
+            return "play between drive and encoder, or friction that the position loop does not integrate "
+                   "away; play "
                    "behind the encoder is not visible to it";
         return "play, or friction that the position loop does not integrate away";
     }
@@ -119,7 +125,7 @@ private:
             if (k.verdict != circle_verdict::found) continue;
             const circle_run& r = runs_[groups_.first_run[p.group]];
             e.details.push_back({fmt::format("{}{}, {}", axis, p.side > 0 ? "+" : "-", where(p.group)), r.feed,
-                                 r.radius, interval_of(k.value, k.standard_error), p.width_s});
+                                 r.radius, interval_of(k.value, k.standard_error, 0.15), p.width_s});
             if (std::abs(k.value) > std::abs(e.value.value)) e.value = e.details.back().size;
             e.verdict = circle_verdict::found;
         }
@@ -127,15 +133,19 @@ private:
         if (e.limit == HUGE_VAL) e.limit = 0;
         return e;
     }
-    static circle_number interval_of(double value, double standard_error) {
-        const double reach = std::hypot(1.96 * standard_error, 0.01 * value); // patterns are first order: 1 %
+    /// The patterns are first order: within 1 % of the loops that were tried. A spike's height depends on its shape: 15 %.
+    static circle_number interval_of(double value, double standard_error, double relative = 0.01) {
+        const double reach = std::hypot(1.96 * standard_error, relative * value);
         return {value, value - reach, value + reach};
     }
 
     void name_periodic(const std::vector<periodic_error>& found, const std::array<double, 3>& limits) {
         for (std::size_t k = 0; k < 3; ++k) {
-            circle_error e = named_error(k < 2 ? "cyclic_error" : "vibration", k == 0 ? "x" : k == 1 ? "y" : "", "m",
-                                         options_.excluded_effects);
+            circle_error e = named_error(k < 2 ? "cyclic_error" : "vibration",
+                                         k == 0   ? "x"
+                                         : k == 1 ? "y"
+                                                  : "",
+                                         "m", options_.excluded_effects);
             e.limit = limits[k];
             const auto p = std::find_if(found.begin(), found.end(), [&](const periodic_error& f) {
                 return k < 2 ? f.axis == int(k) : f.axis >= 10;
@@ -151,8 +161,9 @@ private:
         double least = HUGE_VAL;
         for (std::size_t j = 0; j < runs_.size(); ++j) {
             const auto size = interval_of(p.amplitude[j], p.error[j]);
-            e.details.push_back({where(groups_.of_run[j]) + (runs_[j].counterclockwise ? ", counterclockwise" : ", clockwise"),
-                                 runs_[j].feed, runs_[j].radius, size});
+            e.details.push_back(
+                {where(groups_.of_run[j]) + (runs_[j].counterclockwise ? ", counterclockwise" : ", clockwise"),
+                 runs_[j].feed, runs_[j].radius, size});
             if (size.value > e.value.value) e.value = size;
             least = std::min(least, size.value);
         }
@@ -162,11 +173,12 @@ private:
             return;
         }
         const bool fixed = p.common > 0.8, many = groups_.first_run.size() > 1 || runs_.size() > 1;
-        e.reading = fmt::format("period {:.4g} mm along the axis, {}", 1e3 * p.period,
-                                !many   ? "one run only: whether it follows the feed is not known"
-                                : fixed ? "the same in all runs: an encoder's or a screw's"
-                                        : "differs between the runs: a force such as cogging, or an encoder's seen "
-                                          "through its own loop");
+        e.reading =
+            fmt::format("period {:.4g} mm along the axis, {}", 1e3 * p.period,
+                        !many   ? "one run only: whether it follows the feed is not known"
+                        : fixed ? "the same in all runs: an encoder's or a screw's"
+                                : "differs between the runs: a force such as cogging, or an encoder's seen "
+                                  "through its own loop");
         if (!fixed || !many) return;
         std::erase(e.effects, "cogging"), std::erase(e.effects, "force_ripple");
     }
@@ -205,30 +217,35 @@ private:
             sum += e.circularity;
         }
         for (circle_error& e : out_.errors) e.share = sum > 0 ? e.circularity / sum : 0;
-        std::stable_sort(out_.errors.begin(), out_.errors.end(), [](const circle_error& a, const circle_error& b) {
-            return std::pair(a.verdict, -a.circularity) < std::pair(b.verdict, -b.circularity);
-        });
+        std::stable_sort(out_.errors.begin(), out_.errors.end(),
+                         [](const circle_error& a, const circle_error& b) {
+                             return std::pair(a.verdict, -a.circularity) < std::pair(b.verdict, -b.circularity);
+                         });
     }
 
     void notes() {
         if (options_.axes != std::array<std::string, 2>{"x", "y"})
-            out_.notes.push_back(fmt::format("x stands for axis {}, y for axis {}.", options_.axes[0], options_.axes[1]));
+            out_.notes.push_back(
+                fmt::format("x stands for axis {}, y for axis {}.", options_.axes[0], options_.axes[1]));
         bool both[2] = {false, false};
         double slow = HUGE_VAL, fast = 0;
         for (const circle_run& r : runs_)
             both[r.counterclockwise] = true, slow = std::min(slow, r.feed), fast = std::max(fast, r.feed);
         if (!both[0] || !both[1])
-            out_.notes.push_back(fmt::format("All runs go {}: what differs by direction is told by the feed or not at "
-                                             "all. Run the other way round too.",
-                                             both[1] ? "counterclockwise" : "clockwise"));
+            out_.notes.push_back(
+                fmt::format("All runs go {}: what differs by direction is told by the feed or not at "
+                            "all. Run the other way round too.",
+                            both[1] ? "counterclockwise" : "clockwise"));
         if (fast < 1.2 * slow)
-            out_.notes.push_back("One feed: what follows the feed (radius, amplitude) is not told from what does not. "
-                                 "Run at half or twice the feed too.");
+            out_.notes.push_back(
+                "One feed: what follows the feed (radius, amplitude) is not told from what does not. "
+                "Run at half or twice the feed too.");
         if (groups_.radii.size() < 2)
             out_.notes.push_back("One radius: whether radius and spikes follow v^2/R is assumed, not seen.");
         if (runs_[0].source == circle_source::encoder)
-            out_.notes.push_back("Encoders see neither squareness, scale, straightness nor what lies behind them: a "
-                                 "ball-bar or a grid plate does, a laser says the scale of each axis.");
+            out_.notes.push_back(
+                "Encoders see neither squareness, scale, straightness nor what lies behind them: a "
+                "ball-bar or a grid plate does, a laser says the scale of each axis.");
     }
 
     circle_options options_;

@@ -73,7 +73,8 @@ private:
             if (k + window > end || window < 8) return;
             followed_circle c = circle_through(x_, y_, k, k + window);
             const auto on = [&](std::size_t i) {
-                return std::abs(std::hypot(x_[i] - c.x, y_[i] - c.y) - c.radius) < 2e-4 * c.radius + 4 * written_;
+                return std::abs(std::hypot(x_[i] - c.x, y_[i] - c.y) - c.radius) <
+                       2e-4 * c.radius + 4 * written_;
             };
             const bool whole = on(k) && on(k + window / 2) && on(k + window - 1);
             while (whole && c.last < end && on(c.last)) ++c.last;
@@ -137,8 +138,8 @@ inline std::vector<circle_run> find_circles(const machine_log& log, std::size_t 
         runs.push_back(std::move(r));
     }
     if (runs.empty())
-        throw bad_input(log.file, fmt::format("axes {} and {} follow no whole circle at constant feed", x->name,
-                                              y->name));
+        throw bad_input(
+            log.file, fmt::format("axes {} and {} follow no whole circle at constant feed", x->name, y->name));
     return runs;
 }
 

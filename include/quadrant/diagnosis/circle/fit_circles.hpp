@@ -12,26 +12,28 @@ struct circle_bin {
     double deviation, weight;
 };
 
-/// 0.25 degrees a bin. What lies within 5 degrees of a reversal counts a tenth: it says how high a spike is, but not much about
-/// the form of the circle (the rule of ball-bar evaluation is to leave it out).
+/// A degree a bin, near reversals a quarter. What lies within 5 degrees of a reversal counts a tenth: it says how high a spike is,
+/// but not much about the form of the circle (ball-bar evaluation leaves it out for that).
 inline std::vector<circle_bin> binned(const std::vector<circle_run>& runs) {
-    constexpr double width = two_pi / 1440, near = 5 * std::numbers::pi / 180;
+    constexpr double degree = std::numbers::pi / 180, fine = degree / 4, near = 15 * degree, at = 5 * degree;
+    const auto bin_of = [](double angle) {
+        return from_reversal(angle) < near ? std::floor(angle / fine) : 1e7 + std::floor(angle / degree);
+    };
     std::vector<circle_bin> bins;
     for (std::size_t j = 0; j < runs.size(); ++j) {
         const circle_run& r = runs[j];
-        double angle = 0, deviation = 0, count = 0;
-        auto bin = std::floor(r.angle.empty() ? 0 : r.angle[0] / width);
+        double angle = 0, deviation = 0, count = 0, bin = bin_of(r.angle[0]);
         const auto close = [&] {
-            if (count == 0) return;
-            const double mean = angle / count;
+            const double mean = angle / count, from = from_reversal(mean);
             bins.push_back({{mean, r.feed, r.radius, r.turning(), j, r.log},
                             deviation / count,
-                            from_reversal(mean) < near ? 0.1 : 1.0});
+                            from < at     ? 0.1
+                            : from < near ? 1.0
+                                          : 4.0});
             angle = deviation = count = 0;
         };
         for (std::size_t k = 0; k < r.angle.size(); ++k) {
-            const double now = std::floor(r.angle[k] / width);
-            if (now != bin) close(), bin = now;
+            if (const double now = bin_of(r.angle[k]); now != bin) close(), bin = now;
             angle += r.angle[k], deviation += r.deviation[k], ++count;
         }
         close();
@@ -47,11 +49,19 @@ public:
         const auto n = static_cast<Eigen::Index>(bins.size());
         a_.resize(n, columns_);
         b_.resize(n);
+        range_ = largest_ = Eigen::VectorXd::Zero(columns_);
+        Eigen::VectorXd low(columns_), high(columns_);
         for (Eigen::Index i = 0; i < n; ++i) {
             const circle_bin& bin = bins[static_cast<std::size_t>(i)];
             const double w = std::sqrt(bin.weight);
-            for (Eigen::Index c = 0; c < columns_; ++c)
-                a_(i, c) = w * patterns[static_cast<std::size_t>(c)].of(bin.at);
+            const bool first = i == 0 || bins[static_cast<std::size_t>(i - 1)].at.run != bin.at.run;
+            for (Eigen::Index c = 0; c < columns_; ++c) {
+                const double v = patterns[static_cast<std::size_t>(c)].of(bin.at);
+                a_(i, c) = w * v;
+                low(c) = first ? v : std::min(low(c), v), high(c) = first ? v : std::max(high(c), v);
+                range_(c) = std::max(range_(c), high(c) - low(c));
+                largest_(c) = std::max(largest_(c), std::abs(v));
+            }
             b_(i) = w * bin.deviation;
         }
         norm_ = a_.colwise().norm().cwiseMax(1e-300);
@@ -61,6 +71,11 @@ public:
         used_.assign(patterns.size(), false);
     }
 
+    /// Circular error that a coefficient of 1 leaves in the worst run; of what is constant along the circle its largest value.
+    double circularity(std::size_t c) const {
+        const auto k = static_cast<Eigen::Index>(c);
+        return range_(k) > 0 ? range_(k) : largest_(k);
+    }
     bool used(std::size_t c) const { return used_[c]; }
     void use(std::size_t c, bool yes) { used_[c] = yes; }
 
@@ -111,15 +126,16 @@ private:
             if (used_[c]) in.push_back(static_cast<Eigen::Index>(c));
         return in;
     }
-    /// By how much neighbours that err alike widen a variance: 1 + 2 sum of the residual's correlations within 15 degrees.
+    /// By how much neighbours that err alike widen a variance: 1 + 2 sum of the residual's correlations within 30 bins.
     double correlation() const {
-        constexpr Eigen::Index reach = 60;
+        constexpr Eigen::Index reach = 30;
         const double power = residual_.squaredNorm();
         double sum = 1;
         for (Eigen::Index lag = 1; lag <= reach && power > 0; ++lag) {
             double product = 0;
             for (Eigen::Index i = lag; i < residual_.size(); ++i)
-                if (bins_[static_cast<std::size_t>(i)].at.run == bins_[static_cast<std::size_t>(i - lag)].at.run)
+                if (bins_[static_cast<std::size_t>(i)].at.run ==
+                    bins_[static_cast<std::size_t>(i - lag)].at.run)
                     product += residual_(i) * residual_(i - lag);
             sum += 2 * (1 - double(lag) / (reach + 1)) * product / power;
         }
@@ -129,7 +145,7 @@ private:
     const std::vector<circle_bin>& bins_;
     Eigen::Index columns_;
     Eigen::MatrixXd a_, gram_;
-    Eigen::VectorXd b_, right_, norm_, value_, error_, residual_;
+    Eigen::VectorXd b_, right_, norm_, range_, largest_, value_, error_, residual_;
     double correlation_ = 1;
     std::vector<bool> used_;
 };

@@ -3,8 +3,6 @@
 #include "periodic.hpp"
 #include "spikes.hpp"
 
-#include <map>
-
 namespace quadrant::diagnosis::detail {
 
 /// Runs of the same feed (within 5 %) and radius.
@@ -42,12 +40,14 @@ public:
     joint_fit(const std::vector<circle_run>& runs, const circle_groups& groups, double least = 0)
         : runs_(&runs), least_(least) {
         const auto bins = binned(runs);
+        for (const circle_run& r : runs) least_ = std::max({least_, 0.1 * r.resolution, 1e-9});
         std::array<double, 2> play{};
         for (int round = 0; round < 3; ++round) { // the step of a play is as wide as the play
             fit(bins, groups, play);
             std::array<double, 2> now{};
             for (std::size_t c = 0; c < columns.size(); ++c)
-                if (patterns[c].name == "backlash") now[patterns[c].axis == "y"] = std::max(0.0, columns[c].value);
+                if (patterns[c].name == "backlash")
+                    now[patterns[c].axis == "y"] = std::max(0.0, columns[c].value);
             if (now == std::array<double, 2>{}) break;
             play = now;
         }
@@ -57,7 +57,8 @@ public:
     double model(const circle_point& p, bool machine = false) const {
         double sum = 0;
         for (std::size_t c = 0; c < columns.size(); ++c)
-            if (columns[c].value != 0 && !(machine && patterns[c].of_setup)) sum += columns[c].value * patterns[c].of(p);
+            if (columns[c].value != 0 && !(machine && patterns[c].of_setup))
+                sum += columns[c].value * patterns[c].of(p);
         return sum;
     }
     residuals left_of(const std::vector<circle_run>& runs, bool machine = false) const {
@@ -74,13 +75,15 @@ public:
 
     std::vector<circle_pattern> patterns;
     std::vector<column> columns;
-    double floor = 0; ///< the patterns are first order: what is below this of the radius is not told from their rest [m]
+    /// What is not found below [m]: a tenth of the resolution, and the second order of the largest error's pattern.
+    double floor = 0;
 
 private:
     static constexpr double sigmas = 4; ///< of some twenty errors none by chance
     static constexpr double of_largest = 0.015;
 
-    void fit(const std::vector<circle_bin>& bins, const circle_groups& groups, const std::array<double, 2>& play) {
+    void fit(const std::vector<circle_bin>& bins, const circle_groups& groups,
+             const std::array<double, 2>& play) {
         const auto& runs = *runs_;
         std::size_t logs = 0;
         for (const circle_run& r : runs) logs = std::max(logs, r.log + 1);
@@ -95,9 +98,9 @@ private:
             }
         for (const int axis : {0, 1}) patterns.push_back(backlash_pattern(axis, play[std::size_t(axis)]));
         columns.assign(patterns.size(), {});
-        circularities(bins);
         circle_fit all(bins, patterns);
         for (std::size_t c = 0; c < columns.size(); ++c) {
+            columns[c].circularity = all.circularity(c);
             columns[c].together = all.take_or_name(c);
             if (columns[c].together.empty()) continue;
             columns[c].verdict =
@@ -110,21 +113,6 @@ private:
                 columns[c].value = all.value(c), columns[c].standard_error = all.standard_error(c);
                 if (!patterns[c].of_setup) columns[c].verdict = circle_verdict::found;
             }
-    }
-    void circularities(const std::vector<circle_bin>& bins) {
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            std::map<std::size_t, std::pair<double, double>> range;
-            for (const circle_bin& b : bins) {
-                const double v = patterns[c].of(b.at);
-                auto& r = range.try_emplace(b.at.run, v, v).first->second;
-                r = {std::min(r.first, v), std::max(r.second, v)};
-            }
-            for (const auto& [run, r] : range) {
-                const double both = r.second - r.first;
-                const bool constant = patterns[c].name == "radius_change" || patterns[c].name == "length";
-                columns[c].circularity = std::max(columns[c].circularity, constant ? std::abs(r.second) : both);
-            }
-        }
     }
     double limit(const circle_fit& fit, std::size_t c) const {
         return std::max(sigmas * fit.standard_error(c), floor / columns[c].circularity);
@@ -151,7 +139,8 @@ private:
             weaker = weakest < columns.size();
             if (weaker) fit.use(weakest, false);
         }
-        for (int round = 0; round < 6; ++round) { // what was taken out while a stronger one was in may be needed after all
+        for (int round = 0; round < 6;
+             ++round) { // what was taken out beside a stronger one may be needed after all
             double most = 1;
             std::size_t strongest = columns.size();
             for (std::size_t c = 0; c < columns.size(); ++c)

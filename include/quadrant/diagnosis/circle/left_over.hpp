@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../analysis/circle_fit.hpp"
-#include "periodic.hpp"
+#include "cyclic.hpp"
+#include "vibration.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -22,7 +23,8 @@ inline circle_run_result measured(const circle_run& run, const std::vector<doubl
     const bool about_fitted = run.source == circle_source::instrument;
     out.radial_max = -HUGE_VAL, out.radial_min = HUGE_VAL;
     for (std::size_t k = 0; k < x.size(); ++k) {
-        const double d = about_fitted ? std::hypot(x[k] - fitted[0], y[k] - fitted[1]) - run.radius : run.deviation[k];
+        const double d =
+            about_fitted ? std::hypot(x[k] - fitted[0], y[k] - fitted[1]) - run.radius : run.deviation[k];
         out.radial_max = std::max(out.radial_max, d), out.radial_min = std::min(out.radial_min, d);
         out.remaining += left[k] * left[k] / double(x.size());
         out.model.push_back(run.deviation[k] - left[k]);
@@ -44,8 +46,11 @@ inline std::vector<periodic_error> take_periodic(std::vector<circle_run>& runs, 
         std::size_t best = 3;
         for (std::size_t k = 0; k < 3; ++k) {
             limits[k] = std::max(sought[k].threshold, floor);
-            const double most = sought[k].amplitude.empty() ? 0 : *std::max_element(sought[k].amplitude.begin(), sought[k].amplitude.end());
-            if (sought[k].there && most > limits[k] && !taken[k] && (best == 3 || sought[k].energy > sought[best].energy))
+            const double most = sought[k].amplitude.empty()
+                                    ? 0
+                                    : *std::max_element(sought[k].amplitude.begin(), sought[k].amplitude.end());
+            if (sought[k].there && most > limits[k] && !taken[k] &&
+                (best == 3 || sought[k].energy > sought[best].energy))
                 best = k;
         }
         if (best == 3) break;
@@ -55,7 +60,8 @@ inline std::vector<periodic_error> take_periodic(std::vector<circle_run>& runs, 
         for (std::size_t j = 0; j < runs.size(); ++j) {
             const auto tone = best == 2 ? in_time.in(j, sought[2].period) : std::vector<double>{};
             for (std::size_t k = 0; k < left[j].size(); ++k) {
-                const double e = best == 2 ? tone[k] : cyclic_search::at(sought[best], j, runs[j].radius, runs[j].angle[k]);
+                const double e =
+                    best == 2 ? tone[k] : cyclic_search::at(sought[best], j, runs[j].radius, runs[j].angle[k]);
                 left[j][k] -= e, runs[j].deviation[k] -= e;
             }
         }

@@ -26,18 +26,20 @@ inline constexpr std::array circle_error_names{
                        "both directions (or two feeds) tell it from servo_mismatch",
                        {},
                        true},
-    circle_error_words{"straightness",
-                       "the path of the axis bows towards the positive side of the other in its middle; over the largest "
-                       "diameter",
-                       "one run is enough for a bow; a straightedge or laser for other forms",
-                       {},
-                       true},
-    circle_error_words{"lateral_play",
-                       "the guide of the axis moves its table towards the positive side of the other axis when it "
-                       "travels forward",
-                       "both directions tell it from scale and length",
-                       {},
-                       true},
+    circle_error_words{
+        "straightness",
+        "the path of the axis bows towards the positive side of the other in its middle; over the largest "
+        "diameter",
+        "one run is enough for a bow; a straightedge or laser for other forms",
+        {},
+        true},
+    circle_error_words{
+        "lateral_play",
+        "the guide of the axis moves its table towards the positive side of the other axis when it "
+        "travels forward",
+        "both directions tell it from scale and length",
+        {},
+        true},
     circle_error_words{"servo_mismatch",
                        "the first axis lags behind the second",
                        "both directions (or two feeds) tell it from squareness",
@@ -54,6 +56,10 @@ inline constexpr std::array circle_error_names{
                        "the axis stays behind: outward step at its reversals",
                        "two feeds tell it from servo_mismatch where both are small",
                        {"backlash", "coulomb_friction"}},
+    circle_error_words{"reversal_lag", // what backlash is called where the machine cannot have any
+                       "the axis stays behind: outward step at its reversals",
+                       "two feeds tell it from servo_mismatch where both are small",
+                       {"coulomb_friction"}},
     circle_error_words{"reversal_spikes",
                        "outward: the axis stays at its reversal",
                        "two feeds show how height and width follow the feed",

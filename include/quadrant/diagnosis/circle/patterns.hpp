@@ -22,10 +22,10 @@ struct circle_point {
 struct circle_pattern {
     std::string name, axis, unit;
     std::function<double(const circle_point&)> of;
-    bool of_setup = false;     ///< centre and length: not an error of the machine
-    std::size_t group = 0;     ///< of a reversal spike: feed and radius, and
-    int side = 0;              ///< +1 or -1: at the positive or negative end of the axis
-    double width_s = 0;        ///< of a reversal spike, at half height
+    bool of_setup = false; ///< centre and length: not an error of the machine
+    std::size_t group = 0; ///< of a reversal spike: feed and radius, and
+    int side = 0;          ///< +1 or -1: at the positive or negative end of the axis
+    double width_s = 0;    ///< of a reversal spike, at half height
 };
 
 inline double sign_of(double v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
@@ -52,8 +52,9 @@ struct spike_shape {
     double operator()(double since) const {
         if (since <= 0) return 0;
         const double q = rise / (order * decay + rise); // e^(-a/rise) at the peak
-        return std::pow(-std::expm1(-since / rise) / (1 - q), order) * std::exp(-since / decay) /
-               std::pow(q, rise / decay);
+        const double risen = -std::expm1(-since / rise) / (1 - q), squared = risen * risen;
+        const double all = order == 1 ? risen : order == 2 ? squared : squared * squared; // 1, 2 or 4
+        return all * std::exp(-since / decay) / std::pow(q, rise / decay);
     }
     double width() const { ///< at half height
         double from = HUGE_VAL, to = 0;
@@ -86,16 +87,16 @@ inline std::vector<circle_pattern> circle_patterns(circle_source source, std::si
                            return -std::pow(p.radius / largest * sin(p.angle), 2) * cos(p.angle);
                        }});
     }
-    all.push_back({"servo_mismatch", "", "s",
-                   [](point p) { return p.turning * p.feed * sin(2 * p.angle) / 2; }});
+    all.push_back(
+        {"servo_mismatch", "", "s", [](point p) { return p.turning * p.feed * sin(2 * p.angle) / 2; }});
     all.push_back({"radius_change", "", "s^2", [](point p) { return p.feed * p.feed / p.radius; }});
     all.push_back({"amplitude_mismatch", "", "s^2",
                    [](point p) { return p.feed * p.feed / p.radius * cos(2 * p.angle) / 2; }});
     if (source == circle_source::instrument) {
-        all.push_back({"lateral_play", "x", "m",
-                       [](point p) { return -0.5 * p.turning * std::abs(sin(p.angle)); }});
-        all.push_back({"lateral_play", "y", "m",
-                       [](point p) { return 0.5 * p.turning * std::abs(cos(p.angle)); }});
+        all.push_back(
+            {"lateral_play", "x", "m", [](point p) { return -0.5 * p.turning * std::abs(sin(p.angle)); }});
+        all.push_back(
+            {"lateral_play", "y", "m", [](point p) { return 0.5 * p.turning * std::abs(cos(p.angle)); }});
     }
     return all;
 }
@@ -112,16 +113,22 @@ inline circle_pattern backlash_pattern(int axis, double passed) {
 }
 
 /// The spike that an axis leaves after its reversals at one end, in the runs of one group.
-inline circle_pattern spike_pattern(int axis, int side, std::size_t group, std::vector<std::size_t> group_of_run,
-                                    spike_shape shape, double feed_over_radius) {
-    return {"reversal_spikes", axis == 0 ? "x" : "y", "m",
+inline circle_pattern spike_pattern(int axis, int side, std::size_t group,
+                                    std::vector<std::size_t> group_of_run, spike_shape shape,
+                                    double feed_over_radius) {
+    return {"reversal_spikes",
+            axis == 0 ? "x" : "y",
+            "m",
             [=, groups = std::move(group_of_run)](const circle_point& p) {
                 if (groups[p.run] != group) return 0.0;
                 const auto last = reversed(p, axis);
                 const double along = axis == 0 ? std::cos(p.angle) : std::sin(p.angle);
                 return last.side == side ? shape(last.angle) * std::abs(along) : 0.0;
             },
-            false, group, side, shape.width() / feed_over_radius};
+            false,
+            group,
+            side,
+            shape.width() / feed_over_radius};
 }
 
 } // namespace quadrant::diagnosis::detail

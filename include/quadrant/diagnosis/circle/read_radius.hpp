@@ -33,7 +33,8 @@ template <class Refuse> radius_table read_radius_table(std::string_view text, Re
         std::array<bool, 4> seen{};
         std::size_t index = 0;
         for (csv_cells cells(line); cells.next(); ++index) {
-            if (cells.broken()) refuse(number, line, cells.offset(), "a quote is not closed before the comma or the end");
+            if (cells.broken())
+                refuse(number, line, cells.offset(), "a quote is not closed before the comma or the end");
             for (std::size_t c = 0; c < 4; ++c) {
                 if (number == 1 && cells.text() == radius_columns[c]) place[c] = index;
                 if (number == 1 || place[c] != index) continue;
@@ -70,47 +71,60 @@ inline bool is_radius_file(std::string_view text) {
 /// A file of a ball-bar or grid plate: CSV with `t_s`, `angle_deg` (from x towards y, rising or falling, with or without jumps
 /// of 360), `radius_m` (as measured) and `nominal_radius_m`, other columns ignored. A run ends where the angle turns back or
 /// the nominal radius changes; several runs may follow each other. Throws bad_input with line and column.
-inline std::vector<circle_run> read_radius(std::string_view text, std::string_view file, std::size_t number = 0) {
+inline std::vector<circle_run> read_radius(std::string_view text, std::string_view file,
+                                           std::size_t number = 0) {
     text = detail::without_byte_order_mark(text);
     text = text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
-    const auto refuse = [&](std::size_t line, std::string_view row, std::size_t offset, std::string_view message) {
+    const auto refuse = [&](std::size_t line, std::string_view row, std::size_t offset,
+                            std::string_view message) {
         throw bad_input(file, line, detail::characters(row.substr(0, offset)) + 1, message);
     };
     const auto table = detail::read_radius_table(text, refuse);
     const auto& [t, degrees, radius, nominal] = table.columns;
-    if (t.size() < 100) throw bad_input(file, fmt::format("holds {} samples, a circle needs 100 or more", t.size()));
-    const double period =
-        detail::read_clock(t, [&](std::size_t k, std::string_view message) { refuse(k + 2, "", 0, message); }).period;
+    if (t.size() < 100)
+        throw bad_input(file, fmt::format("holds {} samples, a circle needs 100 or more", t.size()));
+    const double period = detail::read_clock(t, [&](std::size_t k, std::string_view message) {
+                              refuse(k + 2, "", 0, message);
+                          }).period;
 
-    std::vector<circle_run> runs;
-    std::size_t first = 0;
-    double angle = degrees[0] * std::numbers::pi / 180, extreme = angle;
-    std::vector<double> angles{angle};
-    const auto close = [&](std::size_t last) {
-        circle_run r;
-        r.file = detail::one_line(file), r.log = number, r.source = circle_source::instrument, r.period_s = period;
-        const std::size_t skip = detail::cut_to_whole_turns(angles, r.turns);
-        if (r.turns > 0) {
-            r.radius = nominal[first], r.resolution = table.step.step();
-            r.counterclockwise = angles.back() > angles.front();
-            r.start_s = double(first + skip) * period;
-            r.feed = r.radius * std::abs(angles.back() - angles[skip]) / (double(last - first - skip - 1) * period);
-            r.angle.assign(angles.begin() + static_cast<std::ptrdiff_t>(skip), angles.end());
-            for (std::size_t k = first + skip; k < last; ++k) r.deviation.push_back(radius[k] - nominal[k]);
-            runs.push_back(std::move(r));
-        }
-        first = last, angles.clear();
-    };
-    for (std::size_t k = 1; k < t.size(); ++k) {
-        const double now = detail::unwrapped(degrees[k] * std::numbers::pi / 180, angle);
-        const double way = extreme - (angles.empty() ? now : angles.front());
-        extreme = way >= 0 ? std::max(extreme, now) : std::min(extreme, now);
-        const bool back = std::abs(extreme - now) > 0.05 && std::abs(way) > 0.05;
-        if (back || nominal[k] != nominal[k - 1]) close(k), extreme = now;
-        angle = now;
-        angles.push_back(now);
+    std::vector<double> angle;
+    for (const double d : degrees) {
+        const double a = d * std::numbers::pi / 180;
+        angle.push_back(angle.empty() ? a : detail::unwrapped(a, angle.back()));
     }
-    close(t.size());
+    std::vector<circle_run> runs;
+    const auto add = [&](std::size_t first, std::size_t last) {
+        const auto at = [](const std::vector<double>& v, std::size_t k) {
+            return v.begin() + static_cast<std::ptrdiff_t>(k);
+        };
+        circle_run r;
+        r.angle.assign(at(angle, first), at(angle, last));
+        first += detail::cut_to_whole_turns(r.angle, r.turns);
+        if (r.turns == 0) return;
+        r.angle.assign(at(angle, first), at(angle, last));
+        r.file = detail::one_line(file), r.log = number, r.source = circle_source::instrument;
+        r.period_s = period, r.start_s = double(first) * period;
+        r.radius = nominal[first], r.resolution = table.step.step();
+        const double turned = angle[last - 1] - angle[first];
+        r.counterclockwise = turned > 0;
+        r.feed = r.radius * std::abs(turned) / (double(last - first - 1) * period);
+        for (std::size_t k = first; k < last; ++k) r.deviation.push_back(radius[k] - nominal[k]);
+        runs.push_back(std::move(r));
+    };
+    std::size_t first = 0, farthest = 0; // of the run at hand: its first sample, and how far it has got
+    for (std::size_t k = 1; k < angle.size(); ++k) {
+        const double way = angle[farthest] - angle[first];
+        const bool on = way >= 0 ? angle[k] >= angle[farthest] : angle[k] <= angle[farthest];
+        const bool back = std::abs(angle[farthest] - angle[k]) > 0.05;
+        const bool other = nominal[k] != nominal[k - 1];
+        if (other || (back && !on)) {
+            if (std::abs(way) > 0.05) add(first, other ? k : farthest + 1);
+            first = other ? k : farthest, farthest = k;
+        } else if (on) {
+            farthest = k;
+        }
+    }
+    add(first, angle.size());
     if (runs.empty()) throw bad_input(file, "holds no whole turn one way round");
     return runs;
 }

@@ -25,8 +25,8 @@ struct circle_number {
 struct circle_detail {
     std::string what; ///< such as "x+, feed 0.1 m/s, radius 0.03 m"
     double feed = 0, radius = 0;
-    circle_number size{};                     ///< in the error's unit
-    double width_s = 0;                       ///< of a reversal spike at half height
+    circle_number size{}; ///< in the error's unit
+    double width_s = 0;   ///< of a reversal spike at half height
 };
 
 /// One error of the machine, as a ball-bar names it.
@@ -63,7 +63,7 @@ struct circle_result {
     std::string first_axis = "x", second_axis = "y";
     std::vector<circle_run_result> runs;
     std::vector<circle_error> errors; ///< ranked: found ones by circularity, then the others
-    double explained = 0;             ///< share of the mean square of the deviation, centre and length taken out
+    double explained = 0; ///< share of the mean square of the deviation, centre and length taken out
     std::vector<std::string> notes;
 };
 

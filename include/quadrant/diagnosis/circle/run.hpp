@@ -61,14 +61,14 @@ inline followed_circle circle_through(const std::vector<double>& x, const std::v
 inline double turned(const std::vector<double>& x, const std::vector<double>& y, const followed_circle& c) {
     double angle = std::atan2(y[c.first] - c.y, x[c.first] - c.x);
     const double begin = angle;
-    for (std::size_t k = c.first; k < c.last; ++k)
-        angle = unwrapped(std::atan2(y[k] - c.y, x[k] - c.x), angle);
+    for (std::size_t k = c.first; k < c.last; ++k) angle = unwrapped(std::atan2(y[k] - c.y, x[k] - c.x), angle);
     return angle - begin;
 }
 
 /// The first sample from which on what was turned is whole turns, so that a run in is left out; 0 turns when there is not one.
 inline std::size_t cut_to_whole_turns(std::vector<double>& angle, std::size_t& turns) {
-    const double step = angle.size() < 2 ? 0 : std::abs(angle.back() - angle.front()) / double(angle.size() - 1);
+    const double step =
+        angle.size() < 2 ? 0 : std::abs(angle.back() - angle.front()) / double(angle.size() - 1);
     const double whole = std::abs(angle.back() - angle.front()) + step;
     turns = static_cast<std::size_t>(std::floor(whole / two_pi + 0.003)); // a degree short is a turn
     if (turns == 0) return 0;

@@ -26,27 +26,34 @@ inline spike_shape fit_spike(const std::vector<circle_bin>& bins, const std::vec
     std::vector<std::size_t> there;
     for (std::size_t k = 0; k < cells; ++k)
         if (count[k] > 0) there.push_back(k);
+    spike_shape best;
     const auto n = static_cast<Eigen::Index>(there.size());
-    Eigen::MatrixXd a(n, 6);
-    Eigen::VectorXd mean(n), since(n);
+    if (n < 20) return best;
+    Eigen::MatrixXd form(n, 5);
+    Eigen::VectorXd mean(n), since(n), spike(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::size_t k = there[static_cast<std::size_t>(i)];
         since(i) = (double(k) + 0.5) * cell - before, mean(i) = sum[k] / count[k];
-        for (int power = 0; power < 4; ++power) a(i, power) = std::pow(since(i) / after, power);
-        a(i, 4) = step[k] / count[k];
+        for (int power = 0; power < 4; ++power) form(i, power) = std::pow(since(i) / after, power);
+        form(i, 4) = step[k] / count[k];
     }
-    spike_shape best;
-    double least = HUGE_VAL;
-    if (n < 20) return best;
+    for (Eigen::Index c = 0; c < 5; ++c) { // orthonormal, and the mean without them
+        for (Eigen::Index other = 0; other < c; ++other)
+            form.col(c) -= form.col(other).dot(form.col(c)) * form.col(other);
+        form.col(c) /= std::max(form.col(c).norm(), 1e-12);
+        mean -= form.col(c).dot(mean) * form.col(c);
+    }
+    double most = 0;
     for (const int order : {1, 2, 4})
         for (double decay = 0.3 * degree; decay < 25 * degree; decay *= 1.35)
             for (const double rise : {0.05, 0.15, 0.4, 1.0}) {
                 const spike_shape shape{rise * decay, decay, order};
-                for (Eigen::Index i = 0; i < n; ++i) a(i, 5) = shape(since(i));
-                const Eigen::MatrixXd gram = a.transpose() * a;
-                const Eigen::VectorXd right = a.transpose() * mean, x = gram.ldlt().solve(right);
-                const double left = mean.squaredNorm() - right.dot(x);
-                if (left < least) least = left, best = shape;
+                for (Eigen::Index i = 0; i < n; ++i) spike(i) = shape(since(i));
+                const double whole = spike.squaredNorm(), along = spike.dot(mean);
+                double own = whole;
+                for (Eigen::Index c = 0; c < 5; ++c) own -= std::pow(form.col(c).dot(spike), 2);
+                const double taken = own > 1e-3 * whole ? along * along / own : 0;
+                if (taken > most) most = taken, best = shape;
             }
     return best;
 }

@@ -8,7 +8,7 @@ namespace quadrant::diagnosis::detail {
 /// errors leave. A jump counts when it is eight times the
 /// usual size of what is left more than 35 degrees from the reversals.
 struct stick_slip_found {
-    double swings = 0; ///< a reversal, median
+    double swings = 0;            ///< a reversal, median
     double height = 0, error = 0; ///< of a swing, and its standard error
     double threshold = 0;
 };
