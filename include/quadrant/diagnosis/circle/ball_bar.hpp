@@ -3,8 +3,7 @@
 #include "../bad_input.hpp"
 #include "joint_fit.hpp"
 #include "left_over.hpp"
-#include "names.hpp"
-#include "stick_slip.hpp"
+#include "name_left_over.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -45,8 +44,10 @@ public:
             left = fit.left_of(cleaned);
         }
         name_columns(fit);
-        name_periodic(periodic, limits);
-        name_stick_slip(left, fit.floor);
+        for (auto& e : name_periodic(runs_, periodic, limits, options_.excluded_effects))
+            out_.errors.push_back(std::move(e));
+        for (auto& e : name_stick_slip(runs_, left, fit.floor, options_.excluded_effects))
+            out_.errors.push_back(std::move(e));
         rank();
         double before = 0, after = 0;
         const auto setup = fit.left_of(cleaned, true);
@@ -68,10 +69,6 @@ private:
     bool excluded(std::string_view effect) const {
         const auto& all = options_.excluded_effects;
         return std::find(all.begin(), all.end(), effect) != all.end();
-    }
-    std::string where(std::size_t group) const {
-        const circle_run& r = runs_[groups_.first_run[group]];
-        return fmt::format("feed {:.4g} mm/s, radius {:.4g} mm", 1e3 * r.feed, 1e3 * r.radius);
     }
 
     void name_columns(const joint_fit& fit) {
@@ -124,7 +121,7 @@ private:
             if (k.limit > 0) e.limit = std::min(e.limit, k.limit);
             if (k.verdict != circle_verdict::found) continue;
             const circle_run& r = runs_[groups_.first_run[p.group]];
-            e.details.push_back({fmt::format("{}{}, {}", axis, p.side > 0 ? "+" : "-", where(p.group)), r.feed,
+            e.details.push_back({fmt::format("{}{}, {}", axis, p.side > 0 ? "+" : "-", where(r)), r.feed,
                                  r.radius, interval_of(k.value, k.standard_error, 0.15), p.width_s});
             if (std::abs(k.value) > std::abs(e.value.value)) e.value = e.details.back().size;
             e.verdict = circle_verdict::found;
@@ -132,82 +129,6 @@ private:
         e.circularity = std::abs(e.value.value);
         if (e.limit == HUGE_VAL) e.limit = 0;
         return e;
-    }
-    /// The patterns are first order: within 1 % of the loops that were tried. A spike's height depends on its shape: 15 %.
-    static circle_number interval_of(double value, double standard_error, double relative = 0.01) {
-        const double reach = std::hypot(1.96 * standard_error, relative * value);
-        return {value, value - reach, value + reach};
-    }
-
-    void name_periodic(const std::vector<periodic_error>& found, const std::array<double, 3>& limits) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            circle_error e = named_error(k < 2 ? "cyclic_error" : "vibration",
-                                         k == 0   ? "x"
-                                         : k == 1 ? "y"
-                                                  : "",
-                                         "m", options_.excluded_effects);
-            e.limit = limits[k];
-            const auto p = std::find_if(found.begin(), found.end(), [&](const periodic_error& f) {
-                return k < 2 ? f.axis == int(k) : f.axis >= 10;
-            });
-            if (p != found.end()) take(*p, e);
-            out_.errors.push_back(std::move(e));
-        }
-    }
-    void take(const periodic_error& p, circle_error& e) const {
-        const bool in_time = e.name == "vibration";
-        if (in_time && p.axis < 12) e.axis = p.axis == 10 ? "x" : "y";
-        e.verdict = circle_verdict::found, e.period = p.period;
-        double least = HUGE_VAL;
-        for (std::size_t j = 0; j < runs_.size(); ++j) {
-            const auto size = interval_of(p.amplitude[j], p.error[j]);
-            e.details.push_back(
-                {where(groups_.of_run[j]) + (runs_[j].counterclockwise ? ", counterclockwise" : ", clockwise"),
-                 runs_[j].feed, runs_[j].radius, size});
-            if (size.value > e.value.value) e.value = size;
-            least = std::min(least, size.value);
-        }
-        e.circularity = 2 * e.value.value;
-        if (in_time) {
-            e.reading = fmt::format("{:.4g} Hz at every feed", p.period);
-            return;
-        }
-        const bool fixed = p.common > 0.8, many = groups_.first_run.size() > 1 || runs_.size() > 1;
-        e.reading =
-            fmt::format("period {:.4g} mm along the axis, {}", 1e3 * p.period,
-                        !many   ? "one run only: whether it follows the feed is not known"
-                        : fixed ? "the same in all runs: an encoder's or a screw's"
-                                : "differs between the runs: a force such as cogging, or an encoder's seen "
-                                  "through its own loop");
-        if (!fixed || !many) return;
-        std::erase(e.effects, "cogging"), std::erase(e.effects, "force_ripple");
-    }
-
-    void name_stick_slip(const residuals& left, double floor) {
-        double slowest = HUGE_VAL;
-        for (const circle_run& r : runs_) slowest = std::min(slowest, r.feed);
-        for (const int axis : {0, 1}) {
-            circle_error e = named_error("stick_slip", axis == 0 ? "x" : "y", "m", options_.excluded_effects);
-            double swings = 0, elsewhere = 0;
-            for (std::size_t j = 0; j < runs_.size(); ++j) {
-                const auto s = stick_slip_of(runs_[j], left[j], axis);
-                const bool slow = runs_[j].feed < 1.05 * slowest;
-                e.limit = std::max(e.limit, slow ? std::max(s.threshold, floor) : 0);
-                if (slow)
-                    swings = std::max(swings, s.swings);
-                else if (s.height > 0.5 * s.threshold)
-                    elsewhere = std::max(elsewhere, s.swings);
-                if (slow && s.height > e.value.value) e.value = interval_of(s.height, s.error);
-            }
-            const bool found = swings >= 6 && e.value.value > e.limit && elsewhere < 0.5 * swings;
-            if (found) {
-                e.verdict = circle_verdict::found, e.circularity = e.value.value;
-                e.reading = fmt::format("{:.0f} jumps after a reversal at {:.3g} mm/s", swings, 1e3 * slowest);
-            } else {
-                e.value = {};
-            }
-            out_.errors.push_back(std::move(e));
-        }
     }
 
     void rank() {
