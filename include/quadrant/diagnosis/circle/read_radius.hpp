@@ -80,7 +80,8 @@ inline std::vector<circle_run> read_radius(std::string_view text, std::string_vi
         throw bad_input(file, line, detail::characters(row.substr(0, offset)) + 1, message);
     };
     const auto table = detail::read_radius_table(text, refuse);
-    const auto& [t, degrees, radius, nominal] = table.columns;
+    const auto &t = table.columns[0], &degrees = table.columns[1], &radius = table.columns[2],
+               &nominal = table.columns[3];
     if (t.size() < 100)
         throw bad_input(file, fmt::format("holds {} samples, a circle needs 100 or more", t.size()));
     const double period = detail::read_clock(t, [&](std::size_t k, std::string_view message) {
