@@ -38,5 +38,6 @@ void add_forecast(CLI::App& app);
 void add_init(CLI::App& app);
 void add_import(CLI::App& app);
 void add_trial(CLI::App& app);
+void add_circle(CLI::App& app);
 
 } // namespace quadrant_gap

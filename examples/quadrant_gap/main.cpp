@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     quadrant_gap::add_init(app);
     quadrant_gap::add_import(app);
     quadrant_gap::add_trial(app);
+    quadrant_gap::add_circle(app);
     try {
         app.parse(argc, argv);
         return 0;

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
-usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [--forecast FORECAST.json ...] [DIAGNOSIS.json ...]
+usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [--forecast FORECAST.json ...] [--circle CIRCLE.json ...]
+                      [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
@@ -79,6 +80,7 @@ arguments = argparse.ArgumentParser()
 arguments.add_argument("--practice", type=pathlib.Path)
 arguments.add_argument("--simulation", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("--forecast", type=pathlib.Path, action="append", default=[])
+arguments.add_argument("--circle", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
 machine, log, diagnosis, simulation, forecast, import_map = map(
@@ -113,6 +115,13 @@ for path in given.simulation:
     accept(simulation, load(path), path)
 for path in given.forecast:
     accept(forecast, load(path), path)
+circle = validator("circle")
+for path in given.circle:
+    content = load(path)
+    accept(circle, content, path)
+    for way, to in [(["source"], "eye"), (["runs", 0, "feed_m_per_s"], 0), (["errors", 0, "error"], "gremlin"), (["colour"], 1),
+                    (["errors", 0, "ci95"], ...), (["errors", 0, "share"], 2), (["runs"], []), (["errors", 0, "axis"], "z")]:
+        refuse(circle, changed(content, way, to), f"circle with {way} = {to}")
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 
