@@ -71,6 +71,8 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
  "axes": {
   "x": {
    "verdict": "explained",
+   "kind": "linear",
+   "command_unit": "V",
    "gap": {
     "position_rms_m": 1.0,
     "position_peak_m": 2.0,
@@ -188,6 +190,7 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
   ],
   "expected_gain": 1.5
  },
+ "not_seen": [],
  "notes": [
   "a note"
  ]

@@ -121,7 +121,8 @@ private:
                                 .command = std::move(command.values),
                                 .reference_step = reference.step.step(),
                                 .position_step = position.step.step(),
-                                .command_step = command.step.step()});
+                                .command_step = command.step.step(),
+                                .kind = *at.kind});
         }
         if (std::all_of(out.axes.begin(), out.axes.end(), [](const axis_log& a) { return a.still; }))
             throw bad_input(file_, "no axis moves");

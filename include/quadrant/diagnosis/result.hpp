@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "axis_words.hpp"
+
 #include <map>
 #include <string>
 #include <vector>
 
-/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws.
+/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws. Fields
+/// named in m and N are in rad and N m for a rotary axis; keys and sentences are in its own words already.
 namespace quadrant::diagnosis {
 
 /// Ordered from the best to the worst: the verdict of several axes is the largest.
@@ -49,6 +52,7 @@ struct place {
 struct parameter_estimate {
     std::string key;              ///< the machine file's key
     std::vector<estimate> values; ///< one, or one a harmonic
+    bool on_bound = false; ///< the fit stopped where it was not allowed to go on: the value may lie beyond
 };
 
 /// Another name for the same signal on this record, with the parameters it would have.
@@ -92,12 +96,19 @@ struct axis_result {
     std::vector<parameter_estimate> calibrated; ///< what moved inside the owner's tolerance, as machine keys
     std::string evaluated_on;                   ///< "held-out segments of LOG" or the hold-out file
     axis_signals signals;
+    axis_kind kind = axis_kind::linear;
+    std::string command_unit = "V"; ///< of the command gaps
 };
 
 struct experiment {
     std::string motion;
     std::vector<std::string> separates;
     double expected_gain = 0; ///< log-score by which the motion would separate them; 0: not simulated
+};
+
+/// What no log of an axis can show, and the instrument that sees it.
+struct unseen {
+    std::string axis, what, instrument;
 };
 
 struct diagnosis_result {
@@ -107,8 +118,16 @@ struct diagnosis_result {
     double share_unexplained = 0;
     std::string remaining_structure;
     experiment next;
+    std::vector<unseen> not_seen; ///< where it bears on what is said (blind_spots.hpp)
     std::vector<std::string> notes;
     std::string machine_file, log_file, holdout_file;
+    std::string machine_sha256, log_sha256, holdout_sha256; ///< of the files' bytes; empty: not read from files
+
+    axis_kind kind_of(const std::string& axis) const {
+        for (const axis_result& a : axes)
+            if (a.name == axis) return a.kind;
+        return axis_kind::linear;
+    }
 };
 
 } // namespace quadrant::diagnosis

@@ -32,7 +32,7 @@ template <std::size_t I> parameter term(double most) {
             .step = 1e-6 * most};
 }
 inline std::vector<std::vector<parameter>> terms(const screening& s) {
-    const double most = 10 * s.leader.force_constant;
+    const double most = 10 * s.force_of_a_volt();
     return {[&]<std::size_t... I>(std::index_sequence<I...>){return std::vector<parameter>{term<I>(most)...};
 }
 (std::make_index_sequence<free_curve::terms>())
