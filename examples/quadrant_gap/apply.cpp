@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap apply: the machine file with what a diagnosis found.
 #include "commands.hpp"
+#include "sha256.hpp"
 
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
@@ -21,8 +22,11 @@ struct apply_options {
 void run(const apply_options& o) {
     using namespace quadrant::diagnosis;
     const std::string text = detail::read_whole(std::filesystem::path(o.machine));
-    const auto result =
-        apply(text, o.machine, read_diagnosis(std::filesystem::path(o.diagnosis)), o.all ? 0 : o.at_least);
+    const auto diagnosis = read_diagnosis(std::filesystem::path(o.diagnosis));
+    auto result = apply(text, o.machine, diagnosis, o.all ? 0 : o.at_least);
+    if (!diagnosis.machine_sha256.empty() && diagnosis.machine_sha256 != sha256(text))
+        result.notes.push_back(fmt::format("{} is not, byte for byte, the machine file that was diagnosed ({})",
+                                           o.machine, diagnosis.machine_file));
     write_aside(o.out, result.machine.dump(2) + "\n");
     if (o.say.quiet) return;
     if (result.changes.empty()) std::puts("Nothing was changed.");

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap diagnose: why does the machine not do what its simulation says?
 #include "commands.hpp"
+#include "digested.hpp"
 #include "report.hpp"
 #include "summary.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/match.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
-#include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <memory>
@@ -54,25 +53,29 @@ rules chosen(const diagnose_options& o) {
 }
 
 void run(const diagnose_options& o) {
-    const auto machine = read_machine(std::filesystem::path(o.machine));
-    const auto log = read_log(std::filesystem::path(o.log));
-    check_match(machine, log);
-    std::optional<machine_log> holdout;
+    const auto machine = read_digested_machine(o.machine);
+    const auto log = read_digested_log(o.log);
+    check_match(machine.contents, log.contents);
+    std::optional<digested<machine_log>> holdout;
     if (!o.holdout.empty()) {
-        holdout = read_log(std::filesystem::path(o.holdout));
-        check_match(machine, *holdout);
+        holdout = read_digested_log(o.holdout);
+        check_match(machine.contents, holdout->contents);
     }
     progress_line tell(o);
-    const auto result = diagnose(
-        machine, log, holdout ? &*holdout : nullptr, [&](const std::string& s) { tell(s); }, chosen(o));
+    auto result = diagnose(
+        machine.contents, log.contents, holdout ? &holdout->contents : nullptr,
+        [&](const std::string& s) { tell(s); }, chosen(o));
     tell.clear();
+    result.machine_sha256 = machine.sha256;
+    result.log_sha256 = log.sha256;
+    if (holdout) result.holdout_sha256 = holdout->sha256;
     if (!o.json.empty())
         write_aside(o.json,
                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.report.empty()) write_aside(o.report, html_report(result));
     if (!o.next_motion.empty() && !result.next.reference.empty())
-        write_aside(o.next_motion, reference_csv(result.next));
-    if (!o.say.quiet) std::fputs(summary(result).c_str(), stdout);
+        write_aside(o.next_motion, reference_csv(result.next, result.kind_of(result.next.axis)));
+    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
     if (!o.next_motion.empty() && result.next.reference.empty() && !o.say.quiet)
         std::printf("Note: no motion was found to propose: %s is not written\n", o.next_motion.c_str());
 }
@@ -97,7 +100,7 @@ void add_diagnose(CLI::App& app) {
                         "at most; 0: as many as there are cores. The answer is the same");
     command->add_flag("--fast", o->fast,
                       "screen with shorter looks: a third of the time, the same judgement at the end");
-    add_terminal_options(*command, o->say, "every model tried, with its gain");
+    add_terminal_options(*command, o->say, "every model tried, with its gain; and what this log cannot see");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }
 

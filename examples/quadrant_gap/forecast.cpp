@@ -25,19 +25,16 @@ std::string summary(const forecast_result& f, bool verbose) {
                 0) +
         "\n";
     for (const forecast_axis& a : f.axes) {
-        text += wrapped(
-            fmt::format(
-                "Axis {}: {} of residual force as described, {} corrected: the gap shrinks by {:.0f} %.",
-                a.name, quantity(a.before.force_rms_N, "N"), quantity(a.after.force_rms_N, "N"),
-                100 * a.shrink),
-            0);
+        std::string words = fmt::format(
+            "{} of residual force as described, {} corrected: the gap shrinks by {:.0f} %.",
+            quantity(a.before.force_rms_N, "N"), quantity(a.after.force_rms_N, "N"), 100 * a.shrink);
         if (verbose)
-            text += wrapped(
-                fmt::format("Floor of sensor and rounding {}; position of the closed loop {} rms beside the "
-                            "machine as described, {} corrected.",
-                            quantity(a.after.noise_floor_force_rms_N, "N"),
-                            quantity(a.before.position_rms_m, "m"), quantity(a.after.position_rms_m, "m")),
-                2);
+            words += fmt::format(
+                " Floor of sensor and rounding {}; position of the closed loop {} rms beside the machine as "
+                "described, {} corrected.",
+                quantity(a.after.noise_floor_force_rms_N, "N"), quantity(a.before.position_rms_m, "m"),
+                quantity(a.after.position_rms_m, "m"));
+        text += wrapped("Axis " + a.name + ": " + text_of(words, a.kind), 0);
     }
     for (const std::string& note : f.notes) text += wrapped("Note: " + note, 0);
     return text;

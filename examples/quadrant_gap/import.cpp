@@ -40,10 +40,12 @@ void add_import(CLI::App& app) {
         ->required();
     command->add_option("IN", o->in, "the log as the other program wrote it")->required();
     command->add_option("OUT", o->out, "log to write (CSV)")->required();
-    command->add_option("--mass", o->known.mass, "moving mass [kg], or inertia [kg m^2], to check the units by")
+    command
+        ->add_option("--mass,--inertia", o->known.mass,
+                     "moving mass [kg], or inertia [kg m^2], to check the units by")
         ->check(CLI::PositiveNumber);
     command
-        ->add_option("--force-constant", o->known.force_constant,
+        ->add_option("--force-constant,--torque-constant", o->known.force_constant,
                      "force [N], or torque [N m], per unit of the command, to check the units by")
         ->check(CLI::PositiveNumber);
     command->add_flag("--unchecked", o->unchecked, "write it whatever physics says");

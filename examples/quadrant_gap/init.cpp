@@ -24,8 +24,9 @@ struct init_options {
     terminal say;
 };
 
-/// "340", "0.4ms", "x=340": the axis ("" is every axis) and the number in SI.
-std::pair<std::string, double> parse(const init_field& f, std::string_view text) {
+/// "340", "0.4ms", "x=340": the axis ("" is every axis) and the number in SI. `kind_of` tells an axis' kind.
+template <class KindOf>
+std::pair<std::string, double> parse(const init_field& f, std::string_view text, KindOf kind_of) {
     const auto refuse = [&](std::string_view what) {
         throw bad_input(fmt::format("--{}", f.option), fmt::format("{}: {}", detail::in_quotes(text), what));
     };
@@ -37,15 +38,16 @@ std::pair<std::string, double> parse(const init_field& f, std::string_view text)
     while (unit.starts_with(' ')) unit.remove_prefix(1);
     double value = 0;
     if (const char* fault = detail::parse_number(rest.substr(0, end), value)) refuse(fault);
-    if (unit.empty() || unit == f.unit) return {axis, value};
+    const std::string wanted = key_of(f.unit, kind_of(axis));
+    if (unit.empty() || unit == wanted) return {axis, value};
     const unit_name* known = find_unit(unit);
-    if (!known || known->si != f.unit)
-        refuse(fmt::format("is not a number of {}", *f.unit ? f.unit : "no unit"));
+    if (!known || known->si != wanted)
+        refuse(fmt::format("is not a number of {}", *f.unit ? text_of(f.unit, kind_of(axis)) : "no unit"));
     return {axis, known->factor < 1 ? value / (1 / known->factor) : value * known->factor};
 }
 
 /// Asks for what is not given; an empty answer leaves it out.
-void ask(init_options& o) {
+void ask(init_options& o, axis_kind kind) {
     constexpr std::string_view asked[]{
         "mass",           "force-constant",           "viscous",        "delay", "coulomb",
         "tolerance-mass", "tolerance-force-constant", "resolution",     "limit", "position-gain",
@@ -54,7 +56,9 @@ void ask(init_options& o) {
         const init_field& f = init_fields[i];
         if (!o.texts[i].empty() || std::find(std::begin(asked), std::end(asked), f.option) == std::end(asked))
             continue;
-        std::fprintf(stderr, "%s%s%s%s: ", f.meaning, *f.unit ? " [" : "", f.unit, *f.unit ? "]" : "");
+        const std::string question =
+            text_of(f.meaning, kind) + (*f.unit ? fmt::format(" [{}]", text_of(f.unit, kind)) : "");
+        std::fprintf(stderr, "%s: ", question.c_str());
         std::string answer;
         if (!std::getline(std::cin, answer)) return;
         if (!answer.empty()) o.texts[i].push_back(answer);
@@ -64,10 +68,23 @@ void ask(init_options& o) {
 void run(init_options& o) {
     std::optional<machine_log> log;
     if (!o.log.empty()) log = read_log(std::filesystem::path(o.log));
-    if (o.questions || isatty(STDIN_FILENO)) ask(o);
+    const auto kind_of = [&](const std::string& axis) { // "": of the log's first
+        if (!log) return o.request.rotary ? axis_kind::rotary : axis_kind::linear;
+        for (const axis_log& a : log->axes)
+            if (a.name == axis) return a.kind;
+        return log->axes.front().kind;
+    };
+    if (o.questions || isatty(STDIN_FILENO)) {
+        if (!log && !o.request.rotary) {
+            std::fputs("a rotary axis, in rad and N m (yes or no): ", stderr);
+            std::string answer;
+            o.request.rotary = std::getline(std::cin, answer) && answer.starts_with('y');
+        }
+        ask(o, kind_of(""));
+    }
     for (std::size_t i = 0; i < init_fields.size(); ++i)
         for (const std::string& text : o.texts[i]) {
-            const auto [axis, value] = parse(init_fields[i], text);
+            const auto [axis, value] = parse(init_fields[i], text, kind_of);
             o.request.values[init_fields[i].option][axis] = value;
         }
     const auto begun = init_machine(o.request, log ? &*log : nullptr);
@@ -93,13 +110,18 @@ void add_init(CLI::App& app) {
         ->delimiter(',');
     command->add_option("--sample-period", o->request.sample_period_s, "period of the servo loop [s]")
         ->check(CLI::PositiveNumber);
-    command->add_option("--command-unit", o->request.command_unit, "unit of the command: V, A or N")
-        ->check(CLI::IsMember({"V", "A", "N"}));
+    command->add_option("--command-unit", o->request.command_unit, "unit of the command: V, A or N (Nm)")
+        ->check(CLI::IsMember({"V", "A", "N", "Nm"}));
+    command->add_flag("--rotary", o->request.rotary,
+                      "rotary axes, in rad and N m (a log says so itself): --inertia for --mass");
     command->add_flag("--questions", o->questions, "ask for what is not given, though no terminal listens");
     for (std::size_t i = 0; i < init_fields.size(); ++i) {
         const init_field& f = init_fields[i];
-        const std::string unit = *f.unit ? fmt::format(" [{}]", f.unit) : "";
-        command->add_option(fmt::format("--{}", f.option), o->texts[i], f.meaning + unit)
+        const std::string unit = *f.unit ? fmt::format(" [{}]", f.unit) : "",
+                          of_rotary = text_of(f.option, axis_kind::rotary);
+        const std::string names = of_rotary == f.option ? fmt::format("--{}", f.option)
+                                                        : fmt::format("--{},--{}", f.option, of_rotary);
+        command->add_option(names, o->texts[i], f.meaning + unit)
             ->delimiter(',')
             ->group("Values, for every axis or AXIS=VALUE,...");
     }

@@ -12,7 +12,7 @@ _quadrant_gap() {
     elif [[ -z $subcommand ]]; then
         COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p')" -- "$word"))
     elif [[ $previous == --command-unit ]]; then
-        COMPREPLY=($(compgen -W "V A N" -- "$word"))
+        COMPREPLY=($(compgen -W "V A N Nm" -- "$word"))
     else
         COMPREPLY=($(compgen -f -- "$word"))
     fi

@@ -17,6 +17,22 @@ inline std::string report_page(std::map<std::string_view, std::string> values) {
     return fill(joined(files::report_template_html), values);
 }
 
+/// What an encoder cannot know of itself, where it bears on the verdict.
+inline std::string not_seen(const diagnosis_result& d) {
+    if (d.not_seen.empty()) return "";
+    std::string rows;
+    for (const unseen& u : d.not_seen)
+        rows += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", escape(u.axis), escape(u.what),
+                            escape(u.instrument));
+    return "<section id=\"unseen\"><h2>What this log cannot see</h2><p>It holds what the encoder read. Where "
+           "the "
+           "encoder is wrong, or does not reach, machine and simulation may agree and the tool still be "
+           "elsewhere.</p><table><thead><tr><th scope=\"col\">Axis</th><th scope=\"col\">Not in the "
+           "log</th><th "
+           "scope=\"col\">Seen by</th></tr></thead><tbody>\n" +
+           rows + "</tbody></table></section>\n";
+}
+
 inline std::string html_report(const diagnosis_result& d) {
     chart_book book(d.axes.size());
     std::string overviews, charts, notes, files;
@@ -43,6 +59,7 @@ inline std::string html_report(const diagnosis_result& d) {
          {"next", !d.next.motion.empty() ? next
                   : gap                  ? "<p class=\"empty\">None is proposed.</p>"
                                          : "<p class=\"empty\">None is needed.</p>"},
+         {"unseen", not_seen(d)},
          {"axes", charts},
          {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
          {"files", "<dl>" + files + "</dl>"},

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 'use strict';
-// Draws each <figure data-chart="k"> from charts[k]: {kind, axis, x, y, names, columns, medians}, column 0 is x.
+// Draws each <figure data-chart="k"> from charts[k]: {kind, axis, x, y, names, columns, medians, times}, column 0 is x.
 const charts = JSON.parse(document.getElementById('charts').textContent);
 const figures = [...document.querySelectorAll('figure[data-chart]')];
 const graphs = {}; // the Dygraphs of each axis, which zoom together
+const stills = {}; // what draws the charts of each axis that show the samples of the zoomed time
 const colour = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const chart_of = figure => charts[figure.dataset.chart];
 const digits = v => Number(v.toPrecision(4)).toString();
@@ -57,7 +58,9 @@ function draw_time(figure) {
         interactionModel: {...Dygraph.defaultInteractionModel, ...touch},
         axes: {x: {valueFormatter: digits, pixelsPerLabel: 70}, y: {valueFormatter: digits, pixelsPerLabel: 25}},
         drawCallback: (g, initial) => {
-            if (!initial) link(g, other => other.updateOptions({dateWindow: g.isZoomed('x') ? g.xAxisRange() : null}));
+            if (initial || linking) return;
+            link(g, other => other.updateOptions({dateWindow: g.isZoomed('x') ? g.xAxisRange() : null}));
+            (stills[c.axis] || []).forEach(draw => requestAnimationFrame(draw));
         },
         highlightCallback: (event, x) => link(graph, other => other.setSelection(nearest(other, x))),
         unhighlightCallback: () => link(graph, other => other.clearSelection()),
@@ -93,7 +96,10 @@ function draw_still(figure) {
     const c = chart_of(figure), log = c.kind === 'spectrum', canvas = figure.querySelector('canvas');
     const ranges = [range([c.columns[0]], log), range(c.columns.slice(1), log)];
     const draw = () => {
-        figure.querySelector('.legend').innerHTML = legend(c.names);
+        const graph = c.times && graphs[c.axis]?.[0], zoomed = graph?.isZoomed('x') ? graph.xAxisRange() : null;
+        const shown = k => !zoomed || (c.times[k] >= zoomed[0] && c.times[k] <= zoomed[1]);
+        figure.querySelector('.legend').innerHTML = legend(c.names)
+            + (zoomed ? ` <span>dots of ${digits(zoomed[0])} to ${digits(zoomed[1])} s</span>` : '');
         const w = canvas.clientWidth, h = canvas.clientHeight, dpr = window.devicePixelRatio || 1;
         canvas.width = w * dpr;
         canvas.height = h * dpr;
@@ -140,8 +146,8 @@ function draw_still(figure) {
             pen.fillStyle = pen.strokeStyle = colour(name);
             pen.lineWidth = 1.4;
             if (log) return line(c.columns[0], c.columns[s + 1]);
-            pen.globalAlpha = 0.35;
-            c.columns[s + 1].forEach((v, k) => { if (v !== null && c.columns[0][k] !== null) pen.fillRect(px(c.columns[0][k]) - 1, py(v) - 1, 2, 2); });
+            pen.globalAlpha = zoomed ? 0.8 : 0.35;
+            c.columns[s + 1].forEach((v, k) => { if (v !== null && c.columns[0][k] !== null && shown(k)) pen.fillRect(px(c.columns[0][k]) - 1, py(v) - 1, 2, 2); });
             pen.globalAlpha = 1;
         });
         pen.lineJoin = 'round';
@@ -154,6 +160,7 @@ function draw_still(figure) {
         });
     };
     draw();
+    if (c.times) (stills[c.axis] ||= []).push(draw);
     return draw;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap simulate: a log as its machine file predicts it, and what remains between the two.
 #include "commands.hpp"
+#include "digested.hpp"
 #include "simulation_report.hpp"
 #include "simulation_summary.hpp"
 
 #include <quadrant/diagnosis/match.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
-#include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/write_simulation.hpp>
 
 #include <memory>
@@ -21,14 +20,16 @@ struct simulate_options {
 };
 
 void run(const simulate_options& o) {
-    const auto machine = read_machine(std::filesystem::path(o.machine));
-    const auto log = read_log(std::filesystem::path(o.log));
-    check_match(machine, log);
-    const auto result = quadrant::diagnosis::simulate(machine, log);
+    const auto machine = read_digested_machine(o.machine);
+    const auto log = read_digested_log(o.log);
+    check_match(machine.contents, log.contents);
+    auto result = quadrant::diagnosis::simulate(machine.contents, log.contents);
+    result.machine_sha256 = machine.sha256;
+    result.log_sha256 = log.sha256;
     if (!o.json.empty())
         write_aside(o.json,
                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.report.empty()) write_aside(o.report, html_report(result, log));
+    if (!o.report.empty()) write_aside(o.report, html_report(result, log.contents));
     if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
 }
 

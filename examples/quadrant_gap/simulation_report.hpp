@@ -13,6 +13,7 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
     std::string overviews, charts, notes, sentences;
     for (std::size_t k = 0; k < s.axes.size(); ++k) {
         const simulated_axis& a = s.axes[k];
+        const axis_voice voice{a.kind, a.command_unit};
         sentences += (k == 0 ? "" : " ") + sentence(a);
         std::string rows;
         for (const auto& [name, value] : gap_rows(a))
@@ -28,12 +29,12 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
                                std::back_inserter(error), std::minus{});
         charts += fmt::format("<section><h2>Axis {}</h2>", escape(a.name));
         charts += book.figure(k, {"time",
-                                  "Residual force",
-                                  "Force that the machine feels and the simulation does not.",
+                                  voice("Residual force"),
+                                  voice("Force that the machine feels and the simulation does not."),
                                   "time",
                                   "s",
-                                  "force",
-                                  "N",
+                                  voice("force"),
+                                  voice("N"),
                                   a.t,
                                   {{"after", &a.force}},
                                   "there is none"});
@@ -44,7 +45,7 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
                             "time",
                             "s",
                             "position",
-                            "m",
+                            voice("m"),
                             a.t,
                             {{"after", &error}},
                             "the machine file has no controller for this axis, so its closed loop cannot be "
@@ -65,6 +66,7 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
                         {"causes", none},
                         {"remaining", "<dl>" + places + "</dl>"},
                         {"next", none},
+                        {"unseen", ""},
                         {"axes", charts},
                         {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
                         {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Log</dt><dd>{}</dd></dl>",

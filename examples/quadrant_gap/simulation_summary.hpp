@@ -14,22 +14,24 @@ inline std::string sentence(const simulated_axis& a) {
     if (a.closed_loop)
         text += fmt::format("; the simulated loop is {} rms beside the machine",
                             quantity(a.gap.position_rms_m, "m"));
-    return text + ".";
+    return text_of(text + ".", a.kind);
 }
 
 inline std::vector<std::pair<std::string, std::string>> gap_rows(const simulated_axis& a) {
+    const axis_voice voice{a.kind, a.command_unit};
+    const std::string force = voice("N"), length = voice("m");
     std::vector<std::pair<std::string, std::string>> rows{
-        {"force, rms", quantity(a.gap.force_rms_N, "N")},
-        {"force, floor", quantity(a.gap.noise_floor_force_rms_N, "N")}};
+        {voice("force, rms"), quantity(a.gap.force_rms_N, force)},
+        {voice("force, floor"), quantity(a.gap.noise_floor_force_rms_N, force)}};
     if (!a.closed_loop) return rows;
-    rows.emplace_back("position, rms", quantity(a.gap.position_rms_m, "m"));
-    rows.emplace_back("position, peak", quantity(a.gap.position_peak_m, "m"));
-    rows.emplace_back("command, rms", quantity(a.gap.command_rms_V, a.command_unit));
+    rows.emplace_back("position, rms", quantity(a.gap.position_rms_m, length));
+    rows.emplace_back("position, peak", quantity(a.gap.position_peak_m, length));
+    rows.emplace_back("command, rms", quantity(a.gap.command_rms_V, voice.in_command_unit("V")));
     return rows;
 }
 
 inline std::string gap_basis(const simulated_axis& a) {
-    return fmt::format("Residual force up to {}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
+    return fmt::format("{} up to {}.{}", text_of("Residual force", a.kind), quantity(a.gap.bandwidth_Hz, "Hz"),
                        a.closed_loop ? ""
                                      : " No controller is described: there are no position and command gaps.");
 }

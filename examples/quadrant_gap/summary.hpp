@@ -69,34 +69,38 @@ inline std::string summary_of(const diagnosis_result& d, const axis_result& a) {
     return text + "\n";
 }
 
-inline std::string summary_of(const cause& c) {
+inline std::string summary_of(const diagnosis_result& d, const cause& c) {
+    const axis_voice voice = voice_of(d, c.axis);
     std::string text =
-        wrapped(fmt::format("{}, axis {}: probability {}{}", capital(name_of_effect(c.effect)), c.axis,
+        wrapped(fmt::format("{}, axis {}: probability {}{}", capital(voice(name_of_effect(c.effect))), c.axis,
                             probability(c.probability), claimed(c) ? "" : ", a suspect, not a claim"),
                 2);
-    for (const std::string& line : lines_of(c.parameters)) text += wrapped(line, 4);
-    text += wrapped(fmt::format("force gap {}, shrinks by {}",
-                                change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, "N"),
-                                percent(c.shrink)),
-                    4);
+    for (const std::string& line : lines_of(c.parameters, voice)) text += wrapped(line, 4);
+    text +=
+        wrapped(fmt::format("{} gap {}, shrinks by {}", voice("force"),
+                            change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, voice("N")),
+                            percent(c.shrink)),
+                4);
     if (!c.confusable_with.empty())
         text += wrapped(fmt::format("cannot be told apart on this record from {}; probability of the group {}",
-                                    named(c.confusable_with, "or"), probability(c.group_probability)),
+                                    voice(named(c.confusable_with, "or")), probability(c.group_probability)),
                         4);
     for (const reading& r : c.readings)
-        text += wrapped(fmt::format("as {}: {}", name_of_effect(r.effect), listed(lines_of(r.parameters))), 6);
+        text += wrapped(
+            fmt::format("as {}: {}", voice(name_of_effect(r.effect)), listed(lines_of(r.parameters, voice))),
+            6);
     if (!c.exciting_motion.empty()) text += wrapped("shown by: " + c.exciting_motion, 4);
     return text;
 }
 
-inline std::string summary(const diagnosis_result& d) {
+inline std::string summary(const diagnosis_result& d, bool verbose = false) {
     std::string text = wrapped(
         fmt::format("{}: {} against {}", capital(spaced(name_of(d.verdict))), d.log_file, d.machine_file), 0);
     text += wrapped(verdict_sentence(d), 0) + "\n";
     for (const axis_result& a : d.axes) text += summary_of(d, a);
     if (!d.causes.empty()) {
         text += "Causes\n";
-        for (const cause& c : d.causes) text += summary_of(c);
+        for (const cause& c : d.causes) text += summary_of(d, c);
         text += "\n";
     }
     if (d.verdict > verdict::within_tolerance) {
@@ -106,6 +110,12 @@ inline std::string summary(const diagnosis_result& d) {
     if (!d.next.motion.empty()) {
         text += "Next experiment\n" + wrapped(capital(d.next.motion), 2);
         for (const std::string& line : experiment_lines(d.next)) text += wrapped(line, 2);
+        text += "\n";
+    }
+    if (verbose && !d.not_seen.empty()) {
+        text += "What this log cannot see\n";
+        for (const unseen& u : d.not_seen)
+            text += wrapped(fmt::format("axis {}: {}; {} would", u.axis, u.what, u.instrument), 2);
         text += "\n";
     }
     for (const std::string& note : d.notes) text += wrapped("Note: " + note, 0);

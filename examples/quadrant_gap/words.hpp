@@ -61,7 +61,18 @@ inline scale scale_of(std::string_view unit, double size) {
         {"V", 0.1, {1, "V"}},
         {"V", 1e-6, {1e3, "mV"}},
         {"N/m", 1e6, {1e-6, "N/µm"}},
-        {"rad", 0, {57.29577951308232, "deg"}},
+        {"rad", 1, {1, "rad"}},
+        {"rad", 1e-3, {1e3, "mrad"}},
+        {"rad", 1e-7, {1e6, "µrad"}},
+        {"rad", 1e-12, {1e9, "nrad"}},
+        {"rad/s", 1, {1, "rad/s"}},
+        {"rad/s", 1e-3, {1e3, "mrad/s"}},
+        {"rad/s", 1e-9, {1e6, "µrad/s"}},
+        {"N m", 1e4, {1e-3, "kN m"}},
+        {"N m", 0.05, {1, "N m"}},
+        {"N m", 1e-6, {1e3, "mN m"}},
+        {"N m/rad", 1e6, {1e-6, "N m/µrad"}},
+        {"phase", 0, {57.29577951308232, "deg"}},
         {"%", 0, {100, "%"}},
     };
     for (const step& s : steps)
@@ -185,6 +196,15 @@ inline std::pair<std::string, std::string_view> label_of(std::string_view key) {
         std::string_view text, unit;
     };
     static constexpr suffix suffixes[] = {
+        {"_V_s2_per_rad", "V s²/rad"},
+        {"_Nm_s_per_rad", "N m s/rad"},
+        {"_V_s_per_rad", "V s/rad"},
+        {"_V_per_rad", "V/rad"},
+        {"_Nm_per_rad", "N m/rad"},
+        {"_Nm_per_V", "N m/V"},
+        {"_Nm_per_A", "N m/A"},
+        {"_rad_per_s", "rad/s"},
+        {"_kg_m2", "kg m²"},
         {"_V_s2_per_m", "V s²/m"},
         {"_N_s_per_m", "N s/m"},
         {"_V_s_per_m", "V s/m"},
@@ -205,27 +225,54 @@ inline std::pair<std::string, std::string_view> label_of(std::string_view key) {
         {"_s", "s"},
     };
     for (const suffix& s : suffixes)
-        if (key.ends_with(s.text)) return {spaced(key.substr(0, key.size() - s.text.size())), s.unit};
+        if (key.ends_with(s.text))
+            return {spaced(key.substr(0, key.size() - s.text.size())),
+                    key.ends_with("phase_rad") ? "phase" : s.unit};
     const bool relative = key.ends_with("asymmetry") || key.ends_with("amplitude") || key.ends_with("drift") ||
                           key.ends_with("ripple") || key.ends_with("probability");
     return {spaced(key), relative ? "%" : ""};
 }
 
+/// How a result speaks of one axis: in its own words, and in the unit of its command.
+struct axis_voice {
+    axis_kind kind = axis_kind::linear;
+    std::string command_unit = "V";
+
+    std::string operator()(std::string_view of_a_linear_axis) const { return text_of(of_a_linear_axis, kind); }
+    /// Keys name volts whatever the command is in.
+    std::string in_command_unit(std::string_view unit) const {
+        std::string text(unit);
+        if (const auto volt = text.find('V'); volt != text.npos && command_unit != "V")
+            text.replace(volt, 1, command_unit == "Nm" ? "N m" : command_unit);
+        return text;
+    }
+};
+
+inline axis_voice voice_of(const axis_result& a) { return {a.kind, a.command_unit}; }
+inline axis_voice voice_of(const diagnosis_result& d, const std::string& axis) {
+    for (const axis_result& a : d.axes)
+        if (a.name == axis) return voice_of(a);
+    return {};
+}
+
 /// "coulomb: 20.3 N (19.9 to 20.7)"; one line a harmonic.
-inline std::vector<std::string> lines_of(const parameter_estimate& p) {
-    const auto [label, unit] = label_of(p.key);
+inline std::vector<std::string> lines_of(const parameter_estimate& p, const axis_voice& voice = {}) {
+    const auto [label, volts] = label_of(p.key);
+    const std::string unit = voice.in_command_unit(volts);
     std::vector<std::string> lines;
     for (std::size_t k = 0; k < p.values.size(); ++k) {
         const std::string harmonic = p.values.size() > 1 ? fmt::format(" {}", k + 1) : "";
-        lines.push_back(fmt::format("{}{}: {}", label, harmonic, interval(p.values[k], unit)));
+        lines.push_back(fmt::format("{}{}: {}", label, harmonic, interval(p.values[k], unit)) +
+                        (p.on_bound ? "; at the end of what was searched, it may lie beyond" : ""));
     }
     return lines;
 }
 
-inline std::vector<std::string> lines_of(const std::vector<parameter_estimate>& parameters) {
+inline std::vector<std::string> lines_of(const std::vector<parameter_estimate>& parameters,
+                                         const axis_voice& voice) {
     std::vector<std::string> lines;
     for (const parameter_estimate& p : parameters)
-        for (std::string& line : lines_of(p)) lines.push_back(std::move(line));
+        for (std::string& line : lines_of(p, voice)) lines.push_back(std::move(line));
     return lines;
 }
 
@@ -241,8 +288,8 @@ inline std::string claim(const cause& c) {
     return named(names, "or");
 }
 
-/// "Coulomb friction is missing from the simulation of axis x: with it, ..."
-inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
+namespace detail {
+inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {
     const std::string before = quantity(a.gap.force_rms_N, "N"),
                       floor = quantity(a.gap.noise_floor_force_rms_N, "N");
     if (a.verdict == verdict::no_gap)
@@ -290,6 +337,13 @@ inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
                        a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
 }
 
+} // namespace detail
+
+/// "Coulomb friction is missing from the simulation of axis x: with it, ..."
+inline std::string sentence(const diagnosis_result& d, const axis_result& a) {
+    return voice_of(a)(detail::sentence_of_a_linear_axis(d, a));
+}
+
 /// The sentence of the worst axis.
 inline std::string verdict_sentence(const diagnosis_result& d) {
     const auto worst =
@@ -325,25 +379,27 @@ struct gap_row {
 /// In the order in which an engineer asks; a row is in the unit of its first number.
 inline std::vector<gap_row> gap_rows(const axis_result& a) {
     const gap_numbers &b = a.gap, &c = a.gap_after;
-    const auto row = [](std::string name, double before, double after, std::string_view unit) {
+    const axis_voice voice = voice_of(a);
+    const auto row = [&](std::string_view name, double before, double after, const std::string& unit) {
         const scale s = scale_of(unit, before);
-        return gap_row{std::move(name), fmt::format("{} {}", number(before * s.factor), s.unit),
+        return gap_row{voice(name), fmt::format("{} {}", number(before * s.factor), s.unit),
                        fmt::format("{} {}", number(after * s.factor), s.unit), ""};
     };
-    std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, "N")};
-    rows[0].floor = quantity(b.noise_floor_force_rms_N, "N");
+    std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, voice("N"))};
+    rows[0].floor = quantity(b.noise_floor_force_rms_N, voice("N"));
     if (!closed_loop(a)) return rows;
-    rows.push_back(row("position, rms", b.position_rms_m, c.position_rms_m, "m"));
-    rows.push_back(row("position, peak", b.position_peak_m, c.position_peak_m, "m"));
-    rows.push_back(row("command, rms", b.command_rms_V, c.command_rms_V, "V"));
+    rows.push_back(row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")));
+    rows.push_back(row("position, peak", b.position_peak_m, c.position_peak_m, voice("m")));
+    rows.push_back(row("command, rms", b.command_rms_V, c.command_rms_V, voice.in_command_unit("V")));
     return rows;
 }
 
 inline std::string gap_basis(const axis_result& a) {
-    return fmt::format(
-        "Residual force up to {}{}{}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
-        a.evaluated_on.empty() ? "" : ", judged on ", a.evaluated_on,
-        closed_loop(a) ? "" : " No closed loop was simulated: there are no position and command gaps.");
+    return voice_of(a)("Residual force ") +
+           fmt::format(
+               "up to {}{}{}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
+               a.evaluated_on.empty() ? "" : ", judged on ", a.evaluated_on,
+               closed_loop(a) ? "" : " No closed loop was simulated: there are no position and command gaps.");
 }
 
 inline constexpr std::pair<std::string_view, std::string_view> views[] = {

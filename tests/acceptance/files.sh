@@ -55,6 +55,37 @@ refuses 'not in range' apply --machine better.json --diagnosis found.json --out 
 refuses 'excludes' apply --machine better.json --diagnosis found.json --out again.json --at-least 1 --all
 [ ! -e again.json ]
 
+# Two seconds of the same log as a rotary axis: every file in rad and N m, from the diagnosis to what is left.
+head -n 4500 "$data/log.csv" >short.csv
+sed '1s/x_ref_m,x_pos_m/x_ref_rad,x_pos_rad/' short.csv >turning.csv
+sed 's/mass_kg/inertia_kg_m2/; s/force_constant_N_per_V/torque_constant_Nm_per_V/; s/N_s_per_m/Nm_s_per_rad/; s/coulomb_N"/coulomb_Nm"/
+    s/"mass"/"inertia"/; s/"force_constant"/"torque_constant"/; s/resolution_m"/resolution_rad"/; s/_per_m"/_per_rad"/g' \
+    "$data/machine.json" >turning.json
+"$program" diagnose --verbose --machine turning.json --log turning.csv --json turned.json --report turned.html >turned.txt 2>/dev/null
+grep -q '"torque_rms_Nm"' turned.json
+grep -q '"kind": "rotary"' turned.json
+! grep -E '_N"|_m"|_kg"|force_rms' turned.json
+grep -q 'torque, rms' turned.txt
+! grep -E '[0-9] (m?N|kN|[nµm]?m|m/s)( |$|\.|,)' turned.txt | grep -v 'N m'
+grep -q 'torque \[N m\]' turned.html
+"$program" apply --machine turning.json --diagnosis turned.json --out turned_better.json --all >turned_changes.txt
+! grep -E '_N:|_m:|_kg:' turned_changes.txt
+before=$("$program" simulate --quiet --machine turning.json --log turning.csv --json s.json && sed -n 's/.*"torque_rms_Nm": \([0-9.e+-]*\).*/\1/p' s.json)
+after=$("$program" simulate --quiet --machine turned_better.json --log turning.csv --json s.json && sed -n 's/.*"torque_rms_Nm": \([0-9.e+-]*\).*/\1/p' s.json)
+echo "torque gap of the same log as a rotary axis: $before N m, then $after N m"
+awk "BEGIN { exit !($after < 0.7 * $before) }"
+refuses 'axis x is rotary in the log, linear in' diagnose --machine "$data/machine.json" --log turning.csv
+sed 's/coulomb_Nm/coulomb_N/' turning.json >mixed.json
+refuses 'mixed.json:6:' diagnose --machine mixed.json --log turning.csv
+refuses 'axes.x.plant.coulomb_N: is of a linear axis; this one is rotary: coulomb_Nm' diagnose --machine mixed.json --log turning.csv
+
+# The diagnosis knows its files: apply says when the machine file is another one.
+[ "$(sed -n '/"machine"/,/}/s/.*"sha256": "\(.*\)".*/\1/p' found.json)" = "$(sha256sum <"$data/machine.json" | cut -d' ' -f1)" ]
+[ "$(sed -n '/"log"/,/}/s/.*"sha256": "\(.*\)".*/\1/p' found.json)" = "$(sha256sum <"$data/log.csv" | cut -d' ' -f1)" ]
+! grep 'byte for byte' changes.txt
+sed 's/0.05, "static"/0.051, "static"/' "$data/machine.json" >touched.json
+"$program" apply --machine touched.json --diagnosis found.json --out better_touched.json | grep -q 'Note: touched.json is not, byte for byte,'
+
 # import: the samples that are shipped, then what is wrong with them.
 for sample in halsampler.txt odrive.csv twincat_scope.csv; do
     "$program" import --map "$root/examples/import/${sample%.*}.map.json" "$root/examples/import/$sample" "${sample%.*}.csv"
@@ -77,6 +108,10 @@ grep -q 'axes.x.plant.mass_kg' begun.md
 "$program" simulate --machine begun.json --log halsampler.csv >/dev/null
 printf '80\n400\n\n0.4ms\n' | "$program" init --questions --quiet --out asked.json --log halsampler.csv 2>asked.txt
 grep -q 'moving mass' asked.txt
+printf 'yes\n0.02\n\n' | "$program" init --questions --out rotary.json --sample-period 0.001 --quiet 2>asked.txt
+grep -q 'moving inertia' asked.txt
+grep -q '"inertia_kg_m2": 0.02' rotary.json
+refuses 'axis c: --inertia is missing' init --out no.json --log odrive.csv
 grep -q '"delay_s": 0.0004' asked.json
 refuses '--mass is missing; the log speaks of about 8' init --out no.json --log halsampler.csv --force-constant 400
 refuses 'is not a number of kg' init --out no.json --log halsampler.csv --mass 80mm --force-constant 400
@@ -93,9 +128,15 @@ done
 [ "$("$program" --version)" = "$("$program" apply --version)" ]
 if command -v bash >/dev/null; then
     mkdir -p bin && ln -sf "$program" bin/quadrant-gap
-    PATH=$PWD/bin:$PATH bash -c '. "$1"
+    PATH=$PWD/bin:$PATH bash -c 'set -e; . "$1"
         COMP_WORDS=(quadrant-gap a) COMP_CWORD=1; _quadrant_gap; [ "${COMPREPLY[*]}" = apply ]
-        COMP_WORDS=(quadrant-gap apply --at) COMP_CWORD=2; _quadrant_gap; [ "${COMPREPLY[*]}" = --at-least ]' - \
+        COMP_WORDS=(quadrant-gap apply --at) COMP_CWORD=2; _quadrant_gap; [ "${COMPREPLY[*]}" = --at-least ]
+        for s in $(quadrant-gap --help | sed -n "/^Subcommands:/,\$s/^  \([a-z]*\) .*/\1/p"); do
+            COMP_WORDS=(quadrant-gap "$s" -) COMP_CWORD=2; _quadrant_gap
+            for option in $(quadrant-gap "$s" --help | awk "/^  -/ { print \$1 }" | tr , " "); do
+                case " ${COMPREPLY[*]} " in *" $option "*) ;; *) echo "$s $option is not completed"; exit 1 ;; esac
+            done
+        done' - \
         "$root/examples/quadrant_gap/quadrant-gap.bash"
     echo 'ok: completion'
 fi

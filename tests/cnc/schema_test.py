@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""The machine files of quadrant-cnc against docs/schema/cnc.schema.json, the keys of the schema against those of the reader, and what
+"""The machine files of quadrant-cnc against docs/schema/cnc.schema.json, its figures against cnc_run.schema.json, the keys of the schema against those of the reader, and what
 quadrant-cnc refuses or not, beside what the schema does: schema_test.py PROGRAM SCRATCH [MACHINE_FILE_OF_THE_GAP ...]"""
 import copy
 import json
@@ -29,7 +29,7 @@ def expect(ok, message):
         faults.append(message)
 
 
-schema = validator("cnc.schema.json")
+schema, figures = validator("cnc.schema.json"), validator("cnc_run.schema.json")
 keys = (root / "examples/quadrant_cnc/cnc_keys.hpp").read_text(encoding="utf-8")
 theirs = (root / "include/quadrant/diagnosis/read/machine_keys.hpp").read_text(encoding="utf-8")
 
@@ -76,8 +76,11 @@ def both(change, good):
     change(machine, machine["axes"]["x"])
     path = scratch / "changed.json"
     path.write_text(json.dumps(machine))
-    ran = subprocess.run([program, "run", "--cnc", path, "--path", stroke], capture_output=True, text=True)
+    ran = subprocess.run([program, "run", "--cnc", path, "--path", stroke, "--json"], capture_output=True, text=True)
     expect(schema.is_valid(machine) == good, f"the schema {'refuses' if good else 'accepts'} {machine}")
+    if good:  # the figures that it printed are what their schema says
+        for error in figures.iter_errors(json.loads(ran.stdout)):
+            faults.append(f"run --json: {'/'.join(map(str, error.absolute_path))}: {error.message}")
     expect((ran.returncode == 0) == good, f"quadrant-cnc {'refuses' if good else 'accepts'} {machine}: {ran.stderr}")
     expect(good or ran.stderr.count("\n") == 1 and "changed.json" in ran.stderr, f"not one line with the file: {ran.stderr}")
 

@@ -85,6 +85,10 @@ diagnosis_result full() {
     d.remaining_structure = "some";
     d.next = {"slow strokes", {"cogging", "force_ripple"}, 3};
     d.notes = {"a note"};
+    d.causes[0].parameters[0].on_bound = true;
+    d.not_seen = {{"x", "a scale error", "a laser interferometer"}};
+    d.machine_file = "m.json";
+    d.machine_sha256 = std::string(64, 'a');
     return d;
 }
 
@@ -247,12 +251,44 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
         else
             CHECK(flat_written[path] == entry.value());
     }
+    auto turning = machine; // the same numbers as rotary axes
+    for (auto& axis : turning.axes) axis.kind = axis_kind::rotary;
+    const auto rotary = to_json(turning);
+    CHECK(to_json(read_machine(rotary.dump(), "c.json")) == rotary);
+    CHECK(rotary["axes"]["x"]["plant"]["gms_stiffness_Nm_per_rad"].dump() == "[10000000.0,20000000.0]");
+    CHECK(rotary["axes"]["x"]["controller"].contains("acceleration_feedforward_V_s2_per_rad"));
+}
+
+TEST_CASE("apply: a rotary axis gets its keys in rad and N m, and what moves with them") {
+    auto turning = read_machine(std::string_view(machine_text), "m.json");
+    for (auto& axis : turning.axes) axis.kind = axis_kind::rotary;
+    const std::string file = to_json(turning).dump();
+    auto d = of({named("x", "coulomb_friction", {value("coulomb_Nm", {190})}, true),
+                 named("x", "cogging", {value("cogging_period_rad", {0.1}), value("cogging_Nm", {4})}),
+                 named("x", "encoder_quantization", {value("encoder.resolution_rad", {1e-6})}, true),
+                 named("y", "force_constant", {value("torque_constant_Nm_per_V", {80})}, true),
+                 named("y", "constant_force", {value("constant_torque_Nm", {3})}, false, 0.2)});
+    CHECK_THROWS_WITH_AS(apply(file, "m.json", d),
+                         "m.json: axes.x: is a rotary axis; the diagnosis is of another machine", bad_input);
+    for (auto& axis : d.axes) axis.kind = axis_kind::rotary;
+    const auto out = apply(file, "m.json", read_diagnosis(to_json(d).dump(), "d.json"));
+    const auto& x = out.machine["axes"]["x"];
+    CHECK(x["plant"]["coulomb_Nm"] == 190);
+    CHECK(x["plant"]["static_Nm"] == 190 + 177 - 122);
+    CHECK(x["plant"]["cogging_Nm"].dump() == "[4.0]");
+    CHECK(x["encoder"]["resolution_rad"] == 1e-6);
+    CHECK(out.machine["axes"]["y"]["plant"]["torque_constant_Nm_per_A"] == 80);
+    REQUIRE(out.notes.size() == 1);
+    CHECK(out.notes[0].ends_with("which took the torque from 0 N m to 0 N m"));
 }
 
 TEST_CASE("read_diagnosis: what to_json wrote comes back whole") {
     const nlohmann::json json = to_json(full()); // the order of parameters is free
     const nlohmann::json again = to_json(read_diagnosis(json.dump(), "d.json"));
     CHECK(again == json);
+    CHECK(json["files"]["machine"]["name"] == "m.json");
+    CHECK(json["causes"][0]["parameters"]["cogging_period_m"]["on_bound"] == true);
+    CHECK(json["not_seen"][0]["instrument"] == "a laser interferometer");
 }
 
 TEST_CASE("read_diagnosis: the fuzzer's seed is a diagnosis that can be applied") {

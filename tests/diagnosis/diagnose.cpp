@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 
+#include <quadrant/diagnosis/write_diagnosis.hpp>
+
 using namespace workshop;
 
 TEST_CASE("diagnose: a machine that differs by calibration only is within tolerance") {
@@ -172,15 +174,92 @@ TEST_CASE("diagnose: a record too short to leave motions out is refused") {
                          "short.csv: 3799 samples are 1.9 s: a diagnosis needs at least 2 s", bad_input);
 }
 
-TEST_CASE("diagnose: same input, same output") {
+TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians") {
     machine real;
-    const auto file = described(real);
-    real.mass = 225;
-    const auto log = as_log(run(real, three_strokes));
-    const auto a = diagnose(file, log), b = diagnose(file, log);
-    REQUIRE(a.causes.size() == b.causes.size());
-    CHECK(a.causes[0].probability == b.causes[0].probability);
-    CHECK(value_of(a.causes[0], "mass_kg").low == value_of(b.causes[0], "mass_kg").low);
-    CHECK(a.axes[0].signals.residual_after == b.axes[0].signals.residual_after);
-    CHECK(a.remaining_structure == b.remaining_structure);
+    auto file = described(real);
+    real.constant_force = 25;
+    auto log = as_log(run(real, three_strokes));
+    const auto linear = diagnose(file, log);
+    file.axes[0].kind = log.axes[0].kind = axis_kind::rotary;
+    const auto rotary = diagnose(file, log);
+    REQUIRE(linear.causes.size() == rotary.causes.size());
+    REQUIRE(!rotary.causes.empty());
+    CHECK(rotary.axes[0].signals.residual_after == linear.axes[0].signals.residual_after);
+    CHECK(value_of(rotary.causes[0], "constant_torque_Nm").low ==
+          value_of(linear.causes[0], "constant_force_N").low);
+    // Number by number the two files are one; the rotary one speaks of no metre and no newton.
+    const auto numbers = [](const diagnosis_result& d) {
+        std::vector<std::string> out;
+        const auto flat = to_json(d).flatten();
+        for (const auto& [path, value] : flat.items())
+            if (value.is_number()) out.push_back(value.dump());
+        return out;
+    };
+    CHECK(numbers(rotary) == numbers(linear));
+    const auto json = to_json(rotary);
+    const auto flat = json.flatten();
+    for (const auto& [path, value] : flat.items()) {
+        CAPTURE(path);
+        for (const char* of_a_line : {"_m", "_N", "_per_m", "_per_s2", "_kg"})
+            CHECK_FALSE(path.ends_with(of_a_line));
+        CHECK(path.find("_N_") == path.npos);
+        CHECK(path.find("force_rms") == path.npos);
+    }
+    CHECK(json["axes"]["x"]["gap"]["torque_rms_Nm"] == linear.axes[0].gap.force_rms_N);
+    CHECK(json["axes"]["x"]["kind"] == "rotary");
+    CHECK(rotary.axes[0].where[1].finding.find(" N ") == std::string::npos);
+}
+
+TEST_CASE("diagnose: a value that stopped at the end of its range is marked, one inside is not") {
+    candidate c;
+    c.fit.parameters = {{.key = "mass_kg", .low = 1, .high = 4, .logarithmic = true},
+                        {.key = "spring_N_per_m", .low = 0, .high = 10}};
+    c.fit.x = Eigen::Vector2d(std::log(4.0), 5);
+    std::vector<parameter_estimate> found{{"mass_kg", {{4, 3, 5}}}, {"spring_N_per_m", {{5, 4, 6}}}};
+    mark_bounds(c, found);
+    CHECK(found[0].on_bound);
+    CHECK_FALSE(found[1].on_bound);
+    c.fit.x[1] = 0;
+    mark_bounds(c, found);
+    CHECK(found[1].on_bound);
+}
+
+TEST_CASE(
+    "diagnose: what the encoder cannot know of itself is said where machine and simulation agree, or it is "
+    "suspected") {
+    axis_result a;
+    a.name = "x";
+    cause c;
+    c.axis = "x";
+    c.effect = "cogging";
+    for (const verdict v : {verdict::no_gap, verdict::within_tolerance, verdict::explained}) {
+        a.verdict = v;
+        CHECK(unseen_by(a, {c}).size() == blind_spots_of_a_line.size());
+    }
+    a.verdict = verdict::partly_explained;
+    CHECK(unseen_by(a, {c}).empty());
+    c.confusable_with = {"encoder_cyclic_error"};
+    REQUIRE(unseen_by(a, {c}).size() == 3);
+    CHECK(unseen_by(a, {c})[0].instrument.find("laser interferometer") != std::string::npos);
+    c.axis = "y";
+    CHECK(unseen_by(a, {c}).empty());
+    a.verdict = verdict::explained;
+    a.kind = axis_kind::rotary;
+    CHECK(unseen_by(a, {})[0].instrument.find("autocollimator") != std::string::npos);
+}
+
+TEST_CASE("diagnose: a command in newtons is searched on its own scale, as one in volts") {
+    machine real;
+    auto file = described(real);
+    file.axes[0].controller.reset();
+    for (const effect_name& e : effect_names) // what is left is enough to be wrong about
+        if (e.name != "cogging" && e.name != "constant_force" && e.name != "position_spring")
+            file.excluded_effects.emplace_back(e.name);
+    real.cogging = 12;
+    auto log = as_log(run(real, three_strokes));
+    for (double& u : log.axes[0].command) u *= file.axes[0].plant.force_constant_N_per_V;
+    log.axes[0].command_unit = file.axes[0].command_unit = "N";
+    file.axes[0].plant.force_constant_N_per_V = 1; // its tolerance stays: the machine is the same
+    const auto d = diagnose(file, log);
+    named(d, "cogging", "cogging_N", 12, 0.03);
 }

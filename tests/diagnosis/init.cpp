@@ -110,3 +110,24 @@ TEST_CASE("init: what does not fit together is refused, what is unusual is asked
     r.values["static"][""] = 10; // without the velocity at which it fades
     CHECK(refusal(r) == "init: axes.x.plant.static_N: needs stribeck_velocity_m_per_s");
 }
+
+TEST_CASE("init: a rotary axis is begun in rad and N m, from its log or because it is said") {
+    init_request r;
+    r.values["mass"][""] = 180;
+    r.values["coulomb"][""] = 60;
+    r.rotary = true;
+    r.sample_period_s = 0.0005;
+    const auto begun = init_machine(r);
+    CHECK(begun.machine["axes"]["x"]["plant"].dump() == R"({"inertia_kg_m2":180.0,"coulomb_Nm":60.0})");
+    CHECK(begun.comments.find("moving inertia") != std::string::npos);
+    r.command_unit = "N";
+    CHECK(refusal(r) == "init: axis x is rotary: its command is in V, A or Nm");
+    auto log = workshop_log();
+    CHECK(refusal(request(), &log) == "accepted");
+    r.command_unit.clear();
+    CHECK(refusal(r, &log) == "log.csv: axis x is linear, not rotary");
+    log.axes[0].kind = axis_kind::rotary;
+    CHECK(init_machine(request(), &log).machine["axes"]["x"]["plant"].contains("torque_constant_Nm_per_V"));
+    r.values.clear();
+    CHECK(refusal(r, &log).find("axis x: --inertia is missing") != std::string::npos);
+}

@@ -238,12 +238,27 @@ TEST_CASE("read_log: an axis is named so that a message and a key can name it") 
     CHECK(read("t_s,z_2-b_ref_m,z_2-b_pos_m,z_2-b_cmd_N\n0,0,0,0\n1,0,1,0\n").axes[0].name == "z_2-b");
 }
 
-TEST_CASE("read_log: rotary axes are refused in plain words") {
-    const std::string said =
-        " belongs to a rotary axis; this version reads linear axes only (x_ref_m, x_pos_m, x_cmd_V)";
-    CHECK(refusal("t_s,c_ref_rad,c_pos_rad,c_cmd_Nm\n") == "log.csv:1:5: \"c_ref_rad\"" + said);
-    CHECK(refusal("t_s,c_pos_rad\n") == "log.csv:1:5: \"c_pos_rad\"" + said);
-    CHECK(refusal("t_s,c_cmd_Nm\n") == "log.csv:1:5: \"c_cmd_Nm\"" + said);
+TEST_CASE("read_log: a rotary axis is in rad, its command in N m, V or A") {
+    const auto log = read("t_s,c_ref_rad,c_pos_rad,c_cmd_Nm,x_ref_m,x_pos_m,x_cmd_A,c_vel_rad_per_s\n"
+                          "0,0,0,0.5,0,0,1,0\n1,0,1,0.25,0,1,2,0\n");
+    REQUIRE(log.axes.size() == 2);
+    CHECK(log.axes[0].kind == axis_kind::rotary);
+    CHECK(log.axes[0].command_unit == "Nm");
+    CHECK(log.axes[0].command == std::vector{0.5, 0.25});
+    CHECK(log.axes[1].kind == axis_kind::linear);
+    CHECK(read("t_s,c_ref_rad,c_pos_rad,c_cmd_V\n0,0,0,0\n1,0,1,0\n").axes[0].command_unit == "V");
+}
+
+TEST_CASE("read_log: an axis that is half linear and half rotary is refused where it changes") {
+    CHECK(refusal("t_s,c_ref_rad,c_pos_m,c_cmd_V\n") ==
+          "log.csv:1:15: \"c_pos_m\": axis c is linear (m, N) or rotary (rad, Nm), not both");
+    CHECK(refusal("t_s,c_cmd_N,c_ref_rad,c_pos_rad\n") ==
+          "log.csv:1:5: axis c is rotary: its command is c_cmd_V, c_cmd_A or c_cmd_Nm");
+    CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_Nm\n") ==
+          "log.csv:1:21: axis x is linear: its command is x_cmd_V, x_cmd_A or x_cmd_N");
+    CHECK(refusal("t_s,c_pos_rad,c_cmd_V\n").ends_with("column c_ref_rad is missing"));
+    CHECK(refusal("t_s,c_cmd_Nm\n").ends_with("column c_ref_rad is missing"));
+    CHECK(refusal("t_s,c_ref_rad,c_pos_rad\n").ends_with("(or c_cmd_A, c_cmd_Nm)"));
 }
 
 TEST_CASE("read_log: a log without motion is refused") {

@@ -119,6 +119,74 @@ TEST_CASE("read_machine: every key of the plant arrives in its field") {
     CHECK(y.plant.cogging_phase_rad == std::vector{0.8, -0.9});
 }
 
+TEST_CASE("read_machine: a rotary axis has inertia, torques and radians in the same fields") {
+    const auto machine = read_machine(
+        R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"b": {"plant": {"inertia_kg_m2": 9}},
+            "c": {"plant": {"inertia_kg_m2": 1, "torque_constant_Nm_per_A": 2, "viscous_Nm_s_per_rad": 3, "static_Nm": 5,
+            "coulomb_Nm": 4, "stribeck_velocity_rad_per_s": 6, "constant_torque_Nm": 7, "presliding_angle_rad": 0.25,
+            "cogging_period_rad": 0.5, "cogging_Nm": [8], "cogging_phase_rad": [0.75], "mode_inertia_kg_m2": 0.125,
+            "mode_frequency_Hz": 50, "backlash_rad": 0.0625, "spring_Nm_per_rad": 10},
+            "tolerance": {"inertia": 0.01, "torque_constant": 0.02}, "encoder": {"resolution_rad": 11, "cyclic_rad": 12,
+            "cyclic_period_rad": 13, "cyclic_phase_rad": 14}, "process": {"fundamental_Hz": 20, "torque_Nm": [15]},
+            "controller": {"kind": "cascade_p_pi", "position_gain_per_s": 1, "velocity_gain_V_s_per_rad": 16,
+            "velocity_filter_Hz": 100}}}})",
+        "m");
+    REQUIRE(machine.axes.size() == 2);
+    CHECK(machine.axes[0].command_unit == "Nm");
+    CHECK(machine.notes.front().find("axis b: no controller") == 0);
+    CHECK(machine.notes[1] == "axis b: no tolerance is given for inertia: 0.05 is assumed.");
+    CHECK(machine.notes[2] == "axis b: no torque constant is given: the command is taken for newton metres.");
+    const auto& c = machine.axes[1];
+    CHECK(c.kind == axis_kind::rotary);
+    CHECK(c.command_unit == "A");
+    CHECK(c.plant.mass_kg == 1);
+    CHECK(c.plant.force_constant_N_per_V == 2);
+    CHECK(c.plant.viscous_N_s_per_m == 3);
+    CHECK(c.plant.coulomb_N == 4);
+    CHECK(c.plant.static_N == 5);
+    CHECK(c.plant.stribeck_velocity_m_per_s == 6);
+    CHECK(c.plant.constant_force_N == 7);
+    CHECK(c.plant.presliding_length_m == 0.25);
+    CHECK(c.plant.cogging_period_m == 0.5);
+    CHECK(c.plant.cogging_N == std::vector{8.0});
+    CHECK(c.plant.cogging_phase_rad == std::vector{0.75});
+    CHECK(c.plant.mode_mass_kg == 0.125);
+    CHECK(c.plant.backlash_m == 0.0625);
+    CHECK(c.plant.spring_N_per_m == 10);
+    CHECK(c.tolerance.of("mass") == 0.01);
+    CHECK(c.tolerance.of("force_constant") == 0.02);
+    CHECK(c.encoder.resolution_m == 11);
+    CHECK(c.encoder.cyclic_m == 12);
+    CHECK(c.encoder.cyclic_period_m == 13);
+    CHECK(c.encoder.cyclic_phase_rad == 14);
+    CHECK(c.process.force_N == std::vector{15.0});
+    CHECK(c.controller->velocity_gain_V_s_per_m == 16);
+}
+
+TEST_CASE("read_machine: an axis that mixes linear and rotary keys is refused, with the place and the rule") {
+    const auto of = [](std::string_view plant, std::string_view rest = "") {
+        return refusal(
+            fmt::format("{{\"schema\": \"quadrant.machine/1\", \"sample_period_s\": 0.001,\n\"axes\": "
+                        "{{\"c\": {{\n  \"plant\": {{{}}}{}}}}}}}",
+                        plant, rest));
+    };
+    const std::string rule = " (an axis has m, N and kg, or rad, Nm and kg_m2, throughout)";
+    CHECK(of(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
+          "machine.json:3:33: axes.c.plant.coulomb_N: is of a linear axis; this one is rotary: coulomb_Nm" +
+              rule);
+    CHECK(of(R"("mass_kg": 1, "coulomb_Nm": 2)") ==
+          "machine.json:3:27: axes.c.plant.coulomb_Nm: is of a rotary axis; this one is linear, without "
+          "inertia_kg_m2: coulomb_N" +
+              rule);
+    CHECK(of(R"("mass_kg": 1, "inertia_kg_m2": 2)").find("3:13: axes.c.plant.mass_kg: is of a linear") !=
+          std::string::npos);
+    CHECK(of(R"("inertia_kg_m2": 2)", R"(, "encoder": {"resolution_m": 1})").find("resolution_rad") !=
+          std::string::npos);
+    CHECK(of(R"("inertia_kg_m2": -2)") == "machine.json: axes.c.plant.inertia_kg_m2: must be a number > 0");
+    CHECK(of(R"("inertia_kg_m2": 2, "static_Nm": 1)").ends_with("needs stribeck_velocity_rad_per_s"));
+    CHECK(of(R"("inertia_kg_m2": 2, "colomb_Nm": 1)").ends_with("did you mean coulomb_Nm?"));
+}
+
 TEST_CASE("read_machine: text that is not JSON is refused with its place") {
     CHECK(refusal("{\n  \"schema\": \"quadrant.machine/1\"\n  \"axes\": {}\n}") ==
           "machine.json:3:8: syntax error while parsing object - unexpected string literal; expected '}'");
@@ -444,6 +512,9 @@ TEST_CASE("check_match: a log of another machine is refused") {
     CHECK(said(machine, log(0.0005, {}, "V")) == "machine.json: axes.x: is not recorded in log.csv");
     CHECK(said(machine, log(0.0005, {"x"}, "A")) ==
           "machine.json: axes.x.plant.force_constant_N_per_V: the command column of log.csv is x_cmd_A");
+    auto turning = log(0.0005, {"x"}, "V");
+    turning.axes[0].kind = axis_kind::rotary;
+    CHECK(said(machine, turning) == "log.csv: axis x is rotary in the log, linear in machine.json");
     const auto newtons = read_machine(without(plant, "force_constant_N_per_V"), "machine.json");
     CHECK(said(newtons, log(0.0005, {"x"}, "N")) == "accepted");
     CHECK(said(newtons, log(0.0005, {"x"}, "V")) == "machine.json: axes.x.plant.force_constant_N_per_V: is "

@@ -168,9 +168,32 @@ for path, to in [
         (["actuator", "loss_probability"], 1)]:
     refuse(machine, changed(every_effect, x + path, to), f"machine with {'.'.join(path)} = {to}")
 
+# A rotary axis has the same keys, word by word in its own units.
+words = {"m": "rad", "N": "Nm", "kg": "kg_m2", "mass": "inertia", "force": "torque", "length": "angle"}
+
+
+def rotary(value):
+    if isinstance(value, dict):
+        return {re.sub("[^_.]+", lambda w: words.get(w[0], w[0]), key): rotary(v) for key, v in value.items()}
+    return value
+
+
+of_an_angle = changed(every_effect, x, rotary(every_effect["axes"]["x"]))
+accept(machine, of_an_angle, "a rotary machine with every effect")
+refuse(machine, changed(of_an_angle, x + ["plant", "coulomb_N"], 1), "a rotary plant with newtons")
+refuse(machine, changed(of_an_angle, x + ["encoder", "resolution_m"], 1), "a rotary encoder with metres")
+refuse(machine, changed(every_effect, x + ["plant", "coulomb_Nm"], 1), "a linear plant with newton metres")
+for box in ("plant", "tolerance", "encoder", "process", "cascade_p_pi", "axis"):
+    checked += 1
+    of_line = machine.schema["$defs"][box]["properties"]
+    if rotary(dict.fromkeys(of_line)).keys() != machine.schema["$defs"]["rotary_" + box]["properties"].keys():
+        faults.append(f"machine.schema.json: the keys of rotary_{box} are not those of {box} in its words")
+
 accept(log, ["x_cmd_V", "t_s", "note", "x_ref_m", "x_pos_m", "x_force_N"], "a log of this test")
+accept(log, ["t_s", "c_ref_rad", "c_pos_rad", "c_cmd_Nm", "x_ref_m", "x_pos_m", "x_cmd_V"], "a log with a rotary axis")
 for names in (["x_ref_m", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_ref_m", "x_pos_m", "a"],
-              ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "x_pos_m"], ["t_s", "c_ref_rad", "c_pos_rad", "c_cmd_Nm"],
+              ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "x_pos_m"], ["t_s", "c_ref_rad", "c_pos_m", "c_cmd_Nm"],
+              ["t_s", "x_ref_rad", "x_pos_rad", "x_cmd_V", "x_pos_m"], ["t_s", "c_ref_rad", "c_pos_rad", "c_cmd_N"],
               ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "x_cmd_A"], ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "y_pos_m"]):
     refuse(log, names, f"log with columns {names}")
 
@@ -189,6 +212,19 @@ good_diagnosis = {
     "remaining": {"share_of_gap_unexplained": 0, "structure": ""},
     "next_experiment": {"motion": "", "separates": [], "expected_gain": 0}}
 accept(diagnosis, good_diagnosis, "the diagnosis of this test")
+of_an_angle = copy.deepcopy(good_diagnosis)
+of_an_angle["axes"]["x"] |= {"kind": "rotary", "command_unit": "Nm", "gap": rotary(gap)}
+of_an_angle["causes"][0] = rotary(good_diagnosis["causes"][0])
+accept(diagnosis, of_an_angle, "a diagnosis of a rotary axis")
+whole = copy.deepcopy(good_diagnosis) | {
+    "not_seen": [{"axis": "x", "what": "scale", "instrument": "interferometer"}],
+    "files": {"machine": {"name": "m.json", "sha256": "0" * 64}, "log": {"name": "l.csv", "sha256": "f" * 64}}}
+whole["causes"][0]["parameters"]["cogging_period_m"]["on_bound"] = True
+accept(diagnosis, whole, "a diagnosis with all that may be there")
+refuse(diagnosis, changed(whole, ["files", "machine", "sha256"], "0"), "a digest that is none")
+refuse(diagnosis, changed(whole, ["not_seen", 0, "what"], ...), "a blind spot without a name")
+refuse(diagnosis, changed(of_an_angle, ["axes", "x", "kind"], "linear"), "a linear axis with torques")
+refuse(diagnosis, changed(of_an_angle, ["causes", 0, "gap_before_force_rms_N"], 1), "a cause with force and torque")
 for path, to in [
         (["verdict"], "perhaps"), (["verdict"], "no_gap"), (["axes", "x", "gap", "bandwidth_Hz"], ...),
         (["axes", "x", "where", 0, "basis"], ...), (["axes", "x", "where", 1, "block"], "mechanics"),
@@ -210,7 +246,7 @@ for path, to in [(["axes"], {}), (["axes", "x", "gap"], ...), (["axes", "x", "co
                  (["axes", "x", "where", 0, "share"], 2), (["axes", "x", "gap", "force_rms_N"], -1)]:
     refuse(simulation, changed(good_simulation, path, to), f"simulation with {path} = {to}")
 
-good_forecast = {"schema": "quadrant.forecast/1", "notes": [], "axes": {"x": {"gap_before": gap, "gap_after": gap, "shrink": 0}}}
+good_forecast = {"schema": "quadrant.forecast/1", "notes": [], "axes": {"x": {"kind": "linear", "gap_before": gap, "gap_after": gap, "shrink": 0}}}
 accept(forecast, good_forecast, "the forecast of this test")
 for path, to in [(["axes", "x", "gap_after"], ...), (["axes", "x", "shrink"], 1.1), (["schema"], "1"), (["colour"], 1)]:
     refuse(forecast, changed(good_forecast, path, to), f"forecast with {path} = {to}")

@@ -27,7 +27,27 @@ for (let k = 0; k < data.length; k += 4)
     if (data[k + 3] > 0 && Math.max(data[k], data[k+1], data[k+2]) - Math.min(data[k], data[k+1], data[k+2]) > 40) ++n;
 return n;
 """
+LOOPS = """
+return [...document.querySelectorAll('svg.loop')].map(svg => {
+    const frame = svg.getBoundingClientRect(), inside = (a, b) => a.left > b.left - 1 && a.right < b.right + 1 && a.top > b.top - 1 && a.bottom < b.bottom + 1;
+    const boxes = [...svg.querySelectorAll('.box')].map(box => {
+        const rect = box.querySelector('rect').getBoundingClientRect(), style = getComputedStyle(box.querySelector('rect'));
+        return {name: box.dataset.box, share: parseFloat(box.querySelector('.share')?.textContent), guilty: box.classList.contains('guilty'),
+                mark: !!box.querySelector('.mark'), frame: parseFloat(style.strokeWidth),
+                fits: [...box.querySelectorAll('text:not(.mark)')].every(t => inside(t.getBoundingClientRect(), rect))};
+    });
+    const texts = [...svg.querySelectorAll('text')], r = t => t.getBoundingClientRect();
+    const labels = [...svg.querySelectorAll('.signal text')], rects = [...svg.querySelectorAll('rect')];
+    const cross = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    return {boxes, says: svg.nextElementSibling.textContent, cut: texts.filter(t => !inside(r(t), frame)).map(t => t.textContent),
+            covered: labels.filter(t => rects.some(b => cross(r(t), r(b)))).map(t => t.textContent),
+            size: Math.min(...texts.map(t => parseFloat(getComputedStyle(t).fontSize) * frame.width / svg.viewBox.baseVal.width))};
+});
+"""
 RANGES = "return graphs[arguments[0]].map(g => g.xAxisRange())"
+DOTS = """
+return figures.filter(f => chart_of(f).times && chart_of(f).axis == arguments[0]).map(f => f.querySelector('.legend').textContent);
+"""
 LEGENDS = "return graphs[arguments[0]].map(g => g.graphDiv.closest('figure').querySelector('.legend').textContent)"
 # Text that is cut off or runs into the next cell.
 OVERFLOWING = """
@@ -80,6 +100,22 @@ def check_charts(driver, where):
     return len(figures)
 
 
+def check_loops(driver, where):
+    """The loop as boxes: all five, nothing cut or covered, letters that can be read, and the guilty marked without colour too."""
+    loops = driver.execute_script(LOOPS)
+    for loop in loops:
+        names = [box["name"] for box in loop["boxes"]]
+        check(names == ["controller", "actuator", "mechanics", "sensor", "process"], f"{where}: the loop shows {names}")
+        check(not loop["cut"] and not loop["covered"], f"{where}: in the loop {loop['cut']} cut, {loop['covered']} covered")
+        check(loop["size"] >= 10, f"{where}: letters of {loop['size']:.1f} px in the loop")
+        for box in loop["boxes"]:
+            check(box["fits"], f"{where}: the text of {box['name']} leaves its box")
+            check(box["guilty"] == ((box["share"] or 0) >= 20), f"{where}: {box}")
+            check(box["mark"] == box["guilty"] and (box["frame"] > 2) == box["guilty"], f"{where}: marked by colour alone: {box}")
+            check(not box["guilty"] or box["name"] in loop["says"], f"{where}: '{loop['says']}' does not name {box['name']}")
+    return len(loops)
+
+
 def check_zoom(driver):
     """Drags over the first chart of each axis: it and the charts linked to it show that part, the button shows all."""
     for axis in driver.execute_script("return Object.keys(graphs)"):
@@ -95,6 +131,8 @@ def check_zoom(driver):
         for before, after in zip(whole, zoomed):
             check(after[1] - after[0] < 0.5 * (before[1] - before[0]), f"a chart of axis {axis} did not zoom: {zoomed}")
             check(after == zoomed[0], f"the charts of axis {axis} show different times: {zoomed}")
+        stills = driver.execute_script(DOTS, axis)
+        check(all("dots of" in text for text in stills), f"the charts over velocity and position do not follow: {stills}")
         ActionChains(driver, duration=50).move_to_element(plot).perform()
         for legend in driver.execute_script(LEGENDS, axis):
             print(f"  under the pointer: {legend}")
@@ -150,12 +188,13 @@ def main():
                     where = f"{width} px, {scheme}"
                     show(driver, url, width, scheme)
                     n = check_charts(driver, where)
+                    loops = check_loops(driver, where)
                     page, seen = driver.execute_script(
                         "const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
                     check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
                     check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
                     shoot(driver, given.shots / f"{given.report.stem}-{width}-{scheme}.png")
-                    print(f"{where}: {n} charts drawn, no horizontal scroll")
+                    print(f"{where}: {n} charts and {loops} loops drawn, no horizontal scroll")
             if driver.execute_script("return Object.keys(graphs).length"):
                 check_pinch(driver)
 

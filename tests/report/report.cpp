@@ -42,6 +42,11 @@ TEST_CASE("words: a number has the digits that its interval leaves, and the unit
           "stribeck velocity: 2.2 mm/s");
     CHECK(lines_of(parameter_estimate{"cogging_N", {{3, 3, 3}, {1, 1, 1}}}) ==
           std::vector<std::string>{"cogging 1: 3.0 N", "cogging 2: 1.0 N"});
+    CHECK(lines_of(parameter_estimate{"cogging_phase_rad", {{1, 1, 1}}})[0] == "cogging phase: 57.3 deg");
+    CHECK(lines_of(parameter_estimate{"backlash_rad", {{2e-5, 2e-5, 2e-5}}})[0] == "backlash: 20.0 µrad");
+    CHECK(lines_of(parameter_estimate{"viscous_Nm_s_per_rad", {{2, 2, 2}}})[0] == "viscous: 2.0 N m s/rad");
+    CHECK(lines_of(parameter_estimate{"velocity_gain_V_s_per_rad", {{2, 2, 2}}},
+                   {axis_kind::rotary, "Nm"})[0] == "velocity gain: 2.0 N m s/rad");
     CHECK(lines_of(parameter_estimate{"viscous_asymmetry", {{0.1, 0.08, 0.12}}})[0] ==
           "viscous asymmetry: 10 % (8 to 12)");
 }
@@ -93,7 +98,51 @@ TEST_CASE("report: says the verdict, the causes with their intervals, the altern
           "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
         CHECK_MESSAGE((has(html, part) || has(html, escape(part))), part);
     CHECK(count(html, "data-effect=") == 3);
+    CHECK(count(html, "class=\"box guilty\" data-box=\"mechanics\"") == 1);
+    CHECK(count(html, "class=\"mark\"") == 1);
+    CHECK(has(html, "The gap sits in mechanics (95"));
+    CHECK(has(html, "a laser interferometer along the travel"));
+    CHECK_FALSE(has(html_report(sample::unexplained()), "id=\"unseen\""));
+    CHECK(count(html, "at the end of what was searched, it may lie beyond") == 1);
+    CHECK(count(html, "class=\"bar range\"") == 8); // five values, no phase, and three shrinks
     CHECK(charts_of(html).size() == 6);
+}
+
+TEST_CASE("report: a rotary axis is in radians and newton metres, from the verdict to the charts") {
+    diagnosis_result d = sample::explained();
+    d.axes[0].kind = axis_kind::rotary;
+    d.axes[0].command_unit = "Nm";
+    d.causes[0].parameters[0].key = "coulomb_Nm";
+    const std::string html = html_report(d), text = summary(d);
+    CHECK(has(verdict_sentence(d),
+              "constant torque are missing from the simulation of axis x: with them, the torque "
+              "gap shrinks from 20.7 N m to 2.4 N m (floor 0.90 N m)"));
+    CHECK_FALSE(has(verdict_sentence(d), "force"));
+    CHECK(has(html, escape(verdict_sentence(d))));
+    CHECK(has(html, escape("20.4 N m (19.9 to 20.8)")));
+    CHECK(has(html, ">Constant torque<"));
+    CHECK(has(text, "20.4 N m (19.9 to 20.8)"));
+    CHECK(has(text, "torque gap 20.7 → 3.9 N m"));
+    CHECK(has(text, "torque, rms"));
+    CHECK(has(text, "81.0 µrad"));
+    const auto charts = charts_of(html);
+    CHECK(charts[0]["y"] == "torque [N m]");
+    CHECK(charts[1]["y"] == "position [µrad]");
+    CHECK(charts[2]["y"] == "command [N m]");
+    CHECK(charts[3]["x"] == "velocity [mrad/s]");
+    CHECK(charts[5]["y"] == "torque [N m/√Hz]");
+    CHECK_FALSE(has(html, "Residual force"));
+}
+
+TEST_CASE("report: the charts over velocity and position know when their samples were") {
+    const auto charts = charts_of(html_report(sample::explained()));
+    for (const std::size_t k : {3U, 4U}) {
+        const auto t = charts[k]["times"].get<std::vector<double>>();
+        CHECK(t.size() == charts[k]["columns"][0].size());
+        CHECK(std::is_sorted(t.begin(), t.end()));
+        CHECK(t.back() > 23.9);
+    }
+    CHECK(charts[0]["times"].is_null());
 }
 
 TEST_CASE("report: every axis has its charts; what cannot be drawn says why") {

@@ -147,6 +147,8 @@ inline diagnosis_result explained() {
     cogging.parameters = {{"cogging_period_m", {{0.032, 0.0317, 0.0323}}},
                           {"cogging_N", {{0.31, 0.05, 0.57}, {0.12, -0.14, 0.38}}},
                           {"cogging_phase_rad", {{0.6, 0.1, 1.1}, {-1.2, -2.9, 0.5}}}};
+    cogging.parameters[0].on_bound = true;
+    d.not_seen = {{"x", "a scale error of the encoder", "a laser interferometer along the travel"}};
     cogging.gap_before_force_rms_N = {2.4, 2.3, 2.5};
     cogging.gap_after_force_rms_N = {2.38, 2.28, 2.48};
     cogging.shrink = {0.01, -0.01, 0.03};

@@ -27,6 +27,13 @@ grep -q "</html>" "$out/a.html" || fail "no page"
 "$program" trial $population --no-forecast --quiet --jobs 1 --json "$out/b.json"
 cmp "$out/a.json" "$out/b.json" || fail "the same seed said something else"
 
+schema=$(dirname "$0")/schema_test.py
+if /usr/bin/python3 -c 'import jsonschema' 2>/dev/null; then
+    /usr/bin/python3 "$schema" "$out/a.json"
+else
+    echo "SKIPPED: no python3-jsonschema"
+fi
+
 "$program" trial --machines 4 --only 4 2> "$out/refused.txt" && fail "machine 4 of 4 was accepted"
 grep -q -e "--only" "$out/refused.txt" || fail "no word about --only"
 for option in --json --report; do # said before the work, not after it

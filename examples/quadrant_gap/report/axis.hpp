@@ -42,6 +42,8 @@ inline std::string before_after(const axis_result& a, double before, double afte
 
 inline std::string axis_charts(chart_book& book, std::size_t index, const axis_result& a) {
     const axis_signals& s = a.signals;
+    const axis_voice voice = voice_of(a);
+    const std::string force_unit = voice("N"), length_unit = voice("m");
     const auto error = [&](const std::vector<double>& simulated) {
         std::vector<double> e;
         if (simulated.size() == s.position.size())
@@ -52,27 +54,27 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
     const std::vector<double> error_before = error(s.simulated_position_before),
                               error_after = error(s.simulated_position_after);
     const std::vector<series> residual{{"before", &s.residual_before}, {"after", &s.residual_after}};
-    const std::string no_residual = "the diagnosis holds no residual force for this axis";
+    const std::string no_residual = voice("the diagnosis holds no residual force for this axis");
     const std::string no_loop =
         "the machine file has no controller for this axis, so its closed loop cannot be simulated";
 
     const std::string force =
-        book.figure(index, {"time", "Residual force",
-                            "Force that the machine feels and the simulation does not: " +
-                                before_after(a, a.gap.force_rms_N, a.gap_after.force_rms_N, "N") + ".",
-                            "time", "s", "force", "N", s.t, residual, no_residual});
-    const std::string position =
-        book.figure(index, {"time",
-                            "Position error of the simulation",
-                            "Closed loop, simulated minus logged: " +
-                                before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, "m") + ".",
-                            "time",
-                            "s",
-                            "position",
-                            "m",
-                            s.t,
-                            {{"before", &error_before}, {"after", &error_after}},
-                            no_loop});
+        book.figure(index, {"time", voice("Residual force"),
+                            voice("Force that the machine feels and the simulation does not: ") +
+                                before_after(a, a.gap.force_rms_N, a.gap_after.force_rms_N, force_unit) + ".",
+                            "time", "s", voice("force"), force_unit, s.t, residual, no_residual});
+    const std::string position = book.figure(
+        index, {"time",
+                "Position error of the simulation",
+                "Closed loop, simulated minus logged: " +
+                    before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit) + ".",
+                "time",
+                "s",
+                "position",
+                length_unit,
+                s.t,
+                {{"before", &error_before}, {"after", &error_after}},
+                no_loop});
     const std::string command = book.figure(
         index, {"time",
                 "Command",
@@ -83,26 +85,27 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
                 "time",
                 "s",
                 "command",
-                "V",
+                voice.in_command_unit("V"),
                 s.t,
                 {{"logged", &s.command}, {"replayed", &s.command_replayed}},
                 "the diagnosis holds no command for this axis"});
-    const std::string velocity =
-        book.figure(index, {"scatter", "Residual force against velocity",
-                            "Samples as dots, medians as lines: a step at zero is friction.", "velocity", "m/s",
-                            "force", "N", s.velocity, residual, no_residual});
+    const std::string velocity = book.figure(
+        index, {"scatter", voice("Residual force against velocity"),
+                "Samples as dots, medians as lines: a step at zero is friction.", "velocity", voice("m/s"),
+                voice("force"), force_unit, s.velocity, residual, no_residual, nullptr, &s.t});
     const std::string place = book.figure(
-        index, {"scatter", "Residual force against position",
+        index, {"scatter", voice("Residual force against position"),
                 "Samples as dots, medians of each direction as lines: a wave is cogging, a slope is a spring.",
-                "position", "m", "force", "N", s.position, residual, no_residual, &s.velocity});
+                "position", length_unit, voice("force"), force_unit, s.position, residual, no_residual,
+                &s.velocity, &s.t});
     const std::string spectrum =
         book.figure(index, {"spectrum",
-                            "Spectrum of the residual force",
-                            "Peaks are resonances or forces periodic in time.",
+                            voice("Spectrum of the residual force"),
+                            voice("Peaks are resonances or forces periodic in time."),
                             "frequency",
                             "Hz",
-                            "force",
-                            "N/√Hz",
+                            voice("force"),
+                            voice("N/√Hz"),
                             s.frequency_Hz,
                             {{"before", &s.spectrum_before}, {"after", &s.spectrum_after}},
                             "the record is too short for a spectrum"});
@@ -110,7 +113,8 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
         "<section><h2>Axis {0}: the gap in pictures</h2>\n"
         "<div class=\"zoom\"><p class=\"hint\">Drag across a chart to zoom (two fingers on a touch screen); "
         "the charts in "
-        "time move together.</p><button type=\"button\" data-axis=\"{1}\">Whole record</button></div>\n"
+        "time move together, and those over velocity and position show the samples of that time.</p><button "
+        "type=\"button\" data-axis=\"{1}\">Whole record</button></div>\n"
         "{2}{3}{4}<div class=\"still\">{5}{6}{7}</div>\n<h3>Where the gap sits</h3>\n{8}</section>\n",
         escape(a.name), index, force, position, command, velocity, place, spectrum, shares(a));
 }

@@ -12,6 +12,31 @@ inline std::string lines(const std::vector<std::string>& all) {
     return html;
 }
 
+/// The 95 % interval as a band on a track that begins at zero and reaches `to` at least; the value is the stroke in it.
+inline std::string interval_bar(const estimate& e, double to = 0) {
+    const double low = std::min(0.0, e.low), high = std::max(to, e.high);
+    if (!(e.high > e.low) || !std::isfinite(high - low)) return "";
+    const double margin = 0.06 * (high - low), from = low < 0 ? low - margin : 0,
+                 whole = (high > 0 ? high + margin : 0) - from;
+    const auto at = [&](double v) { return 100 * (v - from) / whole; };
+    return fmt::format(
+        "<span class=\"bar range\" aria-hidden=\"true\"><i class=\"ends\" "
+        "style=\"left:{:.1f}%;width:{:.1f}%\"></i><i class=\"value\" style=\"left:{:.1f}%\"></i></span>",
+        at(e.low), at(e.high) - at(e.low), at(e.value));
+}
+
+/// Each value with its interval, in words and as a bar.
+inline std::string values(const std::vector<parameter_estimate>& parameters, const axis_voice& voice) {
+    std::string html;
+    for (const parameter_estimate& p : parameters) {
+        const std::vector<std::string> said = lines_of(p, voice);
+        for (std::size_t k = 0; k < said.size(); ++k)
+            html += fmt::format("<div>{}{}</div>", escape(said[k]),
+                                p.key.ends_with("phase_rad") ? "" : interval_bar(p.values[k]));
+    }
+    return html;
+}
+
 inline std::string probability_bar(const cause& c) {
     const double group = std::max(c.probability, c.group_probability);
     return fmt::format("{}<span class=\"bar\"><i class=\"group\" style=\"width:{:.0f}%\"></i><i "
@@ -29,14 +54,15 @@ inline std::string causes(const diagnosis_result& d) {
                    : "<p class=\"empty\">None of the known effects fits.</p>";
     std::string rows;
     for (const cause& c : d.causes) {
-        std::vector<std::string> gap{
-            "force " + change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, "N")};
+        const axis_voice voice = voice_of(d, c.axis);
+        std::vector<std::string> gap{voice("force ") + change(c.gap_before_force_rms_N.value,
+                                                              c.gap_after_force_rms_N.value, voice("N"))};
         if (c.gap_before_position_rms_m.value > 0)
-            gap.push_back("position " +
-                          change(c.gap_before_position_rms_m.value, c.gap_after_position_rms_m.value, "m"));
+            gap.push_back("position " + change(c.gap_before_position_rms_m.value,
+                                               c.gap_after_position_rms_m.value, voice("m")));
         if (c.gap_before_command_rms_V.value > 0)
-            gap.push_back("command " +
-                          change(c.gap_before_command_rms_V.value, c.gap_after_command_rms_V.value, "V"));
+            gap.push_back("command " + change(c.gap_before_command_rms_V.value, c.gap_after_command_rms_V.value,
+                                              voice.in_command_unit("V")));
         const std::string_view box = words_of(c.effect).box;
         rows += fmt::format(
             "<tr data-effect=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span><small>axis "
@@ -44,16 +70,16 @@ inline std::string causes(const diagnosis_result& d) {
             "<td data-label=\"Probability\">{}</td><td data-label=\"Values found (95 % interval)\">{}</td>"
             "<td data-label=\"Gap before → after, rms\">{}</td><td data-label=\"Force gap shrinks "
             "by\">{}</td></tr>\n",
-            escape(c.effect), escape(capital(name_of_effect(c.effect))), escape(c.axis),
+            escape(c.effect), escape(capital(voice(name_of_effect(c.effect)))), escape(c.axis),
             box.empty() ? "" : ", ", box, claimed(c) ? "" : "<br>a suspect, not a claim", probability_bar(c),
-            lines(lines_of(c.parameters)), lines(gap), escape(percent(c.shrink)));
+            values(c.parameters, voice), lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, 1));
         std::string more;
         if (!c.confusable_with.empty())
             more += fmt::format("On this record it cannot be told apart from {}.",
-                                escape(named(c.confusable_with, "or")));
+                                escape(voice(named(c.confusable_with, "or"))));
         for (const reading& r : c.readings)
-            more += fmt::format("<br>As {}: {}.", escape(name_of_effect(r.effect)),
-                                escape(listed(lines_of(r.parameters))));
+            more += fmt::format("<br>As {}: {}.", escape(voice(name_of_effect(r.effect))),
+                                escape(listed(lines_of(r.parameters, voice))));
         if (!c.exciting_motion.empty())
             more += fmt::format("{}Shown by: {}.", more.empty() ? "" : "<br>", escape(c.exciting_motion));
         if (!more.empty())

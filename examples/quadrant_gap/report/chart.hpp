@@ -87,6 +87,8 @@ struct chart {
     std::vector<series> all;                        ///< one that has not as many entries as x is not drawn
     std::string why_empty;                          ///< said in the place of the chart
     const std::vector<double>* direction = nullptr; ///< of a scatter: one line of medians for each sign of this
+    const std::vector<double>* time =
+        nullptr; ///< of a scatter: it shows the samples that the charts in time show
 };
 
 /// Writes the figures of all axes and collects their data.
@@ -115,6 +117,7 @@ public:
             names += fmt::format("{}\"{}\"", names.empty() ? "" : ",", s.name);
             columns += "," + json(*s.values, keep, y.factor, 5);
         }
+        const std::string times = c.time && c.time->size() == c.x.size() ? json(*c.time, keep, 1, 6) : "null";
         std::string medians;
         const auto add_medians = [&](auto belongs) {
             const auto curves = binned_medians(c.x, c.all, belongs);
@@ -133,9 +136,9 @@ public:
         }
         json_ +=
             fmt::format("{}{{\"kind\":\"{}\",\"axis\":{},\"x\":\"{} [{}]\",\"y\":\"{} [{}]\",\"names\":[{}],"
-                        "\"columns\":[{}],\"medians\":[{}]}}",
+                        "\"columns\":[{}],\"medians\":[{}],\"times\":{}}}",
                         count_ == 0 ? "" : ",\n", c.kind, axis, c.x_name, x.unit, c.y_name, y.unit, names,
-                        columns, medians);
+                        columns, medians, times);
         return fmt::format(
             "<figure data-chart=\"{}\"><h4>{}</h4><figcaption>{}</figcaption><div class=\"legend\"></div>"
             "<div class=\"plot\" role=\"img\" aria-label=\"{}. {}\">{}</div></figure>\n",

@@ -10,6 +10,8 @@ inline std::string badge(verdict v) {
     return fmt::format("<span class=\"badge {}\">{}</span>", name_of(v), spaced(name_of(v)));
 }
 
+/// The servo loop as boxes, narrow enough for a phone: the share of each box in it, and a box at fault marked by a thick
+/// frame, bold letters and an exclamation mark, so that it is seen without colour too.
 inline std::string loop(const axis_result& a) {
     std::vector<std::string> guilty;
     const auto box = [&](std::string_view name, int x, int y, int height) {
@@ -22,28 +24,38 @@ inline std::string loop(const axis_result& a) {
             }
         const bool marked = share >= 0.2;
         if (marked) guilty.push_back(fmt::format("{} ({} of the gap)", name, percent(share)));
-        return fmt::format(
-            "<g class=\"box{}\"><rect x=\"{}\" y=\"{}\" width=\"126\" height=\"{}\" rx=\"6\"/><text x=\"{}\" "
-            "y=\"{}\">{}</text>{}</g>",
-            marked ? " guilty" : "", x, y, height, x + 63, y + (found ? 23 : height / 2 + 5), name,
-            found ? fmt::format("<text class=\"share\" x=\"{}\" y=\"{}\">{}{}</text>", x + 63, y + 43,
-                                percent(share), marked ? " of the gap" : "")
-                  : "");
+        std::string svg = fmt::format(
+            "<g class=\"box{}\" data-box=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"104\" height=\"{}\" rx=\"6\"/>"
+            "<text x=\"{}\" y=\"{}\">{}</text>",
+            marked ? " guilty" : "", name, x, y, height, x + 52, y + (found ? 23 : height / 2 + 5), name);
+        if (found)
+            svg += fmt::format("<text class=\"share\" x=\"{}\" y=\"{}\">{}</text>", x + 52, y + 43,
+                               percent(share));
+        if (marked)
+            svg += fmt::format(
+                "<circle class=\"flag\" cx=\"{0}\" cy=\"{1}\" r=\"10\"/><text class=\"mark\" x=\"{0}\" "
+                "y=\"{2}\">!</text>",
+                x + 104, y, y + 5);
+        return svg + "</g>";
     };
-    const std::string boxes = box("controller", 92, 34, 56) + box("actuator", 302, 34, 56) +
-                              box("mechanics", 302, 138, 56) + box("sensor", 92, 138, 56) +
-                              box("process", 302, 236, 54);
-    const std::string text = guilty.empty() ? "no box stands out" : "the gap sits in " + listed(guilty);
-    return fmt::format(R"svg(<svg viewBox="0 0 480 294" role="img" aria-label="Servo loop of axis {0}: {1}">
+    const std::string boxes = box("controller", 72, 34, 56) + box("actuator", 246, 34, 56) +
+                              box("mechanics", 246, 138, 56) + box("sensor", 72, 138, 56) +
+                              box("process", 246, 236, 54);
+    const std::string text =
+        guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty));
+    return fmt::format(
+        R"svg(<svg class="loop" viewBox="0 0 378 294" role="img" aria-label="Servo loop of axis {0}: {1}">
 <title>Servo loop of axis {0}: {1}</title>
-<g class="wire"><path d="M2 62H39"/><path d="M62 62H91"/><path d="M218 62H301"/><path d="M428 62H462V166H429"/>
-<path d="M302 166H219"/><path d="M92 166H51V74"/><path d="M365 236V195"/></g>
-<circle class="sum" cx="51" cy="62" r="11"/><path class="sign" d="M46 62h10M51 57v10M58 84h9"/>
-<g class="signal"><text x="36" y="40">reference</text><text x="260" y="52">command</text><text x="450" y="52">force</text>
-<text x="260" y="156">position</text><text x="51" y="184">feedback</text><text x="388" y="220">force</text></g>
+<g class="wire"><path d="M2 62H22"/><path d="M45 62H71"/><path d="M176 62H245"/><path d="M350 62H368V166H351"/>
+<path d="M246 166H177"/><path d="M72 166H34V74"/><path d="M298 236V195"/></g>
+<circle class="sum" cx="34" cy="62" r="11"/><path class="sign" d="M29 62h10M34 57v10M41 84h9"/>
+<g class="signal"><text class="left" x="2" y="42">reference</text><text x="210" y="54">command</text>
+<text class="right" x="362" y="119">{3}</text><text x="210" y="158">position</text><text class="left" x="2" y="186">feedback</text>
+<text class="left" x="305" y="220">{3}</text></g>
 {2}</svg>
+<p class="hint loop-says">{4}.</p>
 )svg",
-                       escape(a.name), text, boxes);
+        escape(a.name), text, boxes, voice_of(a)("force"), capital(text));
 }
 
 inline std::string paragraph(const std::string& text) {

@@ -30,17 +30,23 @@ public:
 
     applied_diagnosis take(const diagnosis_result& d) {
         const json before = out_.machine;
-        for (const axis_result& a : d.axes)
+        for (const axis_result& a : d.axes) {
             if (!before["axes"].contains(a.name))
                 throw bad_input(
                     file_, fmt::format("axes.{}: is missing; the diagnosis is of another machine", a.name));
+            if (a.kind != kind_of(a.name))
+                throw bad_input(file_, fmt::format("axes.{}: is a {} axis; the diagnosis is of another machine",
+                                                   a.name, name_of(kind_of(a.name))));
+        }
         for (const cause& c : d.causes) {
             if (c.probability < at_least_)
                 out_.notes.push_back(fmt::format(
                     "{} of axis {} is left out: probability {:.2f}, below {:g}; the forecast gap_after "
-                    "counts on it, which took the force from {:.3g} N to {:.3g} N",
-                    c.effect, c.axis, c.probability, at_least_, c.gap_before_force_rms_N.value,
-                    c.gap_after_force_rms_N.value));
+                    "counts on it, which took the {}",
+                    c.effect, c.axis, c.probability, at_least_,
+                    text_of(fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
+                                        c.gap_after_force_rms_N.value),
+                            kind_of(c.axis))));
             else if (std::find(d.own_effects.begin(), d.own_effects.end(), c.effect) != d.own_effects.end())
                 out_.notes.push_back(
                     fmt::format("{} of axis {} is left out: it is an effect of your own, and a machine "
@@ -68,6 +74,15 @@ public:
 private:
     using json = nlohmann::ordered_json;
 
+    axis_kind kind_of(const std::string& axis) const {
+        return out_.machine["axes"][axis]["plant"].contains(key_of("mass_kg", axis_kind::rotary))
+                   ? axis_kind::rotary
+                   : axis_kind::linear;
+    }
+    std::string own_key(const std::string& axis, std::string_view linear) const {
+        return key_of(linear, kind_of(axis));
+    }
+
     void join(const cause& c, const json& before) {
         refuse_if_there(c, before);
         for (const parameter_estimate& p : c.parameters) {
@@ -76,17 +91,18 @@ private:
                 throw bad_input(
                     file_,
                     fmt::format("axes.{}.controller: is missing; the diagnosis is of another machine", c.axis));
-            set(c.axis, box, key, value_of(key, p), c.effect);
+            set(c.axis, box, key, value_of(kind_of(c.axis), key, p), c.effect);
         }
     }
 
     /// A cause that the simulation lacked, in a file that has it: the diagnosis is of another file, or applied already.
     void refuse_if_there(const cause& c, const json& axis) const {
+        const std::string coulomb = own_key(c.axis, "coulomb_N"), at_rest = own_key(c.axis, "static_N");
         const auto says_something = [&](const parameter_estimate& p) {
             const auto [box, key] = place_of(c, p.key);
             if (!axis.contains(box) || !axis[box].contains(key)) return false;
             const json& value = axis[box][key];
-            return value != 0 && !(key == "static_N" && value == axis[box].value("coulomb_N", 0.0));
+            return value != 0 && !(key == at_rest && value == axis[box].value(coulomb, 0.0));
         };
         if (!c.described && std::all_of(c.parameters.begin(), c.parameters.end(), says_something))
             throw bad_input(file_,
@@ -100,22 +116,22 @@ private:
         if (c.effect == "controller_mismatch") return {"controller", name};
         if (const auto dot = name.find('.'); dot != name.npos)
             return {name.substr(0, dot), name.substr(dot + 1)};
-        if (name != "force_constant_N_per_V") return {"plant", name};
+        const std::string per_volt = own_key(c.axis, "force_constant_N_per_V");
+        if (name != per_volt) return {"plant", name};
         const json& plant = out_.machine["axes"][c.axis]["plant"];
-        for (const char* key : {"force_constant_N_per_V", "force_constant_N_per_A"})
-            if (plant.contains(key)) return {"plant", key};
-        throw bad_input(
-            file_, fmt::format("axes.{}.plant.force_constant_N_per_V: is missing; the diagnosis is of another "
-                               "machine",
-                               c.axis));
+        for (const std::string& given : {per_volt, own_key(c.axis, "force_constant_N_per_A")})
+            if (plant.contains(given)) return {"plant", given};
+        throw bad_input(file_, fmt::format("axes.{}.plant.{}: is missing; the diagnosis is of another machine",
+                                           c.axis, per_volt));
     }
 
     /// A number, or an array of harmonics or elements where the machine file has one.
-    static json value_of(const std::string& key, const parameter_estimate& p) {
+    static json value_of(axis_kind kind, const std::string& key, const parameter_estimate& p) {
         static constexpr std::array arrays{
             "cogging_N", "cogging_phase_rad", "gms_weights", "gms_stiffness_N_per_m", "force_N", "phase_rad"};
-        if (std::find(arrays.begin(), arrays.end(), key) == arrays.end() && p.values.size() == 1)
-            return p.values[0].value;
+        const bool array = std::any_of(arrays.begin(), arrays.end(),
+                                       [&](const char* linear) { return key_of(linear, kind) == key; });
+        if (!array && p.values.size() == 1) return p.values[0].value;
         json values = json::array();
         for (const estimate& e : p.values) values.push_back(e.value);
         return values;
@@ -130,11 +146,12 @@ private:
         old = value;
     }
 
-    static double level(const json& plant) { // of friction at rest
-        return std::max(plant.value("coulomb_N", 0.0), plant.value("static_N", 0.0));
+    double level(const std::string& axis, const json& plant) const { // of friction at rest
+        return std::max(plant.value(own_key(axis, "coulomb_N"), 0.0),
+                        plant.value(own_key(axis, "static_N"), 0.0));
     }
 
-    bool changed(const std::string& axis, const char* key) const {
+    bool changed(const std::string& axis, const std::string& key) const {
         const std::string path = fmt::format("axes.{}.plant.{}", axis, key);
         return std::any_of(out_.changes.begin(), out_.changes.end(),
                            [&](const auto& c) { return c.path == path; });
@@ -145,17 +162,16 @@ private:
     void follow(const std::string& axis, const json& before) {
         const json& plant = out_.machine["axes"][axis]["plant"];
         constexpr const char* why = "moves with the friction";
-        if (changed(axis, "coulomb_N") && before.contains("static_N") && !changed(axis, "static_N"))
-            set(axis, "plant", "static_N",
-                before["static_N"].get<double>() + plant["coulomb_N"].get<double>() -
-                    before.value("coulomb_N", 0.0),
-                why);
-        if (!before.contains("gms_stiffness_N_per_m") || changed(axis, "gms_stiffness_N_per_m") ||
-            level(before) == 0)
-            return;
-        json stiffness = before["gms_stiffness_N_per_m"];
-        for (json& k : stiffness) k = k.get<double>() * (level(plant) / level(before));
-        if (level(plant) != level(before)) set(axis, "plant", "gms_stiffness_N_per_m", stiffness, why);
+        const std::string coulomb = own_key(axis, "coulomb_N"), at_rest = own_key(axis, "static_N"),
+                          stiffness_key = own_key(axis, "gms_stiffness_N_per_m");
+        if (changed(axis, coulomb) && before.contains(at_rest) && !changed(axis, at_rest))
+            set(axis, "plant", at_rest,
+                before[at_rest].get<double>() + plant[coulomb].get<double>() - before.value(coulomb, 0.0), why);
+        const double was = level(axis, before), is = level(axis, plant);
+        if (!before.contains(stiffness_key) || changed(axis, stiffness_key) || was == 0) return;
+        json stiffness = before[stiffness_key];
+        for (json& k : stiffness) k = k.get<double>() * (is / was);
+        if (is != was) set(axis, "plant", stiffness_key, stiffness, why);
     }
 
     std::string_view file_;

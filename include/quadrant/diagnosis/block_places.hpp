@@ -30,9 +30,10 @@ inline std::vector<place> block_places(const axis_case& c) {
     if (c.controller_differs())
         out.push_back(
             {"block", "controller",
-             worded("the described controller, fed the logged reference and position, commands %.4g V rms "
+             worded("the described controller, fed the logged reference and position, commands %.4g %s rms "
                     "otherwise than logged",
-                    c.controller->difference_rms),
+                    c.controller->difference_rms,
+                    is_force(c.axis.command_unit) ? "N" : c.axis.command_unit.c_str()),
              share([&](const auto& w) { return square(e_command.rms(w)); }), "replay"});
     auto before = e_residual;
     for (std::size_t i = 0; i < c.best().effects.size(); ++i) {

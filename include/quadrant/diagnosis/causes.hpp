@@ -61,8 +61,8 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
     if (!c.clean()) {
-        const auto models = c.models.with_these(
-            without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+        const auto models =
+            c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
             if (c.takes_off(models[i], c.best()) > 0.3 &&
                 !c.models.pays(c.models.with(models[i], own), models[i]))

@@ -32,7 +32,8 @@ struct controller_key {
     double scale; ///< a sensible size when the described value is zero
 };
 
-inline std::vector<controller_key> controller_keys(const controller_description& c) {
+/// `volt`: of the record.
+inline std::vector<controller_key> controller_keys(const controller_description& c, double volt = 1) {
     using d = controller_description;
     if (c.own) {
         std::vector<controller_key> own;
@@ -48,9 +49,10 @@ inline std::vector<controller_key> controller_keys(const controller_description&
          c.velocity_gain_V_s_per_m},
         {"velocity_feedforward", [](d& x) -> double& { return x.velocity_feedforward; }, 0.1},
         {"acceleration_feedforward_V_s2_per_m",
-         [](d& x) -> double& { return x.acceleration_feedforward_V_s2_per_m; }, 0.01},
-        {"viscous_feedforward_V_s_per_m", [](d& x) -> double& { return x.viscous_feedforward_V_s_per_m; }, 0.1},
-        {"coulomb_feedforward_V", [](d& x) -> double& { return x.coulomb_feedforward_V; }, 0.01}};
+         [](d& x) -> double& { return x.acceleration_feedforward_V_s2_per_m; }, 0.01 * volt},
+        {"viscous_feedforward_V_s_per_m", [](d& x) -> double& { return x.viscous_feedforward_V_s_per_m; },
+         0.1 * volt},
+        {"coulomb_feedforward_V", [](d& x) -> double& { return x.coulomb_feedforward_V; }, 0.01 * volt}};
     if (c.velocity_estimator == d::estimator::filtered_derivative)
         keys.push_back({"velocity_filter_Hz", [](d& x) -> double& { return x.velocity_filter_Hz; }, 100});
     if (c.notch) {
@@ -135,7 +137,7 @@ inline controller_finding judge_controller(const controller_description& describ
 
     constexpr double none = std::numeric_limits<double>::infinity();
     double best = score(d0), width = 0;
-    for (const auto& key : controller_keys(described)) {
+    for (const auto& key : controller_keys(described, record.volt)) {
         controller_description trial = described;
         double& value = key.of(trial);
         const double given = value, scale = given != 0 ? std::abs(given) : key.scale;

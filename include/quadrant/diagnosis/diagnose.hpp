@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "bad_input.hpp"
+#include "blind_spots.hpp"
 #include "block_places.hpp"
 #include "calibrated.hpp"
 #include "causes.hpp"
@@ -62,8 +63,7 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
         const auto with_form =
-            c.models.with_these(
-                c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < with_form.size(); ++i)
             if (const double share = c.takes_off(with_form[i], c.best());
                 share > 0.5 && c.models.pays(with_form[i], c.best()))
@@ -76,12 +76,29 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     }
     out.share_unexplained =
         std::max(out.share_unexplained, before > 0 ? std::clamp(after / before, 0.0, 1.0) : 0);
-    out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text;
+    out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text_of(text, c.axis.kind);
+}
+
+/// Keys and sentences as the axis' own kind has them.
+inline void put_in_words(axis_kind kind, std::vector<parameter_estimate>& parameters) {
+    for (auto& p : parameters) p.key = key_of(p.key, kind);
+}
+inline void put_in_words(axis_kind kind, std::vector<place>& places) {
+    for (place& p : places) p.finding = text_of(p.finding, kind);
+}
+inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
+    for (cause& x : causes) {
+        put_in_words(kind, x.parameters);
+        for (reading& r : x.readings) put_in_words(kind, r.parameters);
+        x.exciting_motion = text_of(x.exciting_motion, kind);
+    }
 }
 
 inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
+    result.kind = c.axis.kind;
+    result.command_unit = c.axis.command_unit;
     std::vector<std::vector<rival>> rivals;
     auto causes = plant_causes(c, &rivals);
     if (auto of_controller = controller_cause(c)) { // the first explains most
@@ -99,12 +116,25 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
     result.where.insert(result.where.end(), views.begin(), views.end());
+    for (cause& x : causes)
+        if (x.effect != "controller_mismatch") mark_bounds(c.best(), x.parameters);
+    mark_bounds(c.best(), result.calibrated);
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, causes);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         describe_rest(out, c, result, causes);
+        const bool proposed = !out.next.motion.empty();
         propose(out, c, causes, rivals);
+        if (!proposed) {
+            out.next.motion = text_of(out.next.motion, c.axis.kind);
+            out.next.finding = text_of(out.next.finding, c.axis.kind);
+        }
     }
+    const auto unseen = unseen_by(result, causes);
+    out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
     out.axes.push_back(std::move(result));
 }
 

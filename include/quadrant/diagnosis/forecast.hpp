@@ -12,6 +12,7 @@ struct forecast_axis {
     gap_numbers before; ///< the machine file as diagnosed, beside the machine that the diagnosis expects
     gap_numbers after;  ///< the corrected machine file beside the same
     double shrink = 0;  ///< 1 - after/before in force
+    axis_kind kind = axis_kind::linear;
 };
 
 struct forecast_result {
@@ -77,7 +78,7 @@ inline forecast_result forecast(const machine_description& machine, const diagno
     }
     const auto before = simulate(machine, expected), after = simulate(corrected, expected);
     for (std::size_t i = 0; i < after.axes.size(); ++i) {
-        forecast_axis a{before.axes[i].name, before.axes[i].gap, after.axes[i].gap, 0};
+        forecast_axis a{before.axes[i].name, before.axes[i].gap, after.axes[i].gap, 0, after.axes[i].kind};
         const gap_numbers& left = detail::named(found.axes, a.name)->gap_after;
         const double rest =
             std::sqrt(std::max(0.0, left.force_rms_N * left.force_rms_N -
@@ -94,8 +95,9 @@ inline forecast_result forecast(const machine_description& machine, const diagno
 inline nlohmann::ordered_json to_json(const forecast_result& f) {
     nlohmann::ordered_json axes = nlohmann::ordered_json::object();
     for (const forecast_axis& a : f.axes)
-        axes[a.name] = {{"gap_before", detail::gap_json(a.before)},
-                        {"gap_after", detail::gap_json(a.after)},
+        axes[a.name] = {{"kind", name_of(a.kind)},
+                        {"gap_before", detail::gap_json(a.before, a.kind)},
+                        {"gap_after", detail::gap_json(a.after, a.kind)},
                         {"shrink", a.shrink}};
     return {{"schema", "quadrant.forecast/1"}, {"axes", axes}, {"notes", f.notes}};
 }

@@ -12,9 +12,10 @@ namespace quadrant::diagnosis {
 
 /// What a machine file is begun from: numbers by option (init_fields.hpp) and axis, in SI.
 struct init_request {
-    std::vector<std::string> axes;                               ///< empty: those of the log, else "x"
-    double sample_period_s = 0;                                  ///< 0: the log's
-    std::string command_unit;                                    ///< V, A or N; empty: the log's, else V
+    std::vector<std::string> axes; ///< empty: those of the log, else "x"
+    double sample_period_s = 0;    ///< 0: the log's
+    std::string command_unit;      ///< V, A or N (Nm); empty: the log's, else V or Nm
+    bool rotary = false;           ///< every axis; with a log each says so itself
     std::map<std::string, std::map<std::string, double>> values; ///< option, then axis ("" is every axis)
 
     std::optional<double> value(const std::string& option, const std::string& axis) const {
@@ -68,18 +69,19 @@ private:
     void row(const std::string& key, double value, std::string_view meaning, std::string_view from) {
         rows_ += fmt::format("| `{}` | {:.6g} | {} | {} |\n", key, value, meaning, from);
     }
-    void put(const std::string& axis, const init_field& f, const std::string& key, double value,
+    void put(const std::string& axis, const init_field& f, const std::string& linear, double value,
              std::string_view from) {
+        const std::string key = key_of(linear, kind_), unit = text_of(f.unit, kind_);
         nlohmann::ordered_json& place = place_in(json_["axes"][axis][f.box], key);
         if (f.whole && value == std::floor(value))
             place = static_cast<std::int64_t>(value);
         else
             place = value;
-        row(fmt::format("axes.{}.{}.{}", axis, f.box, key), value, f.meaning, from);
-        if (value != 0 && (std::abs(value) < f.low || std::abs(value) > f.high))
+        row(fmt::format("axes.{}.{}.{}", axis, f.box, key), value, text_of(f.meaning, kind_), from);
+        if (unit == f.unit && value != 0 && (std::abs(value) < f.low || std::abs(value) > f.high))
             out_.notes.push_back(
                 fmt::format("axes.{}.{}.{} = {:g} is unusual (most lie between {:g} and {:g}): is it in {}?",
-                            axis, f.box, key, value, f.low, f.high, f.unit));
+                            axis, f.box, key, value, f.low, f.high, unit));
     }
 
     void begin_axis(const std::string& axis) {
@@ -90,22 +92,33 @@ private:
         for (std::size_t i = 0; log_ && i < log_->axes.size(); ++i)
             if (log_->axes[i].name == axis) log = &log_->axes[i];
         if (log_ && !log) throw bad_input(log_->file, fmt::format("axis {} is not in the log", axis));
-        const std::string unit = !ask_.command_unit.empty() ? ask_.command_unit : log ? log->command_unit : "V";
+        kind_ = log ? log->kind : ask_.rotary ? axis_kind::rotary : axis_kind::linear;
+        if (log && ask_.rotary && kind_ == axis_kind::linear)
+            throw bad_input(log_->file, fmt::format("axis {} is linear, not rotary", axis));
+        const std::string unit = !ask_.command_unit.empty() ? ask_.command_unit
+                                 : log                      ? log->command_unit
+                                 : ask_.rotary              ? "Nm"
+                                                            : "V";
         if (log && log->command_unit != unit)
             throw bad_input(log_->file, fmt::format("the command of axis {} is in {}, not in {}", axis,
                                                     log->command_unit, unit));
+        if (is_force(unit) && unit != key_of("N", kind_))
+            throw bad_input("init", fmt::format("axis {} is {}: its command is in V, A or {}", axis,
+                                                name_of(kind_), key_of("N", kind_)));
         const std::optional<double> mass = ask_.value("mass", axis),
                                     constant = ask_.value("force-constant", axis);
         const unit_check found =
             log && !log->still ? check_units(*log, json_["sample_period_s"].get<double>()) : unit_check{};
-        if (!mass || (!constant && unit != "N"))
+        if (!mass || (!constant && !is_force(unit)))
             throw bad_input("init", missing(axis, unit, mass, constant, found));
         for (const init_field& f : init_fields) {
             const auto given = ask_.value(f.option, axis);
             if (!given) continue;
             std::string key = f.key;
             if (key == "force_constant_N_per_V") {
-                if (unit == "N") throw bad_input("init", "--force-constant contradicts a command in newtons");
+                if (is_force(unit))
+                    throw bad_input("init",
+                                    text_of("--force-constant contradicts a command in newtons", kind_));
                 key.back() = unit[0];
             }
             put(axis, f, key, *given, "given");
@@ -119,18 +132,17 @@ private:
         if (log) compare(axis, unit, *mass, constant.value_or(1), found);
     }
 
-    static std::string missing(const std::string& axis, const std::string& unit,
-                               const std::optional<double>& mass, const std::optional<double>& constant,
-                               const unit_check& found) {
-        std::string text = fmt::format("axis {}: {} is missing", axis, mass ? "--force-constant" : "--mass");
+    std::string missing(const std::string& axis, const std::string& unit, const std::optional<double>& mass,
+                        const std::optional<double>& constant, const unit_check& found) const {
+        std::string text = mass ? "--force-constant is missing" : "--mass is missing";
         const bool told = found.sign_is_known() && found.command_per_acceleration > 0;
-        if (told && !mass && (constant || unit == "N"))
+        if (told && !mass && (constant || is_force(unit)))
             text += fmt::format("; the log speaks of about {:.4g} kg",
                                 found.command_per_acceleration * constant.value_or(1));
         if (told && mass)
             text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / found.command_per_acceleration,
                                 unit);
-        return text;
+        return fmt::format("axis {}: {}", axis, text_of(text, kind_));
     }
 
     void read_from_log(const std::string& axis, const axis_log& log) {
@@ -161,16 +173,21 @@ private:
         if (times > 3 || times < 1.0 / 3)
             throw bad_input(
                 log_->file,
-                fmt::format("axis {}: {:g} kg and {:g} N/{} cannot be of this log, where the command moves "
-                            "{:.3g} kg: check the units",
-                            axis, mass, constant, unit, by_log));
-        out_.notes.push_back(
-            fmt::format("axis {}: by the log the command moves about {:.3g} kg ({:.0f} % of the mass given)",
-                        axis, by_log, 100 * times));
+                fmt::format("axis {}: {}", axis,
+                            text_of(fmt::format("{:g} kg and {:g} N/{} cannot be of this log, where the "
+                                                "command moves {:.3g} kg: check the units",
+                                                mass, constant, unit, by_log),
+                                    kind_)));
+        out_.notes.push_back(fmt::format(
+            "axis {}: {}", axis,
+            text_of(fmt::format("by the log the command moves about {:.3g} kg ({:.0f} % of the mass given)",
+                                by_log, 100 * times),
+                    kind_)));
     }
 
     const init_request& ask_;
     const machine_log* log_;
+    axis_kind kind_ = axis_kind::linear; ///< of the axis being begun
     nlohmann::ordered_json json_;
     std::string rows_;
     initialised_machine out_{};

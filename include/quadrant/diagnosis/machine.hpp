@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "axis_words.hpp"
 #include "own_force.hpp"
 
 #include <functional>
@@ -11,7 +12,7 @@
 
 /// What the simulation believes of a machine: the contents of a machine file (schema quadrant.machine/1).
 /// Field names are the file's keys, so that a message, the file and the code say the same word; all values SI.
-/// An absent optional is an effect that the simulation does not have.
+/// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad and N m.
 namespace quadrant::diagnosis {
 
 struct plant_description {
@@ -116,13 +117,14 @@ struct axis_description {
     std::string name;
     plant_description plant;
     std::string command_unit =
-        "V"; ///< "V" or "A", from the force constant's key; "N": none given, and 1 is meant
+        "V"; ///< "V" or "A", from the force constant's key; "N" ("Nm"): none given, and 1 is meant
     tolerance_description tolerance;
     encoder_description encoder;
     actuator_description actuator;
     process_description process;
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
+    axis_kind kind = axis_kind::linear;
     // What no file holds: code of the caller's.
     struct valued_force {
         const own_force* force;

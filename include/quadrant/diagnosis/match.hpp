@@ -25,14 +25,18 @@ inline void check_match(const machine_description& machine, const machine_log& l
         const auto logged = named(log.axes, axis.name);
         if (logged == log.axes.end())
             throw bad_input(machine.file, fmt::format("axes.{}: is not recorded in {}", axis.name, log.file));
+        if (logged->kind != axis.kind)
+            throw bad_input(log.file, fmt::format("axis {} is {} in the log, {} in {}", axis.name,
+                                                  name_of(logged->kind), name_of(axis.kind), machine.file));
         if (logged->command_unit == axis.command_unit) continue;
         const std::string column =
             fmt::format("the command column of {} is {}_cmd_{}", log.file, axis.name, logged->command_unit);
-        if (axis.command_unit == "N")
-            throw bad_input(machine.file, fmt::format("axes.{}.plant.force_constant_N_per_{}: is missing; {}",
-                                                      axis.name, logged->command_unit, column));
-        throw bad_input(machine.file, fmt::format("axes.{}.plant.force_constant_N_per_{}: {}", axis.name,
-                                                  axis.command_unit, column));
+        const std::string constant = key_of("force_constant_N_per_", axis.kind);
+        if (is_force(axis.command_unit))
+            throw bad_input(machine.file, fmt::format("axes.{}.plant.{}{}: is missing; {}", axis.name, constant,
+                                                      logged->command_unit, column));
+        throw bad_input(machine.file,
+                        fmt::format("axes.{}.plant.{}{}: {}", axis.name, constant, axis.command_unit, column));
     }
 }
 

@@ -34,10 +34,27 @@ public:
         if (const auto finding = next.find("finding")) out.next.finding = finding->text();
         if (const auto axis = next.find("axis")) out.next.axis = axis->text();
         if (const auto notes = top_.find("notes")) out.notes = words(*notes);
+        if (const auto unseen = top_.find("not_seen"))
+            each(*unseen, [&](const json_node& n) {
+                out.not_seen.push_back(
+                    {n.object().need("axis").text(), n.need("what").text(), n.need("instrument").text()});
+            });
+        if (const auto files = top_.find("files")) {
+            files->object();
+            read_file(*files, "machine", out.machine_file, out.machine_sha256);
+            read_file(*files, "log", out.log_file, out.log_sha256);
+            read_file(*files, "holdout", out.holdout_file, out.holdout_sha256);
+        }
         return out;
     }
 
 private:
+    static void read_file(const json_node& files, const char* role, std::string& name, std::string& sha256) {
+        const auto file = files.find(role);
+        if (!file) return;
+        name = file->object().need("name").text();
+        sha256 = file->need("sha256").text();
+    }
     static double finite(const json_node& node) {
         if (!node.value->is_number() || !std::isfinite(node.value->get<double>()))
             node.refuse("must be a number");
@@ -93,6 +110,8 @@ private:
             const json_node one = node.at(key, entry).object(), value = one.need("value"),
                             ci95 = one.need("ci95");
             parameter_estimate p{.key = key, .values = {}};
+            if (const auto bound = one.find("on_bound"))
+                p.on_bound = bound->value->is_boolean() && bound->value->get<bool>();
             if (!value.value->is_array()) {
                 p.values.push_back(interval(value, ci95));
             } else {
@@ -129,9 +148,14 @@ private:
         if (const auto basis = node.find("basis")) p.basis = basis->text();
         return p;
     }
-    static axis_result read_axis(const std::string& name, const json_node& node) {
+    static axis_result read_axis(const std::string& name, json_node node) {
         axis_result a;
         a.name = name;
+        if (const auto kind = node.object().find("kind")) {
+            if (kind->text() != "linear" && kind->text() != "rotary") kind->refuse("must be linear or rotary");
+            a.kind = node.kind = kind->text() == "rotary" ? axis_kind::rotary : axis_kind::linear;
+        }
+        if (const auto unit = node.find("command_unit")) a.command_unit = unit->text();
         a.verdict = verdict_of(node.object().need("verdict"));
         a.gap = gap(node.need("gap"));
         const auto after = node.find("gap_after");
@@ -141,12 +165,13 @@ private:
         if (const auto on = node.find("evaluated_on")) a.evaluated_on = on->text();
         return a;
     }
-    cause read_cause(const json_node& node, const diagnosis_result& whole) const {
+    cause read_cause(json_node node, const diagnosis_result& whole) const {
         cause c;
         const json_node axis = node.object().need("axis");
         c.axis = axis.text();
         if (std::none_of(whole.axes.begin(), whole.axes.end(), [&](const auto& a) { return a.name == c.axis; }))
             axis.refuse(fmt::format("{} is not one of the diagnosis' axes", in_quotes(c.axis)));
+        node.kind = whole.kind_of(c.axis);
         c.effect = effect_of(node.need("effect"));
         if (const auto described = node.find("described")) {
             if (!described->value->is_boolean()) described->refuse("must be true or false");

@@ -106,7 +106,7 @@ private:
                                             out.file, 100 * clock.jitter));
         for (auto& [name, at] : header_.axes) {
             if (purpose_ == log_purpose::motion) {
-                out.axes.push_back(planned(name, header_.columns[*at.reference]));
+                out.axes.push_back(planned(name, *at.kind, header_.columns[*at.reference]));
                 continue;
             }
             auto &reference = header_.columns[*at.reference], &position = header_.columns[*at.position],
@@ -126,7 +126,8 @@ private:
                                 .command = std::move(command.values),
                                 .reference_step = reference.step.step(),
                                 .position_step = position.step.step(),
-                                .command_step = command.step.step()});
+                                .command_step = command.step.step(),
+                                .kind = *at.kind});
         }
         if (std::all_of(out.axes.begin(), out.axes.end(), [](const axis_log& a) { return a.still; }))
             throw bad_input(file_, "no axis moves");
@@ -134,9 +135,10 @@ private:
     }
 
     /// An axis that follows its reference without being asked for anything.
-    static axis_log planned(const std::string& name, log_column& reference) {
+    static axis_log planned(const std::string& name, axis_kind kind, log_column& reference) {
         axis_log out;
         out.name = name;
+        out.kind = kind;
         out.still = is_constant(reference.values);
         out.reference = out.position = std::move(reference.values);
         out.command.assign(out.position.size(), 0.0);

@@ -2,6 +2,7 @@
 #pragma once
 #include "effect_names.hpp"
 #include "plant_model.hpp"
+#include "read/key_place.hpp"
 #include "read/machine_keys.hpp"
 
 namespace quadrant::diagnosis {
@@ -12,7 +13,7 @@ namespace detail {
 class machine_reader {
 public:
     machine_reader(std::string_view text, std::string_view file)
-        : root_(parse_json(text, file)), top_{&root_, "", file} {}
+        : text_(without_byte_order_mark(text)), root_(parse_json(text, file)), top_{&root_, "", file} {}
 
     machine_description read() {
         need_schema(top_, "quadrant.machine/1");
@@ -40,9 +41,11 @@ private:
         }
     }
 
-    axis_description read_axis(const std::string& name, const json_node& node) {
+    axis_description read_axis(const std::string& name, json_node node) {
         refuse_unknown_keys(node, axis_keys);
         axis_description axis;
+        axis.kind = node.kind = kind_of(node.need("plant").object());
+        refuse_the_other_kind(node);
         axis.name = name;
         read_plant(node.need("plant"), axis);
         if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
@@ -57,24 +60,53 @@ private:
         return axis;
     }
 
+    static axis_kind kind_of(const json_node& plant) {
+        return plant.value->contains(key_of("mass_kg", axis_kind::rotary)) ? axis_kind::rotary
+                                                                           : axis_kind::linear;
+    }
+
+    /// An axis is linear or rotary throughout: a key that only the other kind has is refused where it stands.
+    void refuse_the_other_kind(const json_node& axis) const {
+        const axis_kind other = axis.kind == axis_kind::rotary ? axis_kind::linear : axis_kind::rotary;
+        for (const auto& [box, content] : axis.value->items()) {
+            if (!content.is_object()) continue;
+            const auto known = keys_of_box(box);
+            for (const auto& [key, value] : content.items())
+                for (const std::string_view linear : known) {
+                    if (key_of(linear, other) != key || key_of(linear, axis.kind) == key) continue;
+                    const json_node fault = axis.at(box, content).at(key, value);
+                    const auto [line, column] = key_place(text_, fault.path);
+                    const std::string message = fmt::format(
+                        "{}: is of a {} axis; this one is {}{}: {} (an axis has m, N and kg, or rad, Nm and "
+                        "kg_m2, throughout)",
+                        fault.path, name_of(other), name_of(axis.kind),
+                        axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2",
+                        key_of(linear, axis.kind));
+                    if (line > 0) throw bad_input(top_.file, line, column, message);
+                    throw bad_input(top_.file, message);
+                }
+        }
+    }
+
     static void read_plant(const json_node& node, axis_description& axis) {
         auto& plant = axis.plant;
         read_numbers(node, plant_keys, plant_other_keys, plant);
         const auto per_volt = node.find("force_constant_N_per_V"),
                    per_ampere = node.find("force_constant_N_per_A");
-        if (per_volt && per_ampere) per_ampere->refuse("contradicts force_constant_N_per_V: give one of them");
-        axis.command_unit = per_volt ? "V" : per_ampere ? "A" : "N";
+        if (per_volt && per_ampere)
+            per_ampere->refuse("contradicts " + node.name("force_constant_N_per_V") + ": give one of them");
+        axis.command_unit = per_volt ? "V" : per_ampere ? "A" : key_of("N", axis.kind);
         plant.force_constant_N_per_V = per_volt     ? per_volt->number(rule::positive)
                                        : per_ampere ? per_ampere->number(rule::positive)
                                                     : 1;
-        if (axis.command_unit == "N") axis.tolerance.given["force_constant"] = 0; // by definition
+        if (is_force(axis.command_unit)) axis.tolerance.given["force_constant"] = 0; // by definition
 
         if (plant.static_N && !plant.stribeck_velocity_m_per_s)
-            node.find("static_N")->refuse("needs stribeck_velocity_m_per_s");
+            node.find("static_N")->refuse("needs " + node.name("stribeck_velocity_m_per_s"));
         if (plant.stribeck_velocity_m_per_s && !plant.static_N)
-            node.find("stribeck_velocity_m_per_s")->refuse("needs static_N");
+            node.find("stribeck_velocity_m_per_s")->refuse("needs " + node.name("static_N"));
         if (plant.static_N && *plant.static_N < plant.coulomb_N.value_or(0))
-            node.find("static_N")->refuse("must not lie below coulomb_N");
+            node.find("static_N")->refuse("must not lie below " + node.name("coulomb_N"));
 
         read_harmonics(node, "cogging_N", "cogging_phase_rad", plant.cogging_N, plant.cogging_phase_rad);
         need_each_other(node, "cogging_period_m", "cogging_N");
@@ -83,7 +115,8 @@ private:
         need_each_other(node, "mode_mass_kg", "mode_frequency_Hz");
         need_each_other(node, "ripple", "ripple_period_m");
         if (plant.mode_mass_kg.value_or(0) >= plant.mass_kg)
-            node.find("mode_mass_kg")->refuse("must lie below mass_kg, of which it is a part");
+            node.find("mode_mass_kg")
+                ->refuse(fmt::format("must lie below {}, of which it is a part", node.name("mass_kg")));
         read_contact(node, plant);
     }
 
@@ -92,7 +125,7 @@ private:
         const auto weights = node.find("gms_weights"), length = node.find("presliding_length_m");
         for (const auto& described : {length, weights})
             if (described && !plant.coulomb_N && !plant.static_N)
-                described->refuse("needs coulomb_N: the friction that gives way");
+                described->refuse(fmt::format("needs {}: the friction that gives way", node.name("coulomb_N")));
         if (!weights) return;
         plant.gms_weights = weights->numbers(rule::positive);
         plant.gms_stiffness_N_per_m = node.need("gms_stiffness_N_per_m").numbers(rule::positive);
@@ -108,7 +141,7 @@ private:
     static void need_each_other(const json_node& node, const char* one, const char* other) {
         for (const auto& [here, missing] : {std::pair{one, other}, std::pair{other, one}})
             if (const auto given = node.find(here); given && !node.find(missing))
-                given->refuse(fmt::format("needs {}", missing));
+                given->refuse(fmt::format("needs {}", node.name(missing)));
     }
     static void read_harmonics(const json_node& node, const char* sizes_key, const char* phases_key,
                                std::vector<double>& sizes, std::vector<double>& phases) {
@@ -118,7 +151,7 @@ private:
             size->refuse(fmt::format("this version simulates {} harmonics at most", harmonics::most));
         if (phase) phases = phase->numbers(rule::any_number);
         if (phase && phases.size() != sizes.size())
-            phase->refuse(fmt::format("must have one entry for each of {}", sizes_key));
+            phase->refuse(fmt::format("must have one entry for each of {}", node.name(sizes_key)));
     }
 
     static void read_encoder(const json_node& node, encoder_description& encoder) {
@@ -133,8 +166,9 @@ private:
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
         refuse_unknown_keys(node.object(), names_of(tolerance_keys));
-        for (const auto& [key, value] : node.value->items())
-            tolerance.given[key] = node.at(key, value).number(rule::relative);
+        for (const auto& key : tolerance_keys)
+            if (const auto given = node.find(std::string(key.name)))
+                tolerance.given[std::string(key.name)] = given->number(rule::relative);
     }
 
     static void read_actuator(const json_node& node, actuator_description& actuator) {
@@ -183,18 +217,19 @@ private:
         std::string missing;
         for (const auto& key : tolerance_keys)
             if (key.of(axis.plant) != 0 && !axis.tolerance.given.contains(std::string(key.name)))
-                missing += (missing.empty() ? "" : ", ") + std::string(key.name);
+                missing += (missing.empty() ? "" : ", ") + key_of(key.name, axis.kind);
         if (!missing.empty())
             note(axis, fmt::format("no tolerance is given for {}: {} is assumed", missing,
                                    tolerance_description::unstated));
-        if (axis.command_unit == "N")
-            note(axis, "no force constant is given: the command is taken for newtons");
+        if (is_force(axis.command_unit))
+            note(axis, text_of("no force constant is given: the command is taken for newtons", axis.kind));
     }
 
     void note(const axis_description& axis, std::string_view text) {
         out_.notes.push_back(fmt::format("axis {}: {}.", axis.name, text));
     }
 
+    std::string_view text_;
     nlohmann::json root_;
     json_node top_;
     machine_description out_{};

@@ -15,6 +15,10 @@ struct axis_record {
     std::size_t segments = 0;
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
+    double volt = 1;         ///< what a volt is for a command in volts: a tenth of the largest, in other units
+    /// Times that travel and speed exceed 1 m and 1 m/s, or 1: a motor's angle is hundreds of radians, and so much larger are
+    /// the lengths and speeds that are tried.
+    double reach = 1, pace = 1;
     predictor observer;
     scoring score{};
 };
@@ -92,11 +96,17 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     const auto smooth = zero_phase(log.position, 60, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
+    const auto [low, high] = std::minmax_element(smooth.begin(), smooth.end());
+    r.reach = std::max(1.0, *high - *low);
+    for (double v : r.velocity) r.pace = std::max(r.pace, std::abs(v));
     r.segment = motion_segments(log.reference, period);
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
     r.bandwidth_Hz = residual_bandwidth_Hz(period);
 
     r.resolution = std::max({resolution, log.position_step, 1e-12});
+    double largest = 0;
+    for (double u : log.command) largest = std::max(largest, std::abs(u));
+    if (log.command_unit != "V" && largest > 0) r.volt = largest / 10;
     auto& s = r.score;
     s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.01 / period)));
     s.block = 5 * s.mean;

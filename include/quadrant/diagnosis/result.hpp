@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "axis_words.hpp"
+
 #include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
 
-/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws.
+/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws. Fields
+/// named in m and N are in rad and N m for a rotary axis; keys and sentences are in its own words already.
 namespace quadrant::diagnosis {
 
 /// Ordered from the best to the worst: the verdict of several axes is the largest.
@@ -50,6 +53,7 @@ struct place {
 struct parameter_estimate {
     std::string key;              ///< the machine file's key
     std::vector<estimate> values; ///< one, or one a harmonic
+    bool on_bound = false; ///< the fit stopped where it was not allowed to go on: the value may lie beyond
 };
 
 /// Another name for the same signal on this record, with the parameters it would have.
@@ -93,6 +97,8 @@ struct axis_result {
     std::vector<parameter_estimate> calibrated; ///< what moved inside the owner's tolerance, as machine keys
     std::string evaluated_on;                   ///< "held-out segments of LOG" or the hold-out file
     axis_signals signals;
+    axis_kind kind = axis_kind::linear;
+    std::string command_unit = "V"; ///< of the command gaps
 };
 
 /// The motion to record next. A log-score of `rules::margin` counts as told apart.
@@ -108,6 +114,11 @@ struct experiment {
     std::vector<double> reference{}; ///< of the axis, one entry a sample [m]; empty: no motion was simulated
 };
 
+/// What no log of an axis can show, and the instrument that sees it.
+struct unseen {
+    std::string axis, what, instrument;
+};
+
 struct diagnosis_result {
     quadrant::diagnosis::verdict verdict = verdict::no_gap;
     std::vector<axis_result> axes;
@@ -115,9 +126,17 @@ struct diagnosis_result {
     double share_unexplained = 0;
     std::string remaining_structure;
     experiment next;
+    std::vector<unseen> not_seen; ///< where it bears on what is said (blind_spots.hpp)
     std::vector<std::string> notes;
     std::vector<std::string> own_effects; ///< names beside the list that were suspects, too (own_effect.hpp)
     std::string machine_file, log_file, holdout_file;
+    std::string machine_sha256, log_sha256, holdout_sha256; ///< of the files' bytes; empty: not read from files
+
+    axis_kind kind_of(const std::string& axis) const {
+        for (const axis_result& a : axes)
+            if (a.name == axis) return a.kind;
+        return axis_kind::linear;
+    }
 };
 
 namespace detail {

@@ -9,6 +9,7 @@ namespace quadrant::diagnosis {
 /// One axis of a log as its machine file predicts it.
 struct simulated_axis {
     std::string name, command_unit;
+    axis_kind kind = axis_kind::linear;
     bool closed_loop = false;     ///< a controller is described: position and command gaps are there too
     gap_numbers gap;              ///< what remains between simulation and log
     std::vector<place> where;     ///< in which regimes the residual force is
@@ -20,6 +21,7 @@ struct simulated_axis {
 
 struct simulation_result {
     std::string machine_file, log_file;
+    std::string machine_sha256, log_sha256; ///< of the files' bytes; empty: not read from files
     std::vector<simulated_axis> axes;
     std::vector<std::string> notes;
 };
@@ -38,6 +40,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     simulated_axis out;
     out.name = axis.name;
     out.command_unit = axis.command_unit;
+    out.kind = axis.kind;
     std::vector<double> innovation, acceleration;
     record.observer.run(plant, innovation, &acceleration);
     out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz);
@@ -46,6 +49,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
         plant.mass, position_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
     out.gap.bandwidth_Hz = record.bandwidth_Hz;
     out.where = regimes(out.force, record);
+    for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);
     for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);
     if (!axis.controller) return out;
 

@@ -28,17 +28,31 @@ inline ordered_json parameters_json(const std::vector<parameter_estimate>& param
         }
         const bool alone = p.values.size() == 1;
         out[p.key] = {{"value", alone ? value[0] : value}, {"ci95", alone ? ci95[0] : ci95}};
+        if (p.on_bound) out[p.key]["on_bound"] = true;
     }
     return out;
 }
 
-inline ordered_json gap_json(const gap_numbers& g) {
-    return {{"position_rms_m", g.position_rms_m},
-            {"position_peak_m", g.position_peak_m},
+inline ordered_json gap_json(const gap_numbers& g, axis_kind kind) {
+    return {{key_of("position_rms_m", kind), g.position_rms_m},
+            {key_of("position_peak_m", kind), g.position_peak_m},
             {"command_rms_V", g.command_rms_V},
-            {"force_rms_N", g.force_rms_N},
-            {"noise_floor_force_rms_N", g.noise_floor_force_rms_N},
+            {key_of("force_rms_N", kind), g.force_rms_N},
+            {key_of("noise_floor_force_rms_N", kind), g.noise_floor_force_rms_N},
             {"bandwidth_Hz", g.bandwidth_Hz}};
+}
+
+/// One file that went in: what it is, its name, the SHA-256 of its bytes.
+struct read_file {
+    const char* role;
+    const std::string &name, &sha256;
+};
+inline ordered_json files_json(std::initializer_list<read_file> files) {
+    ordered_json out = ordered_json::object();
+    for (const read_file& f : files)
+        if (!f.sha256.empty())
+            out[f.role] = {{"name", f.name.substr(f.name.find_last_of('/') + 1)}, {"sha256", f.sha256}};
+    return out;
 }
 
 inline ordered_json place_json(const place& p) {
@@ -56,14 +70,16 @@ inline ordered_json axis_json(const axis_result& a) {
     ordered_json where = ordered_json::array();
     for (const auto& p : a.where) where.push_back(place_json(p));
     return {{"verdict", name_of(a.verdict)},
-            {"gap", gap_json(a.gap)},
-            {"gap_after", gap_json(a.gap_after)},
+            {"kind", name_of(a.kind)},
+            {"command_unit", a.command_unit},
+            {"gap", gap_json(a.gap, a.kind)},
+            {"gap_after", gap_json(a.gap_after, a.kind)},
             {"where", where},
             {"calibrated", parameters_json(a.calibrated)},
             {"evaluated_on", a.evaluated_on}};
 }
 
-inline ordered_json cause_json(const cause& c) {
+inline ordered_json cause_json(const cause& c, axis_kind kind) {
     ordered_json readings = ordered_json::array();
     for (const auto& r : c.readings)
         readings.push_back({{"effect", r.effect}, {"parameters", parameters_json(r.parameters)}});
@@ -75,10 +91,10 @@ inline ordered_json cause_json(const cause& c) {
             {"confusable_with", c.confusable_with},
             {"parameters", parameters_json(c.parameters)},
             {"readings", readings},
-            {"gap_before_force_rms_N", c.gap_before_force_rms_N.value},
-            {"gap_after_force_rms_N", c.gap_after_force_rms_N.value},
-            {"gap_before_position_rms_m", c.gap_before_position_rms_m.value},
-            {"gap_after_position_rms_m", c.gap_after_position_rms_m.value},
+            {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
+            {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},
+            {key_of("gap_before_position_rms_m", kind), c.gap_before_position_rms_m.value},
+            {key_of("gap_after_position_rms_m", kind), c.gap_after_position_rms_m.value},
             {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
             {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
             {"shrink", c.shrink.value},
@@ -92,9 +108,12 @@ inline ordered_json cause_json(const cause& c) {
 /// the schema refuses.
 inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
     using detail::ordered_json;
+    ordered_json unseen = ordered_json::array();
+    for (const auto& u : d.not_seen)
+        unseen.push_back({{"axis", u.axis}, {"what", u.what}, {"instrument", u.instrument}});
     ordered_json axes = ordered_json::object(), causes = ordered_json::array();
     for (const auto& a : d.axes) axes[a.name] = detail::axis_json(a);
-    for (const auto& c : d.causes) causes.push_back(detail::cause_json(c));
+    for (const auto& c : d.causes) causes.push_back(detail::cause_json(c, d.kind_of(c.axis)));
     ordered_json out = {
         {"schema", "quadrant.diagnosis/1"},
         {"verdict", name_of(d.verdict)},
@@ -109,14 +128,19 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
           {"gain_of_log", d.next.gain_of_log},
           {"finding", d.next.finding},
           {"axis", d.next.axis}}},
+        {"not_seen", unseen},
         {"notes", d.notes}};
     if (!d.own_effects.empty()) out["own_effects"] = d.own_effects;
+    auto files = detail::files_json({{"machine", d.machine_file, d.machine_sha256},
+                                     {"log", d.log_file, d.log_sha256},
+                                     {"holdout", d.holdout_file, d.holdout_sha256}});
+    if (!files.empty()) out["files"] = std::move(files);
     return out;
 }
 
 /// The reference of the next experiment as a log's first columns (CSV), for the machine to drive.
-inline std::string reference_csv(const experiment& e) {
-    std::string out = fmt::format("t_s,{}_ref_m\n", e.axis);
+inline std::string reference_csv(const experiment& e, axis_kind kind) {
+    std::string out = fmt::format("t_s,{}_ref_{}\n", e.axis, key_of("m", kind));
     for (std::size_t k = 0; k < e.reference.size(); ++k)
         out += fmt::format("{:.9g},{:.12f}\n", static_cast<double>(k) * e.period_s, e.reference[k]);
     return out;

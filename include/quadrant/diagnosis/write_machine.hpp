@@ -22,7 +22,7 @@ inline void put_unless_empty(nlohmann::ordered_json& box, const char* key, const
 inline nlohmann::ordered_json plant_json(const axis_description& a) {
     const plant_description& p = a.plant;
     auto out = numbers_json(plant_keys, p);
-    if (a.command_unit != "N") out["force_constant_N_per_" + a.command_unit] = p.force_constant_N_per_V;
+    if (!is_force(a.command_unit)) out["force_constant_N_per_" + a.command_unit] = p.force_constant_N_per_V;
     put_unless_empty(out, "cogging_N", p.cogging_N);
     put_unless_empty(out, "cogging_phase_rad", p.cogging_phase_rad);
     put_unless_empty(out, "gms_weights", p.gms_weights);
@@ -60,10 +60,19 @@ inline nlohmann::ordered_json& place_in(nlohmann::ordered_json& box, std::string
     return (*place)[std::string(key)];
 }
 
+/// The boxes of an axis under the keys of its kind.
+inline nlohmann::ordered_json in_words_of(axis_kind kind, const nlohmann::ordered_json& boxes) {
+    if (kind == axis_kind::linear || !boxes.is_object()) return boxes;
+    nlohmann::ordered_json out = nlohmann::ordered_json::object();
+    for (const auto& [key, value] : boxes.items()) out[key_of(key, kind)] = in_words_of(kind, value);
+    return out;
+}
+
 inline nlohmann::ordered_json axis_json(const axis_description& a) {
     nlohmann::ordered_json tolerance = nlohmann::ordered_json::object(), out = {{"plant", plant_json(a)}};
     for (const auto& [key, value] : a.tolerance.given)
-        if (key != "force_constant" || a.command_unit != "N") tolerance[key] = value; // there 0 by definition
+        if (key != "force_constant" || !is_force(a.command_unit))
+            tolerance[key] = value; // there 0 by definition
     const auto box = [&](const char* name, nlohmann::ordered_json content) {
         if (!content.empty()) out[name] = std::move(content);
     };
@@ -72,7 +81,7 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
     box("actuator", actuator_json(a.actuator));
     box("process", process_json(a.process));
     if (a.controller && !a.controller->own) out["controller"] = controller_json(*a.controller);
-    return out;
+    return in_words_of(a.kind, out);
 }
 
 } // namespace detail

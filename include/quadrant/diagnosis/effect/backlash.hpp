@@ -13,11 +13,13 @@ inline constexpr effect backlash{
     .exciting_motion = "slow reversals of 0.1 mm and more, with rest before each",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.backlash; };
+        const double reach = s.record.reach;
         return {{{.key = "backlash_m",
                   .of = of,
-                  .start = detail::best_start(s, of, {1e-6, 3e-6, 1e-5, 3e-5, 1e-4}),
+                  .start = detail::best_start(
+                      s, of, {1e-6 * reach, 3e-6 * reach, 1e-5 * reach, 3e-5 * reach, 1e-4 * reach}),
                   .low = s.record.resolution,
-                  .high = std::max(1e-3, 40 * s.record.resolution),
+                  .high = std::max(1e-3 * reach, 40 * s.record.resolution),
                   .logarithmic = true,
                   .step = 1e-2}}};
     },

@@ -29,8 +29,7 @@ inline constexpr effect cogging{
                                           [&](double p) { return p > 0.01 * most; }); // a tenth in force
             const auto repeats = many ? detail::repeating<detail::cogging_harmonics, 8>
                                       : detail::repeating<detail::cogging_harmonics, 3>;
-            out.push_back(
-                repeats("cogging_period_m", "cogging_N", period, travel, 2 * s.leader.force_constant));
+            out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, 2 * s.force_of_a_volt()));
         }
         return out;
     },

@@ -12,14 +12,14 @@ inline constexpr effect constant_force{
     .exciting_motion = "the same stroke in both directions, and rest after each",
     .equivalent = "asymmetric_friction",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double most = 10 * s.leader.force_constant; // a full-scale command of any amplifier
+        const double most = 10 * s.force_of_a_volt(); // a full-scale command of any amplifier
         const double mean = detail::mean_residual(s, [](std::size_t) { return true; });
         return {{{.key = "constant_force_N",
                   .of = [](plant_model& p) -> double& { return p.constant_force; },
                   .start = std::clamp(s.leader.constant_force - mean, -most, most),
                   .low = -most,
                   .high = most,
-                  .step = 1e-5 * s.leader.force_constant}}};
+                  .step = 1e-5 * s.force_of_a_volt()}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"constant_force_N", {p.constant_force}}};

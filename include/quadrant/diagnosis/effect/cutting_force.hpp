@@ -16,7 +16,7 @@ inline constexpr effect cutting_force{
     .box = "process",
     .exciting_motion = "rest and slow strokes with the process running, and again with it off",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double duration = detail::duration(s), most = 10 * s.leader.force_constant;
+        const double duration = detail::duration(s), most = 10 * s.force_of_a_volt();
         std::vector<double> time(s.residual.size());
         for (std::size_t k = 0; k < time.size(); ++k) time[k] = static_cast<double>(k) * s.record.period;
         const double shortest = std::max(1.0 / 200, 10 * s.record.period), longest = 0.5;
@@ -30,7 +30,7 @@ inline constexpr effect cutting_force{
                                   .start = 0,
                                   .low = -most,
                                   .high = most,
-                                  .step = 1e-5 * s.leader.force_constant});
+                                  .step = 1e-5 * s.force_of_a_volt()});
         }
         return out;
     },

@@ -14,6 +14,9 @@ struct screening {
     const axis_record& record;
     const plant_model& leader;
     const std::vector<double>& residual; ///< [N], sign of residual_force()
+
+    /// Force of a volt, the scale of forces on this axis; of a tenth of the largest command where that is in other units [N].
+    double force_of_a_volt() const { return leader.force_constant * record.volt; }
 };
 
 struct key_value {

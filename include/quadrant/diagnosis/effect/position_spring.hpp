@@ -27,8 +27,8 @@ inline constexpr effect position_spring{
                   .of = [](plant_model& p) -> double& { return p.spring; },
                   .start = slope,
                   .low = 0,
-                  .high = 20 * s.leader.force_constant / travel,
-                  .step = 1e-5 * s.leader.force_constant / travel}}};
+                  .high = 20 * s.force_of_a_volt() / travel,
+                  .step = 1e-5 * s.force_of_a_volt() / travel}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"spring_N_per_m", {p.spring}}};

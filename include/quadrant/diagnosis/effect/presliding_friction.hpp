@@ -18,9 +18,9 @@ inline constexpr effect presliding_friction{
         for (double length : {3e-6, 1e-5, 4e-5})
             out.push_back({{.key = "presliding_length_m",
                             .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
-                            .start = length,
+                            .start = length * s.record.reach,
                             .low = 1e-6,
-                            .high = 1e-3,
+                            .high = 1e-3 * s.record.reach,
                             .logarithmic = true,
                             .step = 1e-2},
                            {.key = "presliding_length_m",

@@ -14,7 +14,8 @@ inline constexpr effect stribeck_friction{
         double peak = 0;
         for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
         std::vector<std::vector<parameter>> out;
-        for (double velocity : {0.001, 0.005, 0.02}) {
+        for (double slow : {0.001, 0.005, 0.02}) {
+            const double velocity = slow * s.record.pace;
             if (velocity > 0.5 * peak) continue;
             const double force = detail::mean_residual(s,
                                                        [&](std::size_t k) {
@@ -25,7 +26,7 @@ inline constexpr effect stribeck_friction{
                                      const double v = s.record.velocity[k];
                                      return -v > 0.1 * velocity && -v < velocity;
                                  });
-            const double scale = 1e-3 * s.leader.force_constant;
+            const double scale = 1e-3 * s.force_of_a_volt();
             const double start =
                 std::max({s.leader.friction.excess + 0.5 * force, 0.3 * s.leader.friction.excess, scale});
             out.push_back({{.key = "static_N",
@@ -39,7 +40,7 @@ inline constexpr effect stribeck_friction{
                             .of = [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
                             .start = velocity,
                             .low = 2e-4,
-                            .high = 0.1,
+                            .high = 0.1 * s.record.pace,
                             .logarithmic = true,
                             .step = 1e-3}});
         }

@@ -62,10 +62,9 @@ inline void check_physics(imported_log& in, const import_map& map, const known_a
         if (constant > 0 && known.mass > 0) {
             const double times = c.command_per_acceleration * constant / known.mass;
             if (times > 3 || times < 1.0 / 3)
-                refuse(fmt::format(
-                    "the command moves {:.3g} times the mass of {:g}: check the units of command, position "
-                    "and time",
-                    times, known.mass));
+                refuse(fmt::format("the command moves {:.3g} times the {} of {:g}: check the units of command, "
+                                   "position and time",
+                                   times, text_of("mass", a.kind), known.mass));
         }
     }
 }

@@ -139,6 +139,7 @@ private:
             axis_log a;
             a.name = axis.name;
             a.command_unit = axis.command.si;
+            a.kind = axis.position.si == "rad" ? axis_kind::rotary : axis_kind::linear;
             a.reference = in_si();
             a.position = in_si();
             a.command = in_si();

@@ -27,8 +27,9 @@ inline constexpr number_rule bits{"must be a whole number from 1 to 32",
 using key_names = std::span<const std::string_view>;
 
 inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_names others = {}) {
-    std::vector<std::string_view> known(numbers.begin(), numbers.end());
-    known.insert(known.end(), others.begin(), others.end());
+    std::vector<std::string> known;
+    for (const key_names& names : {numbers, others})
+        for (std::string_view key : names) known.push_back(node.name(key));
     for (const auto& [key, value] : node.value->items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         const json_node stranger = node.at(key, value);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../axis_words.hpp"
 #include "json_text.hpp"
 
 #include <array>
@@ -20,22 +21,24 @@ struct json_node {
     const nlohmann::json* value;
     std::string path;
     std::string_view file;
+    axis_kind kind = axis_kind::linear; ///< keys are asked for by their linear names
 
+    std::string name(std::string_view key) const { return key_of(key, kind); }
     [[noreturn]] void refuse(std::string_view rule) const {
         throw bad_input(file, path.empty() ? std::string(rule) : fmt::format("{}: {}", path, rule));
     }
     json_node at(const std::string& key, const nlohmann::json& child) const {
-        return {&child, path.empty() ? key : path + '.' + key, file};
+        return {&child, path.empty() ? key : path + '.' + key, file, kind};
     }
     /// The child, or null.
     std::optional<json_node> find(const std::string& key) const {
-        const auto found = value->find(key);
+        const auto found = value->find(name(key));
         if (found == value->end()) return {};
-        return at(key, *found);
+        return at(found.key(), *found);
     }
     json_node need(const std::string& key) const {
         auto child = find(key);
-        if (!child) at(key, *value).refuse("is missing");
+        if (!child) at(name(key), *value).refuse("is missing");
         return *child;
     }
     const json_node& object() const {

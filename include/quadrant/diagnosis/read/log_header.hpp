@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../axis_words.hpp"
 #include "axis_name.hpp"
 #include "csv_cells.hpp"
 #include "decimal.hpp"
@@ -24,6 +25,8 @@ struct log_header {
     struct axis_columns {
         std::optional<std::size_t> reference, position, command;
         std::string command_unit;
+        std::size_t command_at = 0; ///< in the header line
+        std::optional<axis_kind> kind;
     };
     std::vector<log_column> columns;
     std::size_t time = 0;
@@ -31,7 +34,7 @@ struct log_header {
     std::vector<std::string> notes;
 };
 
-enum class column_role { reference, position, command, not_used_yet, rotary };
+enum class column_role { reference, position, command, not_used_yet };
 
 struct column_suffix {
     std::string_view text;
@@ -39,17 +42,20 @@ struct column_suffix {
     std::string_view unit = {};
 };
 inline constexpr std::array column_suffixes{
-    column_suffix{"_ref_m", column_role::reference},
-    column_suffix{"_pos_m", column_role::position},
+    column_suffix{"_ref_m", column_role::reference, "m"},
+    column_suffix{"_pos_m", column_role::position, "m"},
+    column_suffix{"_ref_rad", column_role::reference, "rad"},
+    column_suffix{"_pos_rad", column_role::position, "rad"},
     column_suffix{"_cmd_V", column_role::command, "V"},
     column_suffix{"_cmd_A", column_role::command, "A"},
     column_suffix{"_cmd_N", column_role::command, "N"},
+    column_suffix{"_cmd_Nm", column_role::command, "Nm"},
     column_suffix{"_vel_m_per_s", column_role::not_used_yet},
     column_suffix{"_acc_m_per_s2", column_role::not_used_yet},
     column_suffix{"_force_N", column_role::not_used_yet},
-    column_suffix{"_ref_rad", column_role::rotary},
-    column_suffix{"_pos_rad", column_role::rotary},
-    column_suffix{"_cmd_Nm", column_role::rotary},
+    column_suffix{"_vel_rad_per_s", column_role::not_used_yet},
+    column_suffix{"_acc_rad_per_s2", column_role::not_used_yet},
+    column_suffix{"_torque_Nm", column_role::not_used_yet},
 };
 
 /// What a file is read for: what a machine did, or a motion that it is to make.
@@ -74,10 +80,20 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
         if (suffix.role == column_role::command && axis.command)
             refuse(cells.offset(), fmt::format("axis {} has two commands: {} and {}", axis_name,
                                                out.columns[*axis.command].name, name));
+        if (suffix.role != column_role::command) {
+            const axis_kind kind = suffix.unit == "rad" ? axis_kind::rotary : axis_kind::linear;
+            if (axis.kind.value_or(kind) != kind)
+                refuse(cells.offset(), fmt::format("{}: axis {} is linear (m, N) or rotary (rad, Nm), not both",
+                                                   in_quotes(name), axis_name));
+            axis.kind = kind;
+        }
         (suffix.role == column_role::reference  ? axis.reference
          : suffix.role == column_role::position ? axis.position
                                                 : axis.command) = index;
-        if (suffix.role == column_role::command) axis.command_unit = suffix.unit;
+        if (suffix.role == column_role::command) {
+            axis.command_unit = suffix.unit;
+            axis.command_at = cells.offset();
+        }
         out.columns[index].used = true;
     };
 
@@ -103,11 +119,6 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
         if (suffix == column_suffixes.end())
             out.notes.push_back(
                 fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
-        else if (suffix->role == column_role::rotary)
-            refuse(cells.offset(),
-                   fmt::format("{} belongs to a rotary axis; this version reads linear axes only (x_ref_m, "
-                               "x_pos_m, x_cmd_V)",
-                               in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
         else if (purpose == log_purpose::record || suffix->role == column_role::reference)
@@ -117,12 +128,19 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
     if (!time) refuse(line.size(), "column t_s is missing");
     if (out.axes.empty())
         refuse(line.size(), "no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
-    for (const auto& [name, axis] : out.axes) {
-        if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_m is missing", name));
+    for (auto& [name, axis] : out.axes) {
+        if (!axis.kind) axis.kind = axis.command_unit == "Nm" ? axis_kind::rotary : axis_kind::linear;
+        const std::string m = key_of("m", *axis.kind), force = key_of("N", *axis.kind);
+        if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_{} is missing", name, m));
         if (purpose == log_purpose::motion) continue;
-        if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_m is missing", name));
+        if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_{} is missing", name, m));
         if (!axis.command)
-            refuse(line.size(), fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_N)", name));
+            refuse(line.size(),
+                   fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1})", name, force));
+        if (is_force(axis.command_unit) && axis.command_unit != force)
+            refuse(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "
+                                                "{0}_cmd_{2}",
+                                                name, name_of(*axis.kind), force));
     }
     out.time = *time;
     return out;

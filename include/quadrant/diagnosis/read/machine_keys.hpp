@@ -121,4 +121,17 @@ inline constexpr std::array tolerance_keys{
     tolerance_key{"cogging", [](auto& p) { return p.cogging_N.empty() ? 0.0 : p.cogging_N.front(); }},
 };
 
+/// The keys of one box of an axis, by their linear names.
+inline std::vector<std::string_view> keys_of_box(std::string_view box) {
+    std::vector<std::string_view> out;
+    const auto add = [&](const auto& names) { out.insert(out.end(), names.begin(), names.end()); };
+    if (box == "plant") add(names_of(plant_keys)), add(plant_other_keys);
+    if (box == "tolerance") add(names_of(tolerance_keys));
+    if (box == "encoder") add(names_of(encoder_keys));
+    if (box == "actuator") add(names_of(actuator_keys));
+    if (box == "process") add(names_of(process_keys)), add(process_other_keys);
+    if (box == "controller") add(names_of(controller_keys_of_file));
+    return out;
+}
+
 } // namespace quadrant::diagnosis::detail
