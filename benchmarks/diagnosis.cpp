@@ -39,10 +39,12 @@ void one_pass(benchmark::State& state) {
     state.SetComplexityN(state.range(0));
 }
 
-void whole(benchmark::State& state) {
+void whole(benchmark::State& state, rules r) {
+    r.threads = 1;
     const auto log = rows(static_cast<std::size_t>(state.range(0)));
     const auto machine = read_machine(data / "machine.json");
-    for (auto _ : state) benchmark::DoNotOptimize(diagnose(machine, log).causes.size());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(diagnose(machine, log, nullptr, [](const std::string&) {}, r).causes.size());
     state.SetComplexityN(state.range(0));
 }
 
@@ -50,5 +52,6 @@ void whole(benchmark::State& state) {
 
 BENCHMARK(read)->Unit(benchmark::kMillisecond);
 BENCHMARK(one_pass)->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMicrosecond)->Complexity(benchmark::oN);
-BENCHMARK(whole)->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
+BENCHMARK_CAPTURE(whole, in_full, rules{})->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
+BENCHMARK_CAPTURE(whole, fast, fast_rules())->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
 BENCHMARK_MAIN();
