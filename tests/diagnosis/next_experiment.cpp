@@ -34,6 +34,9 @@ double& mass_of(plant_model& p) { return p.mass; }
 double& force_constant_of(plant_model& p) { return p.force_constant; }
 double& lag_of(plant_model& p) { return p.lag; }
 double& delay_of(plant_model& p) { return p.delay; }
+double& force_of(plant_model& p) { return p.constant_force; }
+double& viscous_asymmetry_of(plant_model& p) { return p.friction.viscous_asymmetry; }
+double& coulomb_asymmetry_of(plant_model& p) { return p.friction.coulomb_asymmetry; }
 
 /// A mass 20 % larger than described, or a force constant that much smaller.
 std::vector<confusable> mass_or_force_constant(const axis_description& axis) {
@@ -143,6 +146,34 @@ TEST_CASE("next experiment: the multi-sine is found for a lag or a delay, and sl
     CHECK(best.gain > 50);
     CHECK(best.gain > 3 * std::max(slow, 1.0));
     CHECK(motions[best.motion].words.starts_with("multi-sine"));
+}
+
+// Friction that differs by direction can be a constant force, not the other way round: only its viscous part is its own.
+TEST_CASE("next experiment: where one name is a special case of the other, a motion decides one way only") {
+    const auto axis = described(machine{}).axes[0];
+    const std::vector<confusable> names{
+        under(
+            suspect::constant_force, axis,
+            {{.key = "constant_force_N", .of = force_of, .start = 8, .low = -1e4, .high = 1e4, .step = 1e-2}}),
+        under(suspect::asymmetric_friction, axis,
+              {{.key = "viscous_asymmetry",
+                .of = viscous_asymmetry_of,
+                .start = -0.5,
+                .low = -0.95,
+                .high = 0.95,
+                .step = 1e-3},
+               {.key = "coulomb_asymmetry",
+                .of = coulomb_asymmetry_of,
+                .start = 0,
+                .low = -0.95,
+                .high = 0.95,
+                .step = 1e-3}})};
+    const proving_ground ground(axis, rough, workshop::count, 1e-7);
+    const auto motions = standard_motions({0, 0, 0.12, 0.17, 2.2}, rough, workshop::count);
+    const auto best = best_motion(ground, {named_motion(motions, "slow strokes of")}, names);
+    CHECK(best.gain < 1);
+    CHECK(best.one_way_gain > 100);
+    CHECK(names[best.one_way_truth].name == &suspect::asymmetric_friction);
 }
 
 TEST_CASE("next experiment: a model against itself is worth nothing") {

@@ -25,7 +25,8 @@ public:
         if (!axis_.controller) axis_.controller = stand_in(axis.plant);
     }
 
-    /// A record of the motion as a machine with this plant would leave it; empty when it does not follow.
+    /// A record of the motion as a machine with this plant would leave it, one step a period as in the fits; empty when it does
+    /// not follow.
     axis_log record(const plant_model& plant, const planned_motion& m) const {
         axis_log log;
         log.name = axis_.name;
@@ -37,7 +38,7 @@ public:
         log.position.assign(m.reference.size(), start);
         log.command.assign(m.reference.size(), held);
         auto run =
-            simulate_closed_loop(*axis_.controller, axis_, plant, period_, log, noise(m.reference.size()));
+            simulate_closed_loop(*axis_.controller, axis_, plant, period_, log, noise(m.reference.size()), 1);
         const auto [low, high] = std::minmax_element(m.reference.begin(), m.reference.end());
         const double far = std::max(*high - *low, 1000 * resolution_);
         for (double y : run.position)
