@@ -34,6 +34,7 @@ template <class Run> void refuse_in_name_of(const std::string& file, Run run) {
 void add_diagnose(CLI::App& app);
 void add_apply(CLI::App& app);
 void add_simulate(CLI::App& app);
+void add_compensate(CLI::App& app);
 void add_init(CLI::App& app);
 void add_import(CLI::App& app);
 void add_trial(CLI::App& app);

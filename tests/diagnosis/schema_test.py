@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
-usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [DIAGNOSIS.json ...]
+usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [--compensation FORECAST.json ...] [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
@@ -78,9 +78,11 @@ def changed(value, path, to):
 arguments = argparse.ArgumentParser()
 arguments.add_argument("--practice", type=pathlib.Path)
 arguments.add_argument("--simulation", type=pathlib.Path, action="append", default=[])
+arguments.add_argument("--compensation", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
 machine, log, diagnosis, simulation, import_map = map(validator, ("machine", "log", "diagnosis", "simulation", "import"))
+compensation = validator("compensation")
 
 for box, keys in keys_of_the_reader().items():
     checked += 1
@@ -109,6 +111,8 @@ for path in given.diagnoses:
     accept(diagnosis, load(path), path)
 for path in given.simulation:
     accept(simulation, load(path), path)
+for path in given.compensation:
+    accept(compensation, load(path), path)
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 
