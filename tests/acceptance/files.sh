@@ -86,6 +86,17 @@ refuses 'axes.x.plant.coulomb_N: is of a linear axis; this one is rotary: coulom
 sed 's/0.05, "static"/0.051, "static"/' "$data/machine.json" >touched.json
 "$program" apply --machine touched.json --diagnosis found.json --out better_touched.json | grep -q 'Note: touched.json is not, byte for byte,'
 
+# compensate: what a feedforward would gain on the log, and what of it the controller has keys for.
+"$program" compensate --machine "$data/machine.json" --diagnosis found.json --log "$data/log.csv" --json gained.json \
+    --controller patch.json >gained.txt
+grep -q 'friction_feedforward (against Stribeck friction): takes the error from' gained.txt
+grep -q '"claimed": true' gained.json
+grep -q '"coulomb_feedforward_V"' patch.json
+refuses 'axis x is not described' compensate --machine z.json --diagnosis found.json \
+    --log "$data/log.csv"
+refuses 'has stribeck_friction already' compensate --machine better.json --diagnosis found.json --log "$data/log.csv"
+refuses 'schema: must be "quadrant.diagnosis/1"' compensate --machine better.json --diagnosis better.json --log "$data/log.csv"
+
 # import: the samples that are shipped, then what is wrong with them.
 for sample in halsampler.txt odrive.csv twincat_scope.csv; do
     "$program" import --map "$root/examples/import/${sample%.*}.map.json" "$root/examples/import/$sample" "${sample%.*}.csv"
@@ -120,7 +131,7 @@ refuses 'cannot be of this log' init --out no.json --log halsampler.csv --mass 8
 
 # The same options and exit codes everywhere; the completion offers what the help has.
 refuses 'subcommand is required'
-for subcommand in diagnose apply simulate init import; do
+for subcommand in diagnose apply simulate compensate init import; do
     "$program" $subcommand --help | grep -q -- '--quiet'
     "$program" $subcommand --version >/dev/null
     refuses 'Run with --help' $subcommand --nonsense

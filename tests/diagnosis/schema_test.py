@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
-usage: schema_test.py [--practice DIR] [--simulation SIMULATION.json ...] [--forecast FORECAST.json ...] [--circle CIRCLE.json ...]
+usage: schema_test.py [--practice DIR] [--simulation FILE ...] [--forecast FILE ...] [--circle FILE ...] [--compensation FILE ...]
                       [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
@@ -81,10 +81,12 @@ arguments.add_argument("--practice", type=pathlib.Path)
 arguments.add_argument("--simulation", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("--forecast", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("--circle", type=pathlib.Path, action="append", default=[])
+arguments.add_argument("--compensation", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
 machine, log, diagnosis, simulation, forecast, import_map = map(
     validator, ("machine", "log", "diagnosis", "simulation", "forecast", "import"))
+compensation = validator("compensation")
 
 for box, keys in keys_of_the_reader().items():
     checked += 1
@@ -122,6 +124,8 @@ for path in given.circle:
     for way, to in [(["source"], "eye"), (["runs", 0, "feed_m_per_s"], 0), (["errors", 0, "error"], "gremlin"), (["colour"], 1),
                     (["errors", 0, "ci95"], ...), (["errors", 0, "share"], 2), (["runs"], []), (["errors", 0, "axis"], "z")]:
         refuse(circle, changed(content, way, to), f"circle with {way} = {to}")
+for path in given.compensation:
+    accept(compensation, load(path), path)
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 

@@ -15,17 +15,19 @@ struct closed_loop_run {
 /// The whole simulation as its owner would run it: described controller and given plant from the logged reference,
 /// started where the log starts. Sub-steps keep stick and the held command apart from the sampling. Periods that lose
 /// their command are drawn, always the same ones: which they were on the machine only a log of it can tell. Noise of the sensor
-/// [m], one entry a row, is in the reading before it is rounded to a count.
+/// [m], one entry a row, is in the reading before it is rounded to a count. `added`: what a feedforward adds to the controller's
+/// command, row by row, before the limit cuts the sum.
 inline closed_loop_run simulate_closed_loop(const controller_description& c, const axis_description& axis,
                                             const plant_model& plant, double period, const axis_log& log,
-                                            std::span<const double> sensor_noise = {}, int substeps = 4) {
+                                            std::span<const double> sensor_noise = {}, int substeps = 4,
+                                            std::span<const double> added = {}) {
     return with_controller(c, axis.actuator, period, [&](auto controller) {
         closed_loop_run out;
         const std::size_t n = log.reference.size();
         out.position.resize(n);
         out.command.resize(n);
         start_at_row_0(controller, log.reference[0], log.reference[1], log.position[0], log.position[1],
-                       log.command[0], period);
+                       log.command[0] - (added.empty() ? 0 : added[0]), period);
         const auto whole = static_cast<std::size_t>(std::max(0.0, plant.delay) / period);
         const double first = std::max(0.0, plant.delay) - static_cast<double>(whole) * period;
         const stepper older(plant, (first > 0 ? first : period) / substeps),
@@ -35,6 +37,7 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
         std::mt19937_64 random(20080901);
         std::vector<double> applied(n);
         const double q = axis.encoder.resolution_m;
+        const double limit = axis.actuator.limit_V.value_or(std::numeric_limits<double>::infinity());
         for (std::size_t k = 0; k < n; ++k) {
             const double reading =
                 s.load + plant.cyclic.at(s.load) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
@@ -43,6 +46,7 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
                                     : controller(quantity_of<signal::position>::from_value(log.reference[k]),
                                                  quantity_of<signal::position>::from_value(out.position[k]))
                                           .value();
+            if (!added.empty() && k > 0) out.command[k] = std::clamp(out.command[k] + added[k], -limit, limit);
             const bool lost =
                 plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
             applied[k] = lost ? applied[k - 1] : out.command[k];
