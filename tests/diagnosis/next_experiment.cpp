@@ -64,17 +64,17 @@ TEST_CASE(
     "next experiment: every motion stays inside the travel, velocity and acceleration that the log showed") {
     struct machine_tool {
         shown_motion shown;
-        double period;
+        double sample;
     };
-    for (const auto& [shown, period] :
+    for (const auto& [shown, sample] :
          {machine_tool{{0.02, 0, 0.12, 0.17, 2.2}, 0.0005}, machine_tool{{0, -0.4, 0.1, 1.2, 15}, 0.00025},
           machine_tool{{1e-5, 0, 1e-4, 1e-3, 0.5}, 0.001}, machine_tool{{0.3, 0, 0.3, 0.1, 0.05}, 0.002}}) {
-        const auto motions = standard_motions(shown, period, 2.5e-8);
+        const auto motions = standard_motions(shown, sample, 2.5e-8);
         CHECK(motions.size() >= 8);
         for (const auto& m : motions) {
             CAPTURE(m.words);
             CHECK(m.reference.front() == shown.start);
-            CHECK(static_cast<double>(m.reference.size()) * period < 7);
+            CHECK(static_cast<double>(m.reference.size()) * sample < 7);
             const auto [low, high] = std::minmax_element(m.reference.begin(), m.reference.end());
             const double hair = 1e-9 * (shown.high - shown.low);
             CHECK(*low >= shown.low - hair);
@@ -82,13 +82,13 @@ TEST_CASE(
             double velocity = 0, acceleration = 0;
             const auto& r = m.reference;
             for (std::size_t k = 1; k + 1 < r.size(); ++k) {
-                velocity = std::max(velocity, std::abs(r[k + 1] - r[k]) / period);
+                velocity = std::max(velocity, std::abs(r[k + 1] - r[k]) / sample);
                 acceleration =
-                    std::max(acceleration, std::abs(r[k + 1] - 2 * r[k] + r[k - 1]) / (period * period));
+                    std::max(acceleration, std::abs(r[k + 1] - 2 * r[k] + r[k - 1]) / (sample * sample));
             }
             CHECK(velocity < 1.001 * shown.velocity);
             CHECK(acceleration < 1.02 * shown.acceleration); // a ramp of few samples
-            CHECK(std::abs(r.back() - r[r.size() - 2]) <= shown.acceleration * period * period); // ends at rest
+            CHECK(std::abs(r.back() - r[r.size() - 2]) <= shown.acceleration * sample * sample); // ends at rest
         }
     }
     CHECK(standard_motions({}, 0.001, 1e-7).empty()); // a log that stands still
