@@ -119,6 +119,18 @@ public:
     double value(std::size_t c) const { return value_(static_cast<Eigen::Index>(c)); }
     double standard_error(std::size_t c) const { return error_(static_cast<Eigen::Index>(c)); }
 
+    /// Root mean square of what neighbouring bins err alike, as of the last solve afresh: no noise, but what no column says.
+    double structure() const {
+        double product = 0, weight = 0;
+        for (Eigen::Index i = 1; i < residual_.size(); ++i) {
+            const auto &a = bins_[static_cast<std::size_t>(i - 1)], &b = bins_[static_cast<std::size_t>(i)];
+            if (a.at.run != b.at.run) continue;
+            product += residual_(i) * residual_(i - 1), weight += std::sqrt(a.weight * b.weight);
+        }
+        const double noise = 4 * residual_.squaredNorm() / std::sqrt(double(residual_.size()));
+        return std::sqrt(std::max(0.0, product - noise) / std::max(weight, 1e-300));
+    }
+
 private:
     std::vector<Eigen::Index> indices() const {
         std::vector<Eigen::Index> in;

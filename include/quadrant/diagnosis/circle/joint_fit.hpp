@@ -118,7 +118,7 @@ private:
         return std::max(sigmas * fit.standard_error(c), floor / columns[c].circularity);
     }
     void set_floor(const circle_fit& fit) {
-        floor = least_;
+        floor = std::max(least_, 4 * fit.structure()); // of what is left, what is no noise
         for (std::size_t c = 0; c < columns.size(); ++c)
             if (fit.used(c) && !patterns[c].of_setup)
                 floor = std::max(floor, of_largest * std::abs(fit.value(c)) * columns[c].circularity);
