@@ -5,8 +5,8 @@
 //
 // The machine: a linear motor whose friction is bristles (LuGre) and whose magnets cog. The machine file knows its Coulomb
 // level and nothing else of that; the diagnosis fits laws of its own (sticking contacts, harmonics), so that neither the
-// forecast nor the feedforward shares a law or a number with the machine.
-// You should see: both causes named, and an error that is less than half with them in the controller, as forecast.
+// forecast nor the feedforward shares a friction law with the machine.
+// You should see: both causes named, and less than a third of the error left with them in the controller, inside what was forecast.
 #include <quadrant/compose/cascade_p_pi.hpp>
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>

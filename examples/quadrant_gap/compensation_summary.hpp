@@ -34,10 +34,8 @@ inline std::string sentence(const compensation& c, const compensated_axis& a) {
                         quantity(a.measured.rms_m.value, "m"), ranged(c.after.rms_m, "m"),
                         percent(c.gain.value), percent(c.gain_at_ends));
     else if (a.forecast)
-        text += fmt::format("no gain that stands above the noise of {} in every machine that the diagnosis "
-                            "allows ({} rms to {}).",
-                            quantity(a.noise_m, "m"), quantity(a.measured.rms_m.value, "m"),
-                            ranged(c.after.rms_m, "m"));
+        text += fmt::format("no gain is claimed: {} rms now, {} with it.",
+                            quantity(a.measured.rms_m.value, "m"), ranged(c.after.rms_m, "m"));
     else
         text += "nothing is forecast without a controller.";
     return text;
@@ -46,7 +44,7 @@ inline std::string sentence(const compensation& c, const compensated_axis& a) {
 inline std::string table(const compensated_axis& a) {
     const auto row = [](std::string_view name, std::string_view rms, std::string_view peak,
                         std::string_view glitch, std::string_view command) {
-        return "  " + padded(std::string(name), 28) + padded(std::string(rms), 26) +
+        return "  " + padded(std::string(name), 34) + padded(std::string(rms), 24) +
                padded(std::string(peak), 14) + padded(std::string(glitch), 14) + std::string(command) + "\n";
     };
     const auto glitch = [](const estimate& e) {
