@@ -2,6 +2,7 @@
 // quadrant-gap trial: does the diagnosis find what was put into machines that it did not make?
 #include "../for_each_index.hpp"
 #include "commands.hpp"
+#include "sha256.hpp"
 #include "trial/child.hpp"
 #include "trial/files.hpp"
 #include "trial/page.hpp"
@@ -9,7 +10,6 @@
 
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
-#include <openssl/evp.h>
 #include <unistd.h>
 
 namespace quadrant_gap {
@@ -30,16 +30,6 @@ struct trial_options {
     bool no_forecast = false;
     terminal say;
 };
-
-std::string sha256(const std::string& text) {
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned int length = 0;
-    if (EVP_Digest(text.data(), text.size(), digest, &length, EVP_sha256(), nullptr) != 1)
-        throw std::runtime_error("SHA-256 is not there");
-    std::string out;
-    for (unsigned int k = 0; k < length; ++k) out += fmt::format("{:02x}", digest[k]);
-    return out;
-}
 
 /// One line on the terminal that is overwritten; with --verbose a line a machine.
 class progress {
