@@ -25,16 +25,10 @@ fs::path results_of(const options& o) {
     return o.out.empty() ? fs::path(o.folder) / "diagnosed" : fs::path(o.out);
 }
 
-/// quadrant-gap itself, or the one beside this program.
-fs::path program_of(const options& o) {
-    if (!o.program.empty()) return o.program;
-    return fs::read_symlink("/proc/self/exe").parent_path() / "quadrant-gap";
-}
-
 workshop workshop_of(const options& o) {
     workshop w;
     w.out = results_of(o);
-    w.program = program_of(o);
+    w.program = o.program;
     w.program_sha256 = sha256_of_file(w.program);
     w.host = host_name();
     w.threads = std::max<std::size_t>(o.threads, 1);
@@ -219,6 +213,7 @@ void add_fleet(CLI::App& app) {
     fleet::add_options(*command, *o);
     add_terminal_options(*command, *say, "every log as it is done");
     command->callback([o, say] {
+        if (o->program.empty()) o->program = std::filesystem::read_symlink("/proc/self/exe").string();
         o->quiet = say->quiet;
         o->verbose = say->verbose;
         fleet::crew alone;

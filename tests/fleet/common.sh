@@ -75,7 +75,7 @@ in_ten_seconds() { # MESSAGE COMMAND...
     done
 }
 midway() { [ "$(finished "$1")" -ge 2 ] && [ "$(ran)" -ge $(($(finished "$1") + $2)) ]; }
-none_of() { ! grep -lsF "$1" /proc/[0-9]*/cmdline; }
+none_of() { [ -z "$(grep -lsF "$1" /proc/[0-9]*/cmdline || true)" ]; } # the code of grep tells of those that vanish too
 killed_and_resumed() { # JOBS FOLDER COMMAND...: killed when two or three are done, then run to the end
     jobs=$1 folder=$2
     shift 2
