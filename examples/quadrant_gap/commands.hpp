@@ -40,5 +40,6 @@ void add_init(CLI::App& app);
 void add_import(CLI::App& app);
 void add_trial(CLI::App& app);
 void add_circle(CLI::App& app);
+void add_fleet(CLI::App& app);
 
 } // namespace quadrant_gap

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     quadrant_gap::add_import(app);
     quadrant_gap::add_trial(app);
     quadrant_gap::add_circle(app);
+    quadrant_gap::add_fleet(app);
     try {
         app.parse(argc, argv);
         return 0;

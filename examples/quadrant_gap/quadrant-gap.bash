@@ -17,4 +17,4 @@ _quadrant_gap() {
         COMPREPLY=($(compgen -f -- "$word"))
     fi
 }
-complete -o filenames -o default -F _quadrant_gap quadrant-gap quadrant-reproduce quadrant-cnc quadrant-latency
+complete -o filenames -o default -F _quadrant_gap quadrant-gap quadrant-gap-mpi quadrant-reproduce quadrant-cnc quadrant-latency
