@@ -61,14 +61,14 @@ sed '1s/x_ref_m,x_pos_m/x_ref_rad,x_pos_rad/' short.csv >turning.csv
 sed 's/mass_kg/inertia_kg_m2/; s/force_constant_N_per_V/torque_constant_Nm_per_V/; s/N_s_per_m/Nm_s_per_rad/; s/coulomb_N"/coulomb_Nm"/
     s/"mass"/"inertia"/; s/"force_constant"/"torque_constant"/; s/resolution_m"/resolution_rad"/; s/_per_m"/_per_rad"/g' \
     "$data/machine.json" >turning.json
-"$program" diagnose --verbose --machine turning.json --log turning.csv --json turned.json --report turned.html >turned.txt 2>/dev/null
-grep -q '"torque_rms_Nm"' turned.json
-grep -q '"kind": "rotary"' turned.json
-! grep -E '_N"|_m"|_kg"|force_rms' turned.json
+"$program" diagnose --verbose --machine turning.json --log turning.csv --json found_turning.json --report turned.html >turned.txt 2>/dev/null
+grep -q '"torque_rms_Nm"' found_turning.json
+grep -q '"kind": "rotary"' found_turning.json
+! grep -E '_N"|_m"|_kg"|force_rms' found_turning.json
 grep -q 'torque, rms' turned.txt
 ! grep -E '[0-9] (m?N|kN|[nµm]?m|m/s)( |$|\.|,)' turned.txt | grep -v 'N m'
 grep -q 'torque \[N m\]' turned.html
-"$program" apply --machine turning.json --diagnosis turned.json --out turned_better.json --all >turned_changes.txt
+"$program" apply --machine turning.json --diagnosis found_turning.json --out turned_better.json --all >turned_changes.txt
 ! grep -E '_N:|_m:|_kg:' turned_changes.txt
 before=$("$program" simulate --quiet --machine turning.json --log turning.csv --json s.json && sed -n 's/.*"torque_rms_Nm": \([0-9.e+-]*\).*/\1/p' s.json)
 after=$("$program" simulate --quiet --machine turned_better.json --log turning.csv --json s.json && sed -n 's/.*"torque_rms_Nm": \([0-9.e+-]*\).*/\1/p' s.json)
