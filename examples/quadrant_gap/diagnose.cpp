@@ -99,7 +99,7 @@ void add_diagnose(CLI::App& app) {
     command->add_option("--threads", o->threads,
                         "at most; 0: as many as there are cores. The answer is the same");
     command->add_flag("--fast", o->fast,
-                      "screen with shorter looks: a third of the time, the same judgement at the end");
+                      "fewer models tried: half of the time, the same judgement at the end");
     add_terminal_options(*command, o->say, "every model tried, with its gain; and what this log cannot see");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }

@@ -219,7 +219,9 @@ public:
             if (paying == next.end()) break;
             beam.assign(1, *paying);
             for (const auto& c : next)
-                if (beam.size() < rules_.beam && !same(c, *paying) && c.total > best.total + rules_.margin)
+                if (beam.size() < rules_.beam && !same(c, *paying) &&
+                    c.total - best.total >
+                        std::max(rules_.margin, rules_.abreast * (paying->total - best.total)))
                     beam.push_back(c);
             best = *paying;
         }
