@@ -25,7 +25,7 @@ struct rules {
     std::size_t forms = 4;    ///< of the forms without a name that are fitted to the end
 };
 
-/// Half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to the end, fewer
+/// Some half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to the end, fewer
 /// rivals. What is named is fitted and judged as ever, on the whole record.
 inline rules fast_rules() {
     rules r;
