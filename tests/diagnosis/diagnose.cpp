@@ -103,8 +103,8 @@ TEST_CASE("diagnose: two effects, one found on top of the other") {
     real.cogging = 12;
     const auto log = as_log(run(real, three_strokes));
     std::size_t tried = 0, tried_fast = 0;
-    const auto count = [](std::size_t& n) { return [&n](const std::string&) { ++n; }; };
-    const auto d = diagnose(file, log, nullptr, count(tried));
+    const auto counted = [](std::size_t& n) { return [&n](const std::string&) { ++n; }; };
+    const auto d = diagnose(file, log, nullptr, counted(tried));
     CHECK(std::string(name_of(d.verdict)) == "explained");
     CHECK(claims(d) == std::vector<std::string>{"coulomb_friction", "cogging"});
     // Added one after the other, the gap falls each time.
@@ -112,7 +112,7 @@ TEST_CASE("diagnose: two effects, one found on top of the other") {
     CHECK(d.causes[1].gap_before_force_rms_N.value == d.causes[0].gap_after_force_rms_N.value);
     CHECK(d.causes[1].gap_after_force_rms_N.value < d.causes[1].gap_before_force_rms_N.value);
     // Shorter looks say the same, with fewer models tried.
-    const auto fast = diagnose(file, log, nullptr, count(tried_fast), fast_rules());
+    const auto fast = diagnose(file, log, nullptr, counted(tried_fast), fast_rules());
     CHECK(fast.verdict == d.verdict);
     CHECK(claims(fast) == claims(d));
     CHECK(tried_fast < tried);
@@ -198,7 +198,8 @@ TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metr
     CHECK(numbers(rotary) == numbers(linear));
     const auto json = to_json(rotary);
     const auto flat = json.flatten();
-    for (const auto& [path, value] : flat.items()) {
+    for (const auto& item : flat.items()) {
+        const std::string& path = item.key();
         CAPTURE(path);
         for (const char* of_a_line : {"_m", "_N", "_per_m", "_per_s2", "_kg"})
             CHECK_FALSE(path.ends_with(of_a_line));
