@@ -28,7 +28,8 @@ struct init_options {
 template <class KindOf>
 std::pair<std::string, double> parse(const init_field& f, std::string_view text, KindOf kind_of) {
     const auto refuse = [&](std::string_view what) {
-        throw bad_input(fmt::format("--{}", f.option), fmt::format("{}: {}", detail::in_quotes(text), what));
+        throw bad_input(fmt::format("--{}", f.option),
+                        fmt::format("{}: {}", quadrant::diagnosis::detail::in_quotes(text), what));
     };
     const std::size_t equals = text.find('=');
     const std::string axis(equals == text.npos ? "" : text.substr(0, equals));
@@ -37,7 +38,8 @@ std::pair<std::string, double> parse(const init_field& f, std::string_view text,
     std::string_view unit = rest.substr(end);
     while (unit.starts_with(' ')) unit.remove_prefix(1);
     double value = 0;
-    if (const char* fault = detail::parse_number(rest.substr(0, end), value)) refuse(fault);
+    if (const char* fault = quadrant::diagnosis::detail::parse_number(rest.substr(0, end), value))
+        refuse(fault);
     const std::string wanted = key_of(f.unit, kind_of(axis));
     if (unit.empty() || unit == wanted) return {axis, value};
     const unit_name* known = find_unit(unit);
