@@ -91,20 +91,23 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     return out;
 }
 
-/// What is left above the noise beside what the cause number `which` explained, in force on held-out motion.
+/// Force that takes `before` to `after`, in energy.
+inline double between(double before, double after) {
+    return std::sqrt(std::max(1e-30, square(before) - square(after)));
+}
+/// What the cause number `which` explains, in force on held-out motion.
+inline double explained_by(const axis_case& c, std::size_t which) {
+    return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
+}
+/// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    if (c.clean()) return 0;
-    const double before = c.models.held_out_force(c.path[which]);
-    const double after = c.models.held_out_force(c.best());
-    const double left = std::sqrt(std::max(0.0, square(after) - square(c.floor_force())));
-    const double explained = std::sqrt(std::max(1e-30, square(before) - square(after)));
-    return left / explained;
+    return c.clean() ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
 
 /// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
 /// structure is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as
-/// probable as what is left is large beside what the name explained. So on the hold-out log, and a name that makes that one worse
-/// was not the cause there.
+/// probable as what is left is large beside what the name explained. So on the hold-out log, beside what the name explains there or
+/// here (the motion there may not show it), and a name that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
     double out = std::min(0.03 + left_beside(c, which), 0.95);
     if (!c.second) return out;
@@ -112,9 +115,8 @@ inline double unknown(const axis_case& c, std::size_t which) {
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
     if (c.structure_on_second > c.limits.structure) {
-        const double left = std::sqrt(std::max(0.0, square(after.force) - square(c.floor_force())));
-        const double explained = std::sqrt(std::max(1e-30, square(before.force) - square(after.force)));
-        out = std::clamp(left / explained, out, 0.95);
+        const double explained = std::max(explained_by(c, which), between(before.force, after.force));
+        out = std::clamp(between(after.force, c.floor_force()) / explained, out, 0.95);
     }
     const double gain = std::clamp((after.score - before.score) / c.limits.temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));

@@ -16,9 +16,13 @@ namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
     if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
-        const bool named = std::all_of(causes.begin(), causes.end(),
-                                       [](const cause& x) { return x.group_probability >= 0.5; });
-        if (!causes.empty()) return named ? verdict::explained : verdict::partly_explained;
+        const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
+        // Suspects for what calibration leaves are no finding where that is immaterial.
+        const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
+                                               c.models.immaterial(c.path.front()));
+        if (!silent)
+            return std::all_of(causes.begin(), causes.end(), claimed) ? verdict::explained
+                                                                      : verdict::partly_explained;
         const auto& given = c.models.given();
         const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
                               c.models.structure(given, c.noise) < c.limits.structure;
