@@ -19,7 +19,7 @@ except ImportError:
     print("no python3-selenium: skipped")
     sys.exit(77)
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
-from browser_test import OVERFLOWING, check, shoot, show, start  # noqa: E402
+from browser_test import check, check_alone, check_console, check_width, shoot, show, start  # noqa: E402
 
 # Of every figure: how wide it is shown, the colours of its runs and how far they reach.
 PLOTS = """
@@ -56,20 +56,14 @@ def main():
                         check(all(250 < r < 590 for r in p["reach"]), f"{where}: the circles reach over {p['reach']}")
                         check("magnified" in p["caption"] and "magnified" in p["label"], f"{where}: no magnification: {p}")
                         check(not p["outside"], f"{where}: text outside of a plot")
-                    page, seen = driver.execute_script(
-                        "const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
-                    check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
-                    check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
+                    check_width(driver, where)
                     shoot(driver, given.shots / f"circle-{width}-{scheme}.png")
             first = driver.execute_script("return document.querySelector('tr[data-error]').dataset.error")
             check(first == given.expect_error, f"the first error is {first}")
             bars = driver.execute_script("return [...document.querySelectorAll('.bar i')].map(i => i.getBoundingClientRect().width)")
             check(bars == sorted(bars, reverse=True) and bars[-1] > 2, f"the bars are {bars} px wide")
-            loaded = driver.execute_script(
-                "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:'))")
-            check(not loaded, f"the page loads {loaded}")
-            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")]
-            check(not errors, f"the console says {errors}")
+            check_alone(driver)
+            check_console(driver)
         finally:
             driver.quit()
     print("ok")

@@ -11,7 +11,7 @@ import tempfile
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
-from browser_test import OVERFLOWING, check, shoot, show, start  # noqa: E402
+from browser_test import check, check_console, check_width, shoot, show, start  # noqa: E402
 
 ROWS = "return [...document.querySelectorAll('#logs tbody tr')].filter(r => !r.hidden).map(r => r.cells[0].textContent)"
 GAPS = "return [...document.querySelectorAll('#logs tbody tr')].map(r => r.cells[5] ? Number(r.cells[5].dataset.value) : null)"
@@ -31,10 +31,7 @@ def main():
                 for scheme in ("light", "dark"):
                     where = f"{width} px, {scheme}"
                     show(driver, url, width, scheme)
-                    page, seen = driver.execute_script(
-                        "const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
-                    check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
-                    check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
+                    check_width(driver, where)
                     shoot(driver, given.shots / f"fleet-{width}-{scheme}.png")
             show(driver, url, 1280, "light")
             rows = driver.execute_script(ROWS)
@@ -67,8 +64,7 @@ def main():
             for link in links:
                 path = pathlib.Path(urllib.parse.unquote(urllib.parse.urlparse(link).path))
                 check(path.is_file(), f"{link} leads nowhere")
-            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")]
-            check(not errors, f"the console says {errors}")
+            check_console(driver)
             print(f"{len(rows)} rows, {len(links)} pages, causes {counted}")
         finally:
             driver.quit()

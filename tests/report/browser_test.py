@@ -171,6 +171,27 @@ def check_pinch(driver):
     print(f"phone: one finger scrolls {moved:.0f} px, two show {zoomed[0][0]:.2f} to {zoomed[0][1]:.2f} s")
 
 
+def check_width(driver, where):
+    """Nothing scrolls sideways, no text leaves its box."""
+    page, seen = driver.execute_script("const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
+    check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
+    check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
+
+
+def check_alone(driver):
+    """The page is one file."""
+    loaded = driver.execute_script(
+        "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:'))")
+    check(not loaded, f"the page loads {loaded}")
+
+
+def check_console(driver):
+    # Chromium notes so when our finger moves while it still scrolls, on a busy machine: not the page's doing.
+    errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")
+              and "Ignored attempt to cancel a touch" not in e["message"]]
+    check(not errors, f"the console says {errors}")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("report", type=pathlib.Path)
@@ -189,10 +210,7 @@ def main():
                     show(driver, url, width, scheme)
                     n = check_charts(driver, where)
                     loops = check_loops(driver, where)
-                    page, seen = driver.execute_script(
-                        "const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
-                    check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
-                    check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
+                    check_width(driver, where)
                     shoot(driver, given.shots / f"{given.report.stem}-{width}-{scheme}.png")
                     print(f"{where}: {n} charts and {loops} loops drawn, no horizontal scroll")
             if driver.execute_script("return Object.keys(graphs).length"):
@@ -210,15 +228,10 @@ def main():
             effects = [e.get_attribute("data-effect") for e in driver.find_elements("css selector", "#causes tr[data-effect]")]
             check(given.expect_cause in (None, *effects[:1]), f"the first cause is {effects[:1]}, not {given.expect_cause}")
             check_zoom(driver)
-            loaded = driver.execute_script(
-                "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:'))")
-            check(not loaded, f"the page loads {loaded}")
+            check_alone(driver)
             pdf = driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
             (given.shots / f"{given.report.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))
-            # Chromium notes so when our finger moves while it still scrolls, on a busy machine: not the page's doing.
-            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")
-                      and "Ignored attempt to cancel a touch" not in e["message"]]
-            check(not errors, f"the console says {errors}")
+            check_console(driver)
         finally:
             driver.quit()
     print("ok")

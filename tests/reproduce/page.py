@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
-from browser_test import OVERFLOWING, check, shoot, show, start  # noqa: E402
+from browser_test import check, check_alone, check_console, check_width, shoot, show, start  # noqa: E402
 
 # Of every figure: its title, how wide its SVG is shown and how wide the figure, how many curves have a colour of the page,
 # the smallest text [px], and text outside of the frame.
@@ -54,10 +54,7 @@ def main():
                         check(p["height"] > 150 and p["width"] <= p["room"] + 1, f"{where}: '{p['title']}': {p}")
                         check(p["least"] > 7.5, f"{where}: '{p['title']}' has text of {p['least']:.1f} px")
                         check(not p["outside"], f"{where}: '{p['title']}': outside of it {p['outside']}")
-                    page, seen = driver.execute_script(
-                        "const d = document.documentElement; return [d.scrollWidth, d.clientWidth]")
-                    check(page <= seen, f"{where}: the page is {page} px wide, {seen} px are seen")
-                    check(not (cut := driver.execute_script(OVERFLOWING)), f"{where}: text overflows: {cut}")
+                    check_width(driver, where)
                     twice = driver.execute_script(
                         "const ids = [...document.querySelectorAll('[id]')].map(e => e.id); return ids.filter((e, k) => ids.indexOf(e) !== k)")
                     check(not twice, f"{where}: ids that are there twice: {twice[:5]}")
@@ -66,13 +63,10 @@ def main():
                     print(f"{where}: {len(pictures)} pictures, no horizontal scroll")
             rows = driver.execute_script("return document.querySelectorAll('tr[data-id]').length")
             check(rows >= 100, f"only {rows} rows")
-            loaded = driver.execute_script(
-                "return performance.getEntriesByType('resource').map(e => e.name).filter(n => !n.startsWith('data:'))")
-            check(not loaded, f"the page loads {loaded}")
+            check_alone(driver)
             pdf = driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
             (given.shots / f"{given.page.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))
-            errors = [e["message"] for e in driver.get_log("browser") if e["level"] in ("SEVERE", "WARNING")]
-            check(not errors, f"the console says {errors}")
+            check_console(driver)
         finally:
             driver.quit()
     print("ok")
