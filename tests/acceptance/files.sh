@@ -97,6 +97,9 @@ refuses 'axis x is not described' compensate --machine z.json --diagnosis found.
 refuses 'has stribeck_friction already' compensate --machine better.json --diagnosis found.json --log "$data/log.csv"
 refuses 'schema: must be "quadrant.diagnosis/1"' compensate --machine better.json --diagnosis better.json --log "$data/log.csv"
 
+refuses 'axes.x: is rotary; feedforwards are built for linear axes only' compensate --machine turning.json \
+    --diagnosis turned.json --log turning.csv
+
 # import: the samples that are shipped, then what is wrong with them.
 for sample in halsampler.txt odrive.csv twincat_scope.csv; do
     "$program" import --map "$root/examples/import/${sample%.*}.map.json" "$root/examples/import/$sample" "${sample%.*}.csv"

@@ -75,6 +75,11 @@ inline compensation_result compensate(const machine_description& machine, const 
     if (seconds < shortest_s)
         throw bad_input(log.file, fmt::format("{} samples are {:.3g} s: a forecast needs at least {} s",
                                               log.samples, seconds, shortest_s));
+    for (const axis_description& axis : machine.axes)
+        if (axis.kind == axis_kind::rotary)
+            throw bad_input(
+                machine.file,
+                fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
     compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
