@@ -21,6 +21,19 @@ std::vector<double> sine(double frequency, double period, std::size_t n) {
 }
 } // namespace
 
+TEST_CASE("replay: where rounding decides the sign of the reference's velocity a Coulomb feedforward is no "
+          "mismatch") {
+    axis_log log;
+    log.reference = {0, 0.001, 0.001, 0.001};
+    log.reference_step = 1e-9;
+    using quadrant::diagnosis::detail::but_for_the_sign;
+    CHECK(but_for_the_sign(0.22, 0.11, 1, log) == 0.22); // in motion it is one
+    CHECK(std::abs(but_for_the_sign(0.221, 0.11, 2, log)) < 0.0011);
+    CHECK(std::abs(but_for_the_sign(-0.111, 0.11, 3, log)) < 0.0011);
+    CHECK(but_for_the_sign(0.03, 0.11, 2, log) == 0.03); // what is no feedforward stays
+    CHECK(but_for_the_sign(0.03, 0, 2, log) == 0.03);
+}
+
 TEST_CASE("zero_phase: -3 dB at the corner, no phase, a constant and a slope pass") {
     const double period = 0.0005;
     const auto x = sine(40, period, 20000), y = zero_phase(x, 40, period);

@@ -62,6 +62,18 @@ inline std::vector<controller_key> controller_keys(const controller_description&
     return keys;
 }
 
+/// A difference at row k without what the sign of the reference's velocity makes of it where rounding of the column decides that
+/// sign: by one or two Coulomb feedforwards the command may then be off.
+inline double but_for_the_sign(double difference, double coulomb_feedforward, std::size_t k,
+                               const axis_log& log) {
+    if (std::abs(log.reference[k] - log.reference[k - 1]) > log.reference_step) return difference;
+    double least = difference;
+    for (const double signs : {-2.0, -1.0, 1.0, 2.0})
+        if (const double other = difference + signs * coulomb_feedforward; std::abs(other) < std::abs(least))
+            least = other;
+    return least;
+}
+
 /// Largest command that rounding alone explains: half a DAC step on each side, and half a digit of each column
 /// carried through the differences and gains of the cascade.
 inline double replay_rounding(const controller_description& c, const actuator_description& a,
@@ -101,7 +113,9 @@ inline controller_finding judge_controller(const controller_description& describ
     const auto from = std::min(record.score.skip, log.command.size());
     const auto difference = [&](const std::vector<double>& replayed) {
         std::vector<double> d(replayed.size() - from);
-        for (std::size_t k = from; k < replayed.size(); ++k) d[k - from] = replayed[k] - log.command[k];
+        for (std::size_t k = from; k < replayed.size(); ++k)
+            d[k - from] = but_for_the_sign(replayed[k] - log.command[k], described.coulomb_feedforward_V,
+                                           std::max<std::size_t>(1, k), log);
         return d;
     };
     const auto replay = [&](const controller_description& c) {
