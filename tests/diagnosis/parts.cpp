@@ -21,6 +21,17 @@ std::vector<double> sine(double frequency, double period, std::size_t n) {
 }
 } // namespace
 
+TEST_CASE("harmonics: even ones alone are the harmonics of half the period, and the same force") {
+    const harmonics doubled(0.06, {1e-4, 9, 0, 2, 0, 0, 0, 1}, {0.1, 0.7, 0, -0.4, 0, 0, 0, 1.1});
+    const harmonics own = doubled.in_lowest_terms();
+    CHECK(own.period == 0.03);
+    CHECK(own.sizes().size() == 4);
+    CHECK(std::abs(own.sizes()[0] - 9) < 1e-12);
+    for (const double x : {0.0, 0.004, 0.011, 0.05}) CHECK(std::abs(own.at(x) - doubled.at(x)) < 2e-4);
+    CHECK(harmonics(0.06, {2, 9}, {0, 0}).in_lowest_terms().period == 0.06); // the first is there
+    CHECK(harmonics(0.06, {0, 0, 0, 3}, {0, 0, 0, 0}).in_lowest_terms().period == 0.015);
+}
+
 TEST_CASE("replay: where rounding decides the sign of the reference's velocity a Coulomb feedforward is no "
           "mismatch") {
     axis_log log;

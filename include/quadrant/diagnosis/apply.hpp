@@ -39,11 +39,12 @@ public:
                                                    a.name, name_of(kind_of(a.name))));
         }
         for (const cause& c : d.causes) {
-            if (c.probability < at_least_)
+            // A group is sure where its names are not: any reading of it predicts the record.
+            if (std::max(c.probability, c.group_probability) < at_least_)
                 out_.notes.push_back(fmt::format(
                     "{} of axis {} is left out: probability {:.2f}, below {:g}; the forecast gap_after "
                     "counts on it, which took the {}",
-                    c.effect, c.axis, c.probability, at_least_,
+                    c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
                     text_of(fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
                                         c.gap_after_force_rms_N.value),
                             kind_of(c.axis))));
