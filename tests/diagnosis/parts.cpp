@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "workshop.hpp"
 
-#include <quadrant/diagnosis/axis_case.hpp>
+#include <quadrant/diagnosis/causes.hpp>
 #include <quadrant/diagnosis/closed_loop.hpp>
 #include <quadrant/diagnosis/places.hpp>
 #include <quadrant/friction/stribeck.hpp>
@@ -21,15 +21,27 @@ std::vector<double> sine(double frequency, double period, std::size_t n) {
 }
 } // namespace
 
-TEST_CASE("harmonics: even ones alone are the harmonics of half the period, and the same force") {
-    const harmonics doubled(0.06, {1e-4, 9, 0, 2, 0, 0, 0, 1}, {0.1, 0.7, 0, -0.4, 0, 0, 0, 1.1});
-    const harmonics own = doubled.in_lowest_terms();
-    CHECK(own.period == 0.03);
-    CHECK(own.sizes().size() == 4);
-    CHECK(std::abs(own.sizes()[0] - 9) < 1e-12);
-    for (const double x : {0.0, 0.004, 0.011, 0.05}) CHECK(std::abs(own.at(x) - doubled.at(x)) < 2e-4);
-    CHECK(harmonics(0.06, {2, 9}, {0, 0}).in_lowest_terms().period == 0.06); // the first is there
-    CHECK(harmonics(0.06, {0, 0, 0, 3}, {0, 0, 0, 0}).in_lowest_terms().period == 0.015);
+TEST_CASE("harmonics: even ones alone are told as the harmonics of half the period") {
+    const auto told = [](std::vector<double> sizes) {
+        std::vector<parameter_estimate> out{
+            {"cogging_period_m", {{0.06, 0.059, 0.061}}}, {"cogging_N", {}}, {"cogging_phase_rad", {}}};
+        for (std::size_t i = 0; i < sizes.size(); ++i) {
+            out[1].values.push_back({sizes[i], sizes[i] - 1, sizes[i] + 1});
+            out[2].values.push_back({0.1 * static_cast<double>(i), 0, 1});
+        }
+        detail::in_lowest_terms(out);
+        return out;
+    };
+    const auto half = told({1e-4, 9, 0, 2});
+    CHECK(half[0].values[0].value == 0.03);
+    CHECK(half[0].values[0].low == 0.0295);
+    REQUIRE(half[1].values.size() == 2);
+    CHECK(half[1].values[0].value == 9);
+    CHECK(half[1].values[1].high == 3);
+    CHECK(half[2].values[1].value == 0.1 * 3);
+    CHECK(told({0, 0, 0, 3})[0].values[0].value == 0.015);
+    CHECK(told({2, 9})[0].values[0].value == 0.06); // the first is there
+    CHECK(told({9})[1].values.size() == 1);
 }
 
 TEST_CASE("replay: where rounding decides the sign of the reference's velocity a Coulomb feedforward is no "

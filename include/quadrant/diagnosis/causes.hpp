@@ -122,11 +122,40 @@ inline double unknown(const axis_case& c, std::size_t which) {
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }
 
+/// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even ones alone repeat
+/// twice as often.
+inline void in_lowest_terms(std::vector<parameter_estimate>& values) {
+    parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
+    for (parameter_estimate& p : values) {
+        if (p.key.find("period") != p.key.npos || p.key == "process.fundamental_Hz") cycle = &p;
+        if (p.key.ends_with("phase_rad")) phases = &p;
+    }
+    for (parameter_estimate& p : values)
+        if (phases && &p != phases && p.values.size() == phases->values.size() && p.values.size() > 1)
+            sizes = &p;
+    if (!cycle || !sizes) return;
+    double odd = 0, all = 0;
+    for (std::size_t i = 0; i < sizes->values.size(); ++i) {
+        all += square(sizes->values[i].value);
+        if (i % 2 == 0) odd += square(sizes->values[i].value);
+    }
+    if (!(odd < 0.01 * all)) return;
+    for (parameter_estimate* p : {sizes, phases}) {
+        std::vector<estimate> even;
+        for (std::size_t i = 1; i < p->values.size(); i += 2) even.push_back(p->values[i]);
+        p->values = even;
+    }
+    const double factor = cycle->key.ends_with("_Hz") ? 2 : 0.5;
+    for (estimate& e : cycle->values) e = {factor * e.value, factor * e.low, factor * e.high};
+    in_lowest_terms(values);
+}
+
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none
 /// better than what is left beside what its effect explains (a pull as large as the rest, all of it along this value), no length
 /// better than half a count. An angle moves by as much in radian.
 inline void add_model_error(std::vector<parameter_estimate>& values, const effect& e, const axis_case& c,
                             double left) {
+    in_lowest_terms(values);
     const double relative = std::min(1.0, std::hypot(0.01, left));
     for (auto& p : values)
         for (estimate& v : p.values) {

@@ -44,22 +44,6 @@ struct harmonics {
         while (out.count > 0 && sine[out.count - 1] == 0 && cosine[out.count - 1] == 0) --out.count;
         return out;
     }
-    /// With its own period: where the odd harmonics hold less than a hundredth of the energy, the even ones repeat twice as often.
-    harmonics in_lowest_terms() const {
-        double odd = 0, all = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double energy = cosine[i] * cosine[i] + sine[i] * sine[i];
-            all += energy;
-            if (i % 2 == 0) odd += energy;
-        }
-        if (count < 2 || !(odd < 0.01 * all)) return *this;
-        harmonics out;
-        out.period = period / 2;
-        out.count = count / 2;
-        for (std::size_t i = 0; i < out.count; ++i)
-            out.cosine[i] = cosine[2 * i + 1], out.sine[i] = sine[2 * i + 1];
-        return out.in_lowest_terms();
-    }
     /// Up to the last harmonic that has a size.
     std::vector<double> sizes() const {
         std::vector<double> out;

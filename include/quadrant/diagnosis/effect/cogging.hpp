@@ -34,8 +34,9 @@ inline constexpr effect cogging{
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
-        const harmonics h = p.cogging.in_lowest_terms();
-        return {{"cogging_period_m", {h.period}}, {"cogging_N", h.sizes()}, {"cogging_phase_rad", h.phases()}};
+        return {{"cogging_period_m", {p.cogging.period}},
+                {"cogging_N", p.cogging.sizes()},
+                {"cogging_phase_rad", p.cogging.phases()}};
     },
     .join = [](plant_model& p, const screening&) { p.cogging.count = harmonics::most; }};
 

@@ -35,10 +35,9 @@ inline constexpr effect cutting_force{
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
-        const harmonics h = p.cutting.in_lowest_terms();
-        return {{"process.fundamental_Hz", {1 / h.period}},
-                {"process.force_N", h.sizes()},
-                {"process.phase_rad", h.phases()},
+        return {{"process.fundamental_Hz", {1 / p.cutting.period}},
+                {"process.force_N", p.cutting.sizes()},
+                {"process.phase_rad", p.cutting.phases()},
                 {"process.mean_N", {p.cutting_mean}}};
     },
     .join = [](plant_model& p, const screening&) { p.cutting.count = 4; }};

@@ -28,8 +28,9 @@ inline constexpr effect force_ripple{
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
-        const harmonics h = p.ripple.in_lowest_terms();
-        return {{"ripple", h.sizes()}, {"ripple_period_m", {h.period}}, {"ripple_phase_rad", h.phases()}};
+        return {{"ripple", p.ripple.sizes()},
+                {"ripple_period_m", {p.ripple.period}},
+                {"ripple_phase_rad", p.ripple.phases()}};
     },
     .join = [](plant_model& p, const screening&) { p.ripple.count = 1; }};
 
