@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""What the pages promise stands: links and anchors lead somewhere, C++ in the tutorials, how-to pages and explanations is
+text of a file that is compiled, commands have the options that they are shown with, and docs/README.md leads to every page.
+
+    python3 tests/docs/check.py [root of the repository]
+"""
+import re
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2]).resolve()
+pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
+index = root / "docs" / "README.md"
+faults = []
+
+
+def fault(page, line, text):
+    faults.append(f"{page.relative_to(root)}:{line}: {text}")
+
+
+# --- A page in parts: fenced blocks, and the prose around them with its line numbers kept. ---
+fence = re.compile(r"^(\s*)```(\S*)[^\n]*\n(.*?)^\s*```[ \t]*$", re.M | re.S)
+code_span = re.compile(r"(`+)(?!`)(.+?)(?<!`)\1(?!`)", re.S)
+
+
+def line_of(text, offset):
+    return text.count("\n", 0, offset) + 1
+
+
+def blank(match):
+    return re.sub(r"[^\n]", " ", match.group(0))
+
+
+@lru_cache(maxsize=None)
+def prose(page):
+    return fence.sub(blank, page.read_text())
+
+
+# --- 1. Links and anchors. ---
+@lru_cache(maxsize=None)
+def anchors(page):
+    """The names that GitHub gives the headings of a page."""
+    found, seen = set(), {}
+    for heading in re.findall(r"^#{1,6}[ \t]+(.*?)[ \t#]*$", prose(page), re.M):
+        text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "")
+        slug = re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
+        found.add(slug if slug not in seen else f"{slug}-{seen[slug]}")
+        seen[slug] = seen.get(slug, 0) + 1
+    return found
+
+
+def links(page):
+    text = code_span.sub(blank, prose(page))
+    for match in re.finditer(r"\]\(\s*<?([^()\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)", text):
+        yield line_of(text, match.start()), match.group(1)
+
+
+def target_of(page, link):
+    path = link.split("#")[0]
+    return (page.parent / path).resolve() if path else page
+
+
+def check_links(page):
+    for line, link in links(page):
+        if re.match(r"[a-z][a-z+.-]*:", link):
+            continue  # another site
+        target = target_of(page, link)
+        if not target.is_relative_to(root) or not target.exists():
+            fault(page, line, f"{link} does not exist")
+        elif "#" in link and target.suffix == ".md" and link.split("#")[1] not in anchors(target):
+            fault(page, line, f"{link}: no such heading")
+
+
+# --- 2. Code that is shown is code that is compiled. ---
+compiled = re.compile(r"(examples|include)/\S+\.(cpp|hpp|c|h)")
+marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
+
+
+def lines_of(text):
+    return [line.strip() for line in text.strip("\n").split("\n")]
+
+
+def check_snippets(page):
+    if not re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix()):
+        return
+    text, marked = page.read_text(), 0
+    for match in fence.finditer(text):
+        if match.group(2) not in ("cpp", "c++", "c", "cc"):
+            continue
+        line, from_file = line_of(text, match.start()), marker.search(text, 0, match.start())
+        if not from_file:
+            fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
+            continue
+        marked += 1
+        source = root / from_file.group(1)
+        if not compiled.fullmatch(from_file.group(1)) or not source.is_file():
+            fault(page, line, f"{from_file.group(1)} is no source under examples/ or include/")
+            continue
+        shown, there = lines_of(match.group(3)), lines_of(source.read_text())
+        if not any(shown) or not any(there[k : k + len(shown)] == shown for k in range(len(there))):
+            fault(page, line, f"this block does not stand like that in {from_file.group(1)}")
+    if text.count("<!-- from ") != marked:
+        fault(page, 1, f"{text.count('<!-- from ')} marks, {marked} blocks of code right below one")
+
+
+# --- 3. Commands have the options that they are shown with. ---
+programs = {
+    name: root / "examples" / name.replace("-", "_")
+    for name in ("quadrant-gap", "quadrant-gap-mpi", "quadrant-cnc", "quadrant-reproduce", "quadrant-latency")
+}
+shared_options = {"quadrant-gap": ["examples/quadrant_gap/commands.hpp"], "quadrant-gap-mpi": ["examples/quadrant_gap/fleet.cpp"]}
+
+
+@lru_cache(maxsize=None)
+def options(program, subcommand):
+    """The options that a program, or one of its subcommands with a source of its own, asks CLI11 for."""
+    own = programs[program] / f"{subcommand}.cpp"
+    has_its_own = own.is_file() and "add_option" in own.read_text()
+    sources = [own] if has_its_own else sorted(programs[program].glob("*.cpp"))
+    text = "".join(s.read_text() for s in sources + [root / s for s in shared_options.get(program, [])])
+    found = {"--help"}
+    for names in re.findall(r"(?:add_option|add_flag|set_version_flag)\(\s*\"([^\"]*)\"", text):
+        found.update(n for n in names.split(",") if n.startswith("--"))
+    if program == "quadrant-gap" and subcommand == "init":  # its options are a table, with other names for a rotary axis
+        table = (root / "include/quadrant/diagnosis/init_fields.hpp").read_text()
+        for name in re.findall(r"init_field\{\"([\w-]+)\"", table):
+            found.update({f"--{name}", "--" + name.replace("mass", "inertia").replace("force-", "torque-")})
+    return found
+
+
+call = re.compile(r"(?<![\w-])(?<!--target )(" + "|".join(sorted(programs, key=len, reverse=True)) + r")(?![\w.-])")
+
+
+def check_command(page, line, text):
+    for part in re.split(r"&&|\|\||[|;]|\s#\s", text):
+        match = call.search(part)
+        if not match:
+            continue
+        rest = part[match.end() :]
+        words = rest.split()
+        subcommand = words[0] if words and re.fullmatch(r"[a-z]+", words[0]) else ""
+        for option in re.findall(r"(?<![\w-])(--[A-Za-z][\w-]*)", rest):
+            if option not in options(match.group(1), subcommand):
+                fault(page, line, f"{match.group(1)} {subcommand} has no option {option}".replace("  ", " "))
+
+
+def check_commands(page):
+    text = page.read_text()
+    for match in fence.finditer(text):
+        language, first = match.group(2), line_of(text, match.start()) + 1
+        if language not in ("", "sh", "bash", "console"):
+            continue
+        body = match.group(3).replace("\\\n", "  ")
+        for number, command in enumerate(body.split("\n")):
+            check_command(page, first + number, command)
+            for path in re.findall(r"(?:^|\s)((?:examples|include|tests|benchmarks|docs|packaging)/[\w./-]+)", command):
+                if language == "sh" and not (root / path).exists():
+                    fault(page, first + number, f"{path} does not exist")
+    words = prose(page)
+    for match in re.finditer(r"^ {4}(\S.*)$", words, re.M):
+        check_command(page, line_of(words, match.start()), match.group(1))
+    for match in code_span.finditer(words):
+        check_command(page, line_of(words, match.start()), match.group(2).replace("\n", " "))
+
+
+# --- 4. The index leads to every page. ---
+def check_index():
+    if not index.is_file():
+        return fault(index, 1, "is missing")
+    linked = {target_of(index, link) for _, link in links(index)}
+    for page in pages[1:]:
+        if page != index and page not in linked:
+            fault(index, 1, f"does not lead to {page.relative_to(root / 'docs')}")
+
+
+for each in pages:
+    check_links(each)
+    check_snippets(each)
+    check_commands(each)
+check_index()
+print("\n".join(faults) if faults else f"{len(pages)} pages: links, snippets, options and index stand")
+sys.exit(bool(faults))

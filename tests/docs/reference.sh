@@ -1,0 +1,30 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# usage: reference.sh OUT     Doxygen's reference of every public entity, as OUT/html/index.html; any warning is an error
+set -u
+command -v doxygen >/dev/null || { echo 'SKIPPED: docs.reference: no doxygen (apt-get install doxygen)'; exit 77; }
+mkdir -p "${1:?usage: reference.sh OUT}" && out=$(cd "$1" && pwd) || exit 1
+cd "$(dirname "$0")/../.." || exit 1
+rm -rf "$out/html"
+{ cat docs/Doxyfile && printf 'OUTPUT_DIRECTORY = "%s"\n' "$out"; } | doxygen - || { echo "doxygen: exit code $?"; exit 1; }
+
+failed=0
+wrong() { echo "FAILED: $*"; failed=1; }
+says() { # PAGE TEXT, as it stands in the comment
+    [ -s "$out/html/$1" ] || { wrong "no page $1"; return; }
+    sed 's/<[^>]*>//g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g; s/&amp;/\&/g' "$out/html/$1" | grep -qF -- "$2" || wrong "$1 does not say: $2"
+}
+says index.html 'it says why a machine does not do what its simulation says'
+says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear'
+says classquadrant_1_1notch.html "J = |b0' - b0| |x[k] - x[k-1]|"
+says structquadrant_1_1notch_1_1parameters.html 'deepest point; 0 < centre < half the sampling rate'
+says conceptquadrant_1_1signal__tag.html 'signal_tag'
+says structquadrant_1_1cascade__p__pi__boxes.html 'cascade<cascade_p_pi_boxes<>> axis{.box = {parameters, 500_us}};'
+says namespacequadrant_1_1diagnosis.html 'From a machine file and a log to where they differ, why, how surely'
+says namespacequadrant_1_1diagnosis.html 'Writes the causes of a diagnosis that are at least as probable as at_least into a machine file'
+ls "$out/html" | grep -E '_1_1detail(_1_1.*|-members)?\.html' && wrong 'pages of what is inside'
+headers=$(find include/quadrant -name '*.hpp' | wc -l)
+pages=$(find "$out/html" -name '*_8hpp.html' | wc -l)
+[ "$headers" = "$pages" ] || wrong "$headers headers, $pages pages of them"
+[ $failed = 0 ] && echo "$(find "$out/html" -name '*.html' | wc -l) pages of $headers headers: $out/html/index.html"
+exit $failed
