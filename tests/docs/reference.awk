@@ -19,14 +19,9 @@ function escaped(text) {
     gsub(/eq\. /, "eq.\\ ", text)
     return text
 }
-function end_verbatim() {
-    if (verbatim) block[lines] = block[lines] " \\endverbatim"
-    verbatim = 0
-}
 function flush(next_line,    i) {
-    end_verbatim()
     if (lines && before == "" && next_line ~ /^(namespace quadrant|#include)/) before = "/// \\file"
-    if (NR > 1 || lines) print before
+    if (NR > 1) print before
     for (i = 1; i <= lines; ++i) print block[i]
     lines = 0
 }
@@ -34,15 +29,13 @@ function flush(next_line,    i) {
     at = index($0, "///") + 3
     code = substr($0, 1, at - 1)
     text = substr($0, at)
-    if (text ~ /^   /) {
-        block[++lines] = code (verbatim ? "" : " \\verbatim") text
-        verbatim = 1
-    } else {
-        end_verbatim()
-        if (text ~ /^ (Throws |(Cost|Derivation|Limits|NaN|Ports|Range|Signs|Source|State|Threads|Time|Units)[^.]*: )/)
-            code = code " <p>"
-        block[++lines] = code plain(text)
-    }
+    if (text ~ /^   /)
+        text = " \\verbatim" text " \\endverbatim"
+    else
+        text = plain(text)
+    if (text ~ /^ (Throws |(Cost|Derivation|Limits|NaN|Ports|Range|Signs|Source|State|Threads|Time|Units)[^.]*: )/)
+        code = code " <p>"
+    block[++lines] = code text
     next
 }
 {

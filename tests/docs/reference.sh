@@ -22,7 +22,9 @@ says conceptquadrant_1_1signal__tag.html 'signal_tag'
 says structquadrant_1_1cascade__p__pi__boxes.html 'cascade<cascade_p_pi_boxes<>> axis{.box = {parameters, 500_us}};'
 says namespacequadrant_1_1diagnosis.html 'From a machine file and a log to where they differ, why, how surely'
 says namespacequadrant_1_1diagnosis.html 'Writes the causes of a diagnosis that are at least as probable as at_least into a machine file'
-ls "$out/html" | grep -E '_1_1detail(_1_1.*|-members)?\.html' && wrong 'pages of what is inside'
+grep -q '<pre class="fragment">H(s) = ' "$out/html/classquadrant_1_1notch.html" || wrong 'the equation of notch is no line of its own'
+grep -lE '^ *///' "$out"/html/*.html && wrong 'marks of comments in the text'
+ls "$out/html" | grep -m 1 -E '_1_1detail(_1_1.*|-members)?\.html' && wrong 'pages of what is inside'
 headers=$(find include/quadrant -name '*.hpp' | wc -l)
 pages=$(find "$out/html" -name '*_8hpp.html' | wc -l)
 [ "$headers" = "$pages" ] || wrong "$headers headers, $pages pages of them"
