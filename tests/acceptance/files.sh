@@ -98,7 +98,7 @@ refuses 'has stribeck_friction already' compensate --machine better.json --diagn
 refuses 'schema: must be "quadrant.diagnosis/1"' compensate --machine better.json --diagnosis better.json --log "$data/log.csv"
 
 refuses 'axes.x: is rotary; feedforwards are built for linear axes only' compensate --machine turning.json \
-    --diagnosis turned.json --log turning.csv
+    --diagnosis found_turning.json --log turning.csv
 
 # import: the samples that are shipped, then what is wrong with them.
 for sample in halsampler.txt odrive.csv twincat_scope.csv; do

@@ -164,27 +164,28 @@ TEST_CASE("read_machine: a rotary axis has inertia, torques and radians in the s
 }
 
 TEST_CASE("read_machine: an axis that mixes linear and rotary keys is refused, with the place and the rule") {
-    const auto of = [](std::string_view plant, std::string_view rest = "") {
+    const auto machine_with = [](std::string_view keys, std::string_view rest = "") {
         return refusal(
             fmt::format("{{\"schema\": \"quadrant.machine/1\", \"sample_period_s\": 0.001,\n\"axes\": "
                         "{{\"c\": {{\n  \"plant\": {{{}}}{}}}}}}}",
-                        plant, rest));
+                        keys, rest));
     };
     const std::string rule = " (an axis has m, N and kg, or rad, Nm and kg_m2, throughout)";
-    CHECK(of(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
+    CHECK(machine_with(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
           "machine.json:3:33: axes.c.plant.coulomb_N: is of a linear axis; this one is rotary: coulomb_Nm" +
               rule);
-    CHECK(of(R"("mass_kg": 1, "coulomb_Nm": 2)") ==
+    CHECK(machine_with(R"("mass_kg": 1, "coulomb_Nm": 2)") ==
           "machine.json:3:27: axes.c.plant.coulomb_Nm: is of a rotary axis; this one is linear, without "
           "inertia_kg_m2: coulomb_N" +
               rule);
-    CHECK(of(R"("mass_kg": 1, "inertia_kg_m2": 2)").find("3:13: axes.c.plant.mass_kg: is of a linear") !=
+    CHECK(machine_with(R"("mass_kg": 1, "inertia_kg_m2": 2)")
+              .find("3:13: axes.c.plant.mass_kg: is of a linear") != std::string::npos);
+    CHECK(machine_with(R"("inertia_kg_m2": 2)", R"(, "encoder": {"resolution_m": 1})").find("resolution_rad") !=
           std::string::npos);
-    CHECK(of(R"("inertia_kg_m2": 2)", R"(, "encoder": {"resolution_m": 1})").find("resolution_rad") !=
-          std::string::npos);
-    CHECK(of(R"("inertia_kg_m2": -2)") == "machine.json: axes.c.plant.inertia_kg_m2: must be a number > 0");
-    CHECK(of(R"("inertia_kg_m2": 2, "static_Nm": 1)").ends_with("needs stribeck_velocity_rad_per_s"));
-    CHECK(of(R"("inertia_kg_m2": 2, "colomb_Nm": 1)").ends_with("did you mean coulomb_Nm?"));
+    CHECK(machine_with(R"("inertia_kg_m2": -2)") ==
+          "machine.json: axes.c.plant.inertia_kg_m2: must be a number > 0");
+    CHECK(machine_with(R"("inertia_kg_m2": 2, "static_Nm": 1)").ends_with("needs stribeck_velocity_rad_per_s"));
+    CHECK(machine_with(R"("inertia_kg_m2": 2, "colomb_Nm": 1)").ends_with("did you mean coulomb_Nm?"));
 }
 
 TEST_CASE("read_machine: text that is not JSON is refused with its place") {
