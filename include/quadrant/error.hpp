@@ -161,10 +161,12 @@ void require(bool holds, const detail::field_name& field, const Value& value, co
 template <class Value> void require_finite(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)), field, value, "must be finite");
 }
+/// Finite and above 0.
 template <class Value> void require_positive(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)) && detail::plain(value) > 0, field, value,
             "must be finite and above 0");
 }
+/// Finite and not below 0.
 template <class Value> void require_not_negative(const detail::field_name& field, const Value& value) {
     require(std::isfinite(detail::plain(value)) && detail::plain(value) >= 0, field, value,
             "must be finite and not below 0");

@@ -76,6 +76,7 @@ private:
     refused_parameter why_{};
 };
 
+/// Makes a block from parameters that may be refused, without an exception: ask the answer whether it holds one.
 template <class Block> made<Block> make(const typename detail::parameters_of<Block>::type& p, duration period) {
     made<Block> out;
     out.make(p, period);

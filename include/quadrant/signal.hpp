@@ -10,38 +10,47 @@ namespace quadrant {
 /// What a wire carries. Blocks are templates over these tags, not over quantity types, so that the compiler
 /// prints `block<signal::velocity, signal::force>` and a log header knows the unit.
 namespace signal {
+/// Place of an axis [m]; differences and errors of places too.
 struct position {
     using unit = si::length;
     static constexpr const char* text = "m";
 };
+/// Speed of an axis [m/s].
 struct velocity {
     using unit = si::velocity;
     static constexpr const char* text = "m/s";
 };
+/// Acceleration of an axis [m/s^2].
 struct acceleration {
     using unit = si::acceleration;
     static constexpr const char* text = "m/s^2";
 };
+/// Force along an axis [N].
 struct force {
     using unit = si::force;
     static constexpr const char* text = "N";
 };
+/// Torque of a screw or rotary axis [N m].
 struct torque { // the radian is a unit of its own: N m/rad
     using unit = si::torque;
     static constexpr const char* text = "N m";
 };
+/// Speed of a screw or rotary axis [rad/s].
 struct angular_velocity {
     using unit = si::angular_velocity;
     static constexpr const char* text = "rad/s";
 };
+/// Command to an amplifier [V].
 struct voltage {
     using unit = si::electric_potential;
     static constexpr const char* text = "V";
 };
+/// Current of a motor [A], or a command for it.
 struct current {
     using unit = si::current;
     static constexpr const char* text = "A";
 };
+/// What has no unit [1].
 struct number {
     using unit = si::dimensionless;
     static constexpr const char* text = "1";

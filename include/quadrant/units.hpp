@@ -20,12 +20,17 @@
 namespace quadrant {
 
 namespace si = boost::units::si;
+/// A number with its unit, checked when it is compiled and free when it runs.
 template <class Unit, class Real = double> using quantity = boost::units::quantity<Unit, Real>;
 
+/// A time [s]; periods, delays.
 using duration = quantity<si::time>;
+/// In hertz: periods of a sine per second.
 using frequency = quantity<si::frequency>;
 
+/// The unit of A over B.
 template <class A, class B> using unit_quotient = typename boost::units::divide_typeof_helper<A, B>::type;
+/// The unit of A times B.
 template <class A, class B> using unit_product = typename boost::units::multiply_typeof_helper<A, B>::type;
 
 } // namespace quadrant

@@ -18,6 +18,7 @@ struct circular_path {
     std::vector<displacement> x, y;
     duration period;
 };
+/// A circle in the plane of both axes: its centre and its radius [m].
 struct circle {
     displacement x{}, y{}, radius{};
 };

@@ -13,6 +13,7 @@ struct reversal_spike {
     bool visible;        ///< height above four times the rms of what is left elsewhere
 };
 
+/// What ISO 230-4 asks of one run along a circle, and the spikes at the reversals beside it.
 struct circular_result {
     bool counterclockwise;
     circle fitted;                       ///< least squares
@@ -27,6 +28,7 @@ struct circular_result {
         deviation; ///< from the nominal radius, of every sample of the turn: the polar picture
 };
 
+/// The circle that was asked for, and how a run is held against it.
 struct circular_options {
     circle nominal;             ///< as commanded; radius > 0
     bool fitted_centre = false; ///< radial deviation about the least-squares centre instead of the nominal one

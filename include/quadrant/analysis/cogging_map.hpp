@@ -24,6 +24,7 @@ template <signal_tag Out, signal_tag In = signal::position> struct cogging_run {
         velocity{}; ///< SI; of all runs or of none: then the viscous slope is told from Coulomb friction
 };
 
+/// What repeats along the travel, and which of its harmonics a map keeps.
 template <signal_tag In = signal::position> struct cogging_options {
     quantity_of<In> pitch{};        ///< > 0; what repeats: pole pitch, or a turn
     unsigned highest = 40;          ///< harmonic that is looked for
@@ -33,6 +34,7 @@ template <signal_tag In = signal::position> struct cogging_options {
         friction_orders{}; ///< where half the difference of the directions repeats along the pitch too
 };
 
+/// One harmonic of the cogging that was found, with its interval, and what tells that it is friction instead.
 template <signal_tag Out> struct cogging_harmonic {
     unsigned order;
     estimate<quantity_of<Out>> amplitude;

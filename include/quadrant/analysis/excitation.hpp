@@ -22,6 +22,7 @@ template <signal_tag Signal> class chirp {
 public:
     using output = Signal;
     using value = quantity_of<Signal>;
+    /// Size, band and length of the sweep.
     struct parameters {
         value amplitude;         ///< peak; finite
         frequency from, to;      ///< above 0, below half the sampling rate
@@ -74,6 +75,7 @@ template <signal_tag Signal> class multisine {
 public:
     using output = Signal;
     using value = quantity_of<Signal>;
+    /// Size and lines of the excitation, in hertz and in samples of its record.
     struct parameters {
         value amplitude;           ///< largest sample; finite
         frequency from, to;        ///< of the lines, both included
@@ -145,6 +147,7 @@ public:
     using output = typename Block::output;
     using argument = typename Block::argument;
     using value = typename Block::value;
+    /// Those of the box that is excited and of the source behind it.
     struct parameters {
         typename Block::parameters block;
         typename Source::parameters source;

@@ -21,6 +21,7 @@ struct modes_fit_options {
 
 /// Rigid axis and modes with intervals of 95 %.
 template <signal_tag Command = signal::voltage> struct modes_fit {
+    /// One mode beside the rigid axis, as the fit found it.
     struct mode {
         estimate<frequency> centre;
         estimate<double> damping, share; ///< of `flexible_mode`

@@ -33,6 +33,7 @@ inline void fft(std::vector<complex>& x) {
 
 /// A measured response with what is known about its error.
 struct measured_frf {
+    /// The response at one frequency, and how far it can be trusted there.
     struct line {
         frequency f;
         complex value;    ///< H1, SI units of out per in
@@ -66,6 +67,8 @@ enum class trend { keep, mean, line };
 /// `add` takes one sample of each wire and allocates nothing. A bad sample (not finite) drops the window that it is in.
 template <signal_tag In, signal_tag Out> class frf {
 public:
+    /// Length of a window: its resolution is the sampling rate / samples. How windows overlap, are weighed and freed of a
+    /// trend.
     struct parameters {
         std::size_t samples = 2048; ///< of a window, a power of two, 8 or more
         double overlap = 0.5;       ///< 0 ... 0.9 of the window

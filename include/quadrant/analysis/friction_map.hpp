@@ -14,12 +14,14 @@ template <signal_tag Command = signal::voltage> struct axis_log {
 
 /// Friction over speed.
 struct friction_map {
+    /// Friction at one speed: what changes its sign with the direction, and what does not.
     struct point {
         quantity_of<signal::velocity> speed;         ///< > 0
         quantity_of<signal::force> friction;         ///< half the difference of the two directions
         quantity_of<signal::force> standard_error{}; ///< of that
         quantity_of<signal::force> offset;           ///< half their sum: what pushes whichever way it goes
     };
+    /// A run that the map does not use, and what is wrong with it.
     struct left_out {
         std::size_t run; ///< index
         std::string why;
@@ -29,6 +31,7 @@ struct friction_map {
     std::vector<left_out> unused;
 };
 
+/// When a run counts as steady, and which runs are of one speed.
 struct friction_map_options {
     double uneven = 0.2; ///< share of the speed by which a steady run may be off; 0.01 ... 0.5
     double same = 0.05;  ///< runs whose speeds differ by this share belong together; 0.001 ... 0.3

@@ -101,6 +101,7 @@ inline std::array<tuning_state, 3> classified(const tuning_trial& t, const tunin
     return {falling(t.oscillation, limits.oscillation), tuning_state(set),
             stable ? falling(t.tracking_error.value(), limits.tracking_error) : tuning_state::highly_under};
 }
+/// What a trial asks for: the sum of the actions of its three attributes.
 inline tuning_action action(const std::array<tuning_state, 3>& states) {
     tuning_action sum;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -117,6 +118,7 @@ template <signal_tag Command = signal::voltage> struct tuning_step {
     tuning_trial trial{};
     std::array<tuning_state, 3> states{};
 };
+/// Every trial of a tuning, in order, and whether it came to an end.
 template <signal_tag Command = signal::voltage> struct tuning_result {
     std::vector<tuning_step<Command>> steps; ///< the first with the start, the last with the gains tuned
     bool settled = false;                    ///< the last trial asks for no change

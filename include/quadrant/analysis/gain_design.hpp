@@ -30,6 +30,7 @@ constexpr const char* text(gain_limit l) {
     return "crossover within the band";
 }
 
+/// What both loops have to keep, and what of their phase the integral may take.
 struct gain_design_options {
     wanted_margins velocity{}, position{};
     double integral_phase = 3; ///< degrees that ki costs at the velocity crossover; 0 (no integral) ... 45
@@ -42,6 +43,7 @@ struct designed_loop {
     gain_limit limited_by;
     frequency at; ///< where that is
 };
+/// Gains of a cascade P/PI, and what each of its loops has left with them.
 template <signal_tag Command = signal::voltage> struct gain_design {
     pi_model<Command> velocity;
     frequency position_gain; ///< kv [1/s]

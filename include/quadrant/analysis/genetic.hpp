@@ -27,6 +27,7 @@ enum class selection {
     roulette    ///< drawn in proportion to how far its cost lies below the worst
 };
 
+/// How a generation becomes the next one; the same seed gives the same search.
 struct genetic_options {
     std::size_t population = 40; ///< 4 or more
     std::size_t elite = 2;       ///< that live on unchanged; below population

@@ -30,6 +30,7 @@ template <signal_tag Command> struct compensation_verdict {
     }
 };
 
+/// Where the error of a reversal is looked at, and when its compensation counts as right.
 struct compensation_options {
     duration window = duration::from_value(0.1); ///< after a reversal; half of it before is its base line
     duration settle{};                           ///< reversals before this are left out

@@ -23,6 +23,7 @@ public:
         rows_.back().push_back(b);
     }
 
+    /// The unknowns, and what their intervals are made of.
     struct solution {
         std::vector<double> x;
         std::vector<double> inverse_diagonal; ///< of (A^T A)^-1: variance of x for unit variance of b

@@ -10,6 +10,7 @@ namespace quadrant::analysis {
 /// should have ended, of the error after that, and of the command. Its weights are not published.
 class move_cost {
 public:
+    /// The errors and the command that each cost 1, and when the move should have ended.
     struct parameters {
         double tracking; ///< error on the way that costs 1; > 0, as the next two; infinite: none does
         double after;    ///< error after it

@@ -19,6 +19,7 @@ struct notch_rule {
     double least_coherence = 0.5; ///< lines below are left out
 };
 
+/// A notch for one peak, what it attenuates, and what it costs in phase.
 template <signal_tag Signal> struct notch_design {
     typename notch<Signal>::parameters parameters;
     frequency low, high;  ///< attenuated by what was asked for, or more

@@ -12,6 +12,7 @@ struct q_rule {
     double least_coherence = 0.8; ///< lines below are left out, and told
     double deviations = 2;        ///< of the lines' spread, added to |Delta|; >= 0
 };
+/// How near a Q filter comes to the bound 1/|Delta| of the axis that was measured, and on which lines that was judged.
 struct q_verdict {
     double worst = 0; ///< largest |Q| (|Delta| with the deviations of its spread)
     frequency at{};   ///< where

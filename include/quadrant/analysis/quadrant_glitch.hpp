@@ -18,6 +18,7 @@ struct glitch {
     duration delay;                     ///< of the peak from the reversal
 };
 
+/// How far behind a reversal its peak is looked for, and from when on.
 struct glitch_options {
     duration
         window; ///< after a reversal in which its peak is looked for; > 0, ends at the next reversal anyway

@@ -150,6 +150,7 @@ template <std::size_t Order> std::array<double, Order> repetitive_weights(double
     return w;
 }
 
+/// The largest value of a response in a span, and its frequency.
 struct largest {
     double value;
     frequency at;
@@ -184,12 +185,15 @@ struct repetitive_performance {
     double non_periodic_db; ///< gamma_np: worst amplification within the bandwidth [dB]
     frequency worst_between;
 };
+/// How well the cycle of a memory loop is known, and up to where its error counts.
 struct performance_case {
     duration cycle;            ///< the memory's
     double uncertainty = 0.01; ///< of the cycle, either way
     std::size_t harmonics = 1; ///< 1 ... this
     frequency bandwidth;       ///< for gamma_np
 };
+/// |M| over the harmonics of an uncertain cycle (100 steps either way), and between them up to the bandwidth (200 lines a
+/// harmonic).
 template <frequency_response Loop, frequency_response Learning, frequency_response Smoothing, std::size_t Order>
 repetitive_performance performance(const Loop& t, const Learning& l, const Smoothing& q,
                                    const std::array<double, Order>& weights, const performance_case& c) {

@@ -15,6 +15,7 @@
 /// Frequency responses: what `margins.hpp`, `loop.hpp` and the designs take.
 namespace quadrant::analysis {
 
+/// A value of a frequency response, in SI units of output per input.
 using complex = std::complex<double>;
 
 /// Any callable from a frequency [Hz] to a complex number: a model, a measured table, or
@@ -27,7 +28,9 @@ concept frequency_response = requires(const R& r, frequency f) {
 /// s = j 2 pi f in rad/s.
 inline complex laplace(frequency f) { return {0, 2 * std::numbers::pi * f.value()}; }
 
+/// A frequency from a bare number of hertz.
 inline frequency hertz(double f) { return frequency::from_value(f); }
+/// 20 log10 of a magnitude.
 inline double decibel(double magnitude) { return 20 * std::log10(magnitude); }
 
 /// Where to look, lines spaced evenly in log f. Both ends above 0.

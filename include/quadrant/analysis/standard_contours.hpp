@@ -11,6 +11,7 @@
 /// The contours that feed drives are usually tried on, in the xy plane around its origin, as moves for an `interpolator`.
 namespace quadrant::analysis {
 
+/// Speed along a contour [m/s].
 using contour_feed = quantity<si::velocity>;
 
 /// One turn from `start` (an angle in degrees, counterclockwise from x), from rest to rest.

@@ -10,6 +10,7 @@ namespace quadrant::analysis {
 
 /// Friction over the way from rest, springs relaxed.
 struct virgin_curve {
+    /// Friction force [N] after one way from rest.
     struct point {
         displacement way; ///< > 0
         quantity_of<signal::force> force;
@@ -34,6 +35,7 @@ struct virgin_curve {
     }
 };
 
+/// What else was in the force and is taken off, and how finely the curve is drawn.
 struct virgin_options {
     quantity<si::mass> mass{};                          ///< its inertia is taken off; 0: not
     gain_of<signal::force, signal::velocity> viscous{}; ///< and all viscous friction

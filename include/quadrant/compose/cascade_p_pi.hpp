@@ -24,6 +24,7 @@ template <class Estimator = filtered_derivative<signal::position, signal::veloci
 struct cascade_p_pi_boxes {
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains, estimator, feedforward and limits of a cascade, as the keys of a machine file.
     struct parameters {
         gain_of<signal::velocity, signal::position, number> position_gain;
         gain_of<Command, signal::velocity, number> velocity_gain;

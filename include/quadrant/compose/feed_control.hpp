@@ -17,6 +17,7 @@ namespace quadrant {
 /// In the place of a `preview`, for a law that needs none.
 template <motion_sample Motion> struct no_preview {
     struct parameters {};
+    /// The motion of this sample, twice.
     struct outcome {
         Motion reference, ahead;
     };
@@ -57,6 +58,7 @@ struct feed_control_boxes {
     using number = parameter_real<real>; ///< of parameters
     using preview_box = typename detail::preview_of<Law>::type;
 
+    /// The law, what friction is fed forward, and what amplifier and converter can give.
     struct parameters {
         typename Law::parameters law;
         typename Friction::parameters friction{};

@@ -49,6 +49,7 @@ struct feed_drive_boxes {
     using number = parameter_real<real>; ///< of parameters
     using effort = typename Drive::input;
 
+    /// Amplifier, drive, errors of screw and play, and what encoder and tachometer make of the motion.
     struct parameters {
         gain_of<effort, signal::voltage, number> amplifier; ///< Ka; finite
         quantity_of<effort, number> effort_limit = quantity_of<effort, number>::from_value(

@@ -27,18 +27,22 @@ public:
     using value = quantity_of<Command, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Where the beam's mass lies, what its motors can give, how it stands when it is square.
     struct parameters {
         number share = number(1) / number(2);           ///< of the mass at end 1, 0 ... 1
         quantity_of<Command, number> limit;             ///< of each motor, > 0; infinite = none
         quantity_of<signal::position, number> offset{}; ///< y1 - y2 of a square beam
     };
+    /// Position and racking of the beam [m].
     struct modes {
         position mean{}, skew{};
     };
+    /// What both motors get, and what became of the commands of both loops.
     struct commands {
         value first{}, second{}; ///< of the motors
         value mean{}, skew{};    ///< what was left of u and w
     };
+    /// The last outputs, for a sample that is not finite.
     struct state {
         modes seen{};
         commands given{};

@@ -25,6 +25,7 @@ template <class Friction = absent<signal::velocity, signal::voltage>,
 struct milling_axis_boxes {
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains, filters and compensations of a milling axis, as the thesis prints them.
     struct parameters {
         gain_of<signal::velocity, signal::position, number> position_gain; ///< kv
         gain_of<Command, signal::velocity, number> velocity_gain;          ///< kp

@@ -34,6 +34,7 @@ struct table_axis_boxes {
     using real = real_of<Motor>;
     using number = parameter_real<real>; ///< of parameters
 
+    /// The motor, the error of its scale, and the count of its encoder.
     struct parameters {
         typename Motor::parameters motor; ///< its encoder_step 0: the encoder has its own box
         typename Scale::parameters scale{};

@@ -26,10 +26,12 @@ public:
     using forces = xy<quantity_of<signal::force, real>>;
     using positions = xy<quantity_of<signal::position, real>>;
 
+    /// How much of the acceleration of one axis the other one gets, without a unit.
     struct cross_coupling {
         number into_x{}; ///< a_x gains into_x a_y; |into_x| < 1
         number into_y{}; ///< a_y gains into_y a_x
     };
+    /// Both axes, and how they shake each other.
     struct parameters {
         typename X::parameters x;
         typename Y::parameters y;

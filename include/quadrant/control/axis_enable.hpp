@@ -46,12 +46,15 @@ public:
     using acceleration = quantity_of<signal::acceleration, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How fast the stream may be, how hard a stop brakes, and how long a brake takes to close.
     struct parameters {
         quantity<si::velocity, number> velocity; ///< of the stream at most, > 0: a stop begins with no more
         quantity<si::acceleration, number> deceleration;           ///< > 0, when enable falls
         quantity<si::acceleration, number> emergency_deceleration; ///< > 0
         duration brake_time{};                                     ///< >= 0
     };
+    /// Off, on, stopping or tripped; where the reference is and how fast; the requests of the last sample, to see them
+    /// rise.
     struct state {
         power_state power = power_state::off;
         value reference{};      ///< last output

@@ -24,6 +24,7 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How far from zero the input may be before it counts, in its own unit.
     struct parameters {
         quantity_of<Signal, number> half_width; ///< >= 0
     };

@@ -14,6 +14,7 @@
 /// Polynomials in z^-1, by rising power, for the design of `rst` laws. Design only: runs once, may throw, no allocation.
 namespace quadrant {
 
+/// p[0] + p[1] z^-1 + ... + p[Degree] z^-Degree.
 template <std::size_t Degree, class Number = double> using z_polynomial = std::array<Number, Degree + 1>;
 
 /// b / a of an axis behind its hold, from command to position: a[0] is one, b[0] is zero (what is commanded now moves nothing
@@ -68,6 +69,7 @@ requires(Zeros < Order) sampled_plant<Order, Order + Delay, Number> pulse_transf
     for (std::size_t i = 1; i <= Order; ++i) y.b[i + Delay] = d.numerator[i];
     return y;
 }
+/// The same of an axis B / (s (s + A)).
 template <std::size_t Delay = 0, signal_tag Command, class Number>
 auto pulse_transfer(const axis_model<Command, Number>& plant, duration period) {
     return pulse_transfer<Delay>(nominal_plant<2, 0, Number>(plant), period);
@@ -112,6 +114,7 @@ inline z_polynomial<2> pole_pair(frequency natural, double damping, duration per
     const double in = w * std::sqrt(std::abs(1 - damping * damping)), size = std::exp(-damping * w);
     return {1, -2 * size * (damping < 1 ? std::cos(in) : std::cosh(in)), size * size};
 }
+/// e^{s T} of one real pole at s = -2 pi at: what stands in 1 - e^{s T} z^-1.
 inline double real_pole(frequency at, duration period) {
     return std::exp(-2 * std::numbers::pi * at.value() * period.value());
 }

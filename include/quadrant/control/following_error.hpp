@@ -27,12 +27,14 @@ public:
     using value = quantity_of<signal::number, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The window at rest and with speed, and how long the axis may be beyond it.
     struct parameters {
         quantity<si::length, number> window;  ///< at rest, > 0
         quantity<si::time, number> per_speed; ///< how much wider it gets with speed, >= 0
         double warning = 0.5;                 ///< share of the window, 0 ... 1
         duration patience{};                  ///< >= 0
     };
+    /// For how long the axis has been beyond the window, and what that has led to.
     struct state {
         std::size_t beyond = 0; ///< samples on end
         bool tripped = false, warns = false;

@@ -30,6 +30,7 @@ public:
     using scheduling = quantity_of<Scheduling, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The nodes of the curve from the scheduling signal to the gain.
     struct parameters {
         std::array<quantity_of<Scheduling, number>, Nodes> at; ///< rising
         std::array<gain_of<Out, In, number>, Nodes> gain;      ///< any finite values

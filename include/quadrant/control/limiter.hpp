@@ -23,6 +23,7 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The range that passes, in the unit of the wire.
     struct parameters {
         quantity_of<Signal, number> low;  ///< may be minus infinity
         quantity_of<Signal, number> high; ///< >= low, may be infinite

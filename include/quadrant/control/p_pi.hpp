@@ -36,6 +36,7 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains of both loops, what is fed forward, and the limit that the integral has to know of.
     struct parameters {
         gain_of<signal::velocity, signal::position, number> position_gain;  ///< Kv, in 1/s; finite
         gain_of<Command, signal::velocity, number> gain;                    ///< Kp; >= 0
@@ -46,6 +47,7 @@ public:
             quantity_of<Command, number>::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
         AntiWindup anti_windup = {};
     };
+    /// What the cascade holds beside its integral: the last error [m/s] and the last command of the velocity loop.
     struct state {
         velocity error{}; ///< of the velocity loop, at the last sample
         value loop{};     ///< what the velocity loop gave

@@ -42,6 +42,7 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains, the filter of the derivative part, weights of the reference, and the limit that the integral has to know of.
     struct parameters {
         gain_of<Command, signal::position, number> gain;               ///< Kp; >= 0
         gain_rate_of<Command, signal::position, number> integral_gain; ///< Ki; >= 0
@@ -54,6 +55,7 @@ public:
             quantity_of<Command, number>::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
         AntiWindup anti_windup = {};
     };
+    /// The derivative part, what it was made from, and the last command of P and I.
     struct state {
         velocity q{};
         position past{}; ///< c x_ref - x of the last sample

@@ -37,6 +37,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     static constexpr std::size_t most_lead = Preview;
 
+    /// The axis as believed, what an error and a move cost, how far ahead is planned, and the limits.
     struct parameters {
         axis_model<Command, number> plant;  ///< as the law believes it
         predictive_weights<number> weights; ///< bryson_weights(...)
@@ -46,6 +47,7 @@ public:
         quantity<unit_quotient<typename Command::unit, si::time>, number> rate_limit =
             decltype(rate_limit)::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
     };
+    /// References that are still to come, the last measurement, and the command that acts.
     struct state {
         std::array<position, Preview> r{};  ///< a ring over the first `horizon`
         std::array<velocity, Preview> dr{}; ///< likewise

@@ -25,6 +25,7 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The gain, in units of the output per unit of the input.
     struct parameters {
         gain_of<Out, In, number> gain; ///< any finite value
     };

@@ -9,13 +9,15 @@
 
 namespace quadrant {
 
-/// How the integral of a `proportional_integral` is kept from winding up while the amplifier is at its limit.
-struct integral_clamp {}; ///< the integral alone is clamped to +-limit
-struct conditional_integration {
-};                          ///< stands still while the output is beyond limit and the error drives it out
-struct back_calculation {   ///< moves by T / tracking_time times (applied - output)
+/// The integral alone is clamped to +-limit.
+struct integral_clamp {};
+/// The integral stands still while the output is beyond limit and the error drives it out.
+struct conditional_integration {};
+/// The integral gives way at the limit: it moves by T / tracking_time times (applied - output).
+struct back_calculation {
     duration tracking_time; ///< > 0; not below the period: one period undoes the whole excess at once
 };
+/// How the integral of a `proportional_integral` is kept from winding up while the amplifier is at its limit.
 template <class A>
 concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, conditional_integration> ||
     std::same_as<A, back_calculation>;
@@ -44,12 +46,14 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains, the limit of the amplifier, and what the integral does at it.
     struct parameters {
         gain_of<Out, In, number> gain;               ///< >= 0
         gain_rate_of<Out, In, number> integral_gain; ///< >= 0
         quantity_of<Out, number> limit;              ///< of the amplifier, > 0; infinite = none
         AntiWindup anti_windup = {};
     };
+    /// The integral, and what the amplifier cut off at the last sample; both in the unit of the output.
     struct state {
         value integral{};
         value excess{}; ///< last output minus what was applied of it

@@ -24,6 +24,7 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The step, in the unit of the wire.
     struct parameters {
         quantity_of<Signal, number> step; ///< one count; 0 = no rounding
     };

@@ -22,9 +22,11 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The steepest slope, in units of the wire per second.
     struct parameters {
         quantity<unit_quotient<typename Signal::unit, si::time>, number> rate; ///< > 0, may be infinite
     };
+    /// Where the output is: the next one is at most rate times period from here.
     struct state {
         value y{}; ///< last output
     };

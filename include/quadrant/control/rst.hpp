@@ -50,7 +50,8 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
     using parameters = rst_polynomials<R, S, T, Command, number>;
-    struct state { ///< newest first
+    /// The past of reference, position and command that the polynomials see; newest first.
+    struct state {
         std::array<position, T> reference{};
         std::array<position, S> measured{};
         std::array<value, R> applied{}, excess{}; ///< excess: command minus applied

@@ -37,6 +37,8 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The axis as believed, how fast its error dies out, gain and adaptation, and the limit that the estimate has to know
+    /// of.
     struct parameters {
         axis_model<Command, number> plant;                     ///< as the law believes it
         quantity<si::frequency, number> sliding;               ///< lambda, in 1/s; > 0
@@ -46,6 +48,7 @@ public:
             quantity_of<Command, number>::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
         AntiWindup anti_windup = {};
     };
+    /// How far the axis was off the surface, and what push was taken for its cause.
     struct state {
         velocity s{};        ///< S of the last sample
         value disturbance{}; ///< d of the last sample

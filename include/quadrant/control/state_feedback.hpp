@@ -35,6 +35,7 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The axis as believed, gains of its states, and the noise that the observer's gain follows from.
     struct parameters {
         axis_model<Command, number> plant;                        ///< as the law believes it
         gain_of<Command, signal::position, number> position_gain; ///< k1
@@ -42,6 +43,7 @@ public:
         quantity_of<signal::position, number> encoder_noise;      ///< standard deviation of a reading; > 0
         quantity_of<Command, number> drift;                       ///< deviation that d gathers in a second; > 0
     };
+    /// The estimates at the last sample, and the command that acts since then.
     struct state {
         position x{};
         velocity v{};

@@ -12,6 +12,7 @@ struct applied_change {
     std::string reason;              ///< the effect, or what moves with it
 };
 
+/// A machine file with the causes of a diagnosis in it, and what was changed.
 struct applied_diagnosis {
     nlohmann::ordered_json machine; ///< key order and every other value of the original kept
     std::vector<applied_change> changes;

@@ -8,6 +8,7 @@
 
 namespace quadrant::diagnosis {
 
+/// Reading of the encoder [m] and command [V] of a simulated loop, one entry a row of the log.
 struct closed_loop_run {
     std::vector<double> position, command;
 };

@@ -9,6 +9,7 @@
 
 namespace quadrant::diagnosis {
 
+/// What each axis gets from a compensation, and which files that is of.
 struct compensation_result {
     std::string machine_file, log_file;
     std::vector<compensated_axis> axes;

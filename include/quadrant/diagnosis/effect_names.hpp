@@ -5,6 +5,7 @@
 
 namespace quadrant::diagnosis {
 
+/// An effect as files call it, and the box of the loop that it lives in.
 struct effect_name {
     std::string_view name, box;
 };

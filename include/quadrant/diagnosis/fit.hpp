@@ -31,6 +31,7 @@ struct block_quadratic {
     double at(const Eigen::VectorXd& d) const { return std::max(0.0, ms + 2 * g.dot(d) + d.dot(a * d)); }
 };
 
+/// A plant model fitted to one record, and how well it predicts each block of it.
 struct fit_result {
     plant_model plant{};
     std::vector<parameter> parameters{};

@@ -15,6 +15,7 @@ struct forecast_axis {
     axis_kind kind = axis_kind::linear;
 };
 
+/// The gap to expect of every axis on a motion that was not recorded yet.
 struct forecast_result {
     std::string machine_file, motion_file;
     std::vector<forecast_axis> axes;

@@ -27,6 +27,7 @@ struct init_request {
     }
 };
 
+/// A machine file to begin with, and where each of its numbers is from.
 struct initialised_machine {
     nlohmann::ordered_json machine;
     std::string comments; ///< Markdown: every key, its value, what it means and where it is from

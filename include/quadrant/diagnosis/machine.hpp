@@ -15,6 +15,7 @@
 /// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad and N m.
 namespace quadrant::diagnosis {
 
+/// Motor, moving mass and friction of an axis, as the simulation has them.
 struct plant_description {
     double mass_kg = 0;
     double force_constant_N_per_V = 0; ///< newtons per unit of the command column (V, A, or 1 for N)
@@ -47,6 +48,7 @@ struct tolerance_description {
     }
 };
 
+/// One notch of the controller: its centre [Hz] and the width of its denominator, over the centre.
 struct notch_description {
     double frequency_Hz = 0, damping = 0;
 };
@@ -92,6 +94,7 @@ struct controller_description {
     std::optional<own_control> own{}; ///< in its place, with the numbers above unused; in no file
 };
 
+/// What amplifier and converter do to a command on its way to the motor.
 struct actuator_description {
     std::optional<double> limit_V;
     std::optional<int> dac_bits;
@@ -101,6 +104,7 @@ struct actuator_description {
     std::optional<double> loss_probability{}; ///< of a period in which the drive keeps the previous command
 };
 
+/// What the encoder makes of a position.
 struct encoder_description {
     double resolution_m = 0; ///< 0: not described
     std::optional<double> cyclic_m, cyclic_period_m,
@@ -113,6 +117,7 @@ struct process_description {
     std::vector<double> force_N, phase_rad;
 };
 
+/// One axis of a machine: every box of its loop, and how surely its owner knows the numbers.
 struct axis_description {
     std::string name;
     plant_description plant;
@@ -125,7 +130,7 @@ struct axis_description {
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
     axis_kind kind = axis_kind::linear;
-    // What no file holds: code of the caller's.
+    /// A force of the caller's own, with the values of its parameters: code, which no file holds.
     struct valued_force {
         const own_force* force;
         own_force::values values;
@@ -134,6 +139,7 @@ struct axis_description {
     std::vector<valued_force> own_forces{}; ///< that the simulation has
 };
 
+/// A whole machine file, checked.
 struct machine_description {
     std::string file; ///< where it was read from, for messages
     double sample_period_s = 0;

@@ -23,6 +23,7 @@ struct plant_model {
     harmonics ripple; ///< of the force constant, relative, over position
     // mechanics
     double mass = 0; ///< all that moves, the mode's part too [kg]
+    /// Friction that opposes the motion: Stribeck curve, asymmetry, contact, change over place and time.
     struct friction_box {
         double viscous_slope = 0;     ///< [N s/m]
         double coulomb = 0;           ///< [N]
@@ -39,7 +40,8 @@ struct plant_model {
     double coupling = 0;       ///< of the other axis' acceleration
     harmonics cogging;         ///< [N] over position
     diagnosis::own_forces own; ///< forces that no list names
-    struct mode_box {          ///< a second mass on a spring, not seen by the encoder
+    /// A second mass on a spring, not seen by the encoder.
+    struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
     } mode;
     double backlash = 0; ///< play between motor and encoder [m]

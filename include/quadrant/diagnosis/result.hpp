@@ -14,6 +14,7 @@ namespace quadrant::diagnosis {
 /// Ordered from the best to the worst: the verdict of several axes is the largest.
 enum class verdict { no_gap, within_tolerance, explained, partly_explained, unexplained };
 
+/// The verdict's word in files and on pages.
 constexpr const char* name_of(verdict v) {
     switch (v) {
     case verdict::no_gap:
@@ -29,10 +30,13 @@ constexpr const char* name_of(verdict v) {
     }
 }
 
+/// A number and the interval that holds it with 95 %.
 struct estimate {
     double value = 0, low = 0, high = 0; ///< 95 % interval
 };
 
+/// How far simulation and machine are apart on one axis: positions and command in closed loop, force along the motion that
+/// was logged.
 struct gap_numbers {
     double position_rms_m = 0, position_peak_m = 0; ///< closed-loop simulation against the log
     double command_rms_V = 0;                       ///< the same
@@ -50,6 +54,7 @@ struct place {
     std::string basis; ///< of the block view: replay or causes
 };
 
+/// One value of the machine file, as the log has it.
 struct parameter_estimate {
     std::string key;              ///< the machine file's key
     std::vector<estimate> values; ///< one, or one a harmonic
@@ -62,6 +67,7 @@ struct reading {
     std::vector<parameter_estimate> parameters;
 };
 
+/// An effect that explains a part of the gap: how probable, with which numbers, and what is left of the gap with it.
 struct cause {
     std::string axis, effect;
     bool described = false; ///< the machine file has a value for it, another one than found; else it has none
@@ -89,6 +95,7 @@ struct axis_signals {
     std::vector<double> frequency_Hz, spectrum_before, spectrum_after; ///< residual force [N/sqrt(Hz)]
 };
 
+/// The verdict on one axis: its gap before and after, where it lies, and what the owner's tolerance covers.
 struct axis_result {
     std::string name;
     quadrant::diagnosis::verdict verdict = verdict::no_gap;
@@ -119,6 +126,7 @@ struct unseen {
     std::string axis, what, instrument;
 };
 
+/// The verdict on a machine: its axes, the causes by rank, what to record next, and what no log can show.
 struct diagnosis_result {
     quadrant::diagnosis::verdict verdict = verdict::no_gap;
     std::vector<axis_result> axes;

@@ -10,6 +10,7 @@
 /// Signal arithmetic of the diagnosis, off line and in plain SI numbers.
 namespace quadrant::diagnosis {
 
+/// Root of the mean square; 0 of nothing.
 inline double rms(std::span<const double> x) {
     double sum = 0;
     for (double v : x) sum += v * v;

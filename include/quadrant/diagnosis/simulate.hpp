@@ -19,6 +19,7 @@ struct simulated_axis {
     std::vector<double> command;  ///< the same, in command_unit
 };
 
+/// A log as its machine file predicts it, axis by axis.
 struct simulation_result {
     std::string machine_file, log_file;
     std::string machine_sha256, log_sha256; ///< of the files' bytes; empty: not read from files

@@ -30,11 +30,13 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using speed = quantity<unit_quotient<typename Signal::unit, si::time>, Real>;
 
+    /// The play to cross, how fast to cross it, and what counts as a reversal.
     struct parameters {
         quantity_of<Signal, number> play{}; ///< whole width, flank to flank; >= 0
         quantity<unit_quotient<typename Signal::unit, si::time>, number> rate{}; ///< of y; > 0
         quantity_of<Signal, number> hysteresis{};                                ///< of the reference; >= 0
     };
+    /// Which way the reference goes, where it would turn, and how much of the play is added.
     struct state {
         argument turn{}; ///< furthest the reference went to `side`; where it started for side 0
         value y{};

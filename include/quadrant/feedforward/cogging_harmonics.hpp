@@ -33,11 +33,13 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// One sine over the pitch.
     struct harmonic {
         unsigned order = 1;                   ///< waves per pitch; >= 1
         quantity_of<Out, number> amplitude{}; ///< finite
         number phase{};                       ///< [rad]; finite
     };
+    /// The pitch, and the sines that repeat in it.
     struct parameters {
         quantity_of<In, number> pitch{}; ///< > 0
         std::array<harmonic, Harmonics> harmonics{};

@@ -35,6 +35,7 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The pitch, and the command at evenly spaced places of it.
     struct parameters {
         quantity_of<In, number> pitch{};                       ///< > 0
         std::array<quantity_of<Out, number>, Points> points{}; ///< finite

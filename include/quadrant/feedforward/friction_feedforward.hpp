@@ -48,6 +48,7 @@ public:
     using value = quantity_of<Command, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The law of the friction, the motor that has to overcome it, and how softly the sign turns over.
     struct parameters {
         typename Law::parameters law{};
         gain_of<typename Law::output, Command, number> force_constant{}; ///< of motor and amplifier; > 0
@@ -55,6 +56,7 @@ public:
         number scale = 1;                                                ///< >= 0
         at_rest rest = at_rest::off;
     };
+    /// The sign of the dry part, turned over so far.
     struct state {
         Real side{}; ///< s; -1 ... 1
     };

@@ -37,13 +37,16 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using time = quantity<si::time, number>;
 
+    /// How much earlier than the reference the other motion is.
     struct parameters {
         time lead{}; ///< of `ahead` before `reference`; 0 ... Capacity periods
     };
+    /// The motions that have come in and are not executed yet.
     struct state {
         std::array<Motion, Capacity + 1> r{}; ///< a ring
         std::size_t next = 0;                 ///< where the coming motion goes
     };
+    /// What is due now, and what will be due `lead` later.
     struct outcome {
         Motion reference{}, ahead{};
     };

@@ -38,6 +38,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     using parameters = nominal_plant<Order, 0, number>; ///< from Command to In; an `axis_model` converts
+    /// The references that the differences are taken of.
     struct state {
         std::array<argument, Order> r{}; ///< newest first
     };

@@ -27,6 +27,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     struct parameters {};
+    /// The last input, which the next one is held against.
     struct state {
         argument x{}; ///< last input
     };

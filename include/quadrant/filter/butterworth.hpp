@@ -24,6 +24,7 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The corner, at which a sine is 3 dB down and 90 degrees late.
     struct parameters {
         quantity<si::frequency, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
     };

@@ -30,9 +30,11 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The corner of the low-pass.
     struct parameters {
         quantity<si::frequency, number> corner; ///< > 0
     };
+    /// The last position and rate: what a difference and its filter need.
     struct state {
         argument y{}; ///< last input
         value v{};    ///< last output

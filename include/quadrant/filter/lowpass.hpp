@@ -30,9 +30,11 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The corner, at which a sine is 3 dB down and 45 degrees late.
     struct parameters {
         quantity<si::frequency, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
     };
+    /// The last input and output: all that a first-order filter remembers.
     struct state {
         value x{}, y{}; ///< last input and output
     };

@@ -25,6 +25,7 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The resonance to take out: where it is, and how wide.
     struct parameters {
         quadrant::quantity<si::frequency, number>
             centre;           ///< deepest point; 0 < centre < half the sampling rate

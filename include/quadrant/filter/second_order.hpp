@@ -11,16 +11,20 @@
 /// chosen because its states are in the unit of the output and small next to it.
 namespace quadrant {
 
+/// For hertz into rad/s: w = 2 pi f.
 inline constexpr double pi = std::numbers::pi;
 
+/// Coefficients of one second-order section; as they stand: a piece of wire.
 template <class Real> struct second_order_coefficients {
     Real b0{1}, b1{0}, b2{0}, a1{0}, a2{0}; ///< (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)
 };
 
+/// Both delays of the section, in the unit of its output.
 template <signal_tag Signal, class Real> struct second_order_state {
     std::array<quantity_of<Signal, Real>, 2> s{};
 };
 
+/// One sample through the section; what is not finite leaves the state as it is and holds the last output.
 template <signal_tag Signal, class Real>
 quantity_of<Signal, Real>
 step(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
@@ -68,6 +72,7 @@ void shift(const second_order_coefficients<Real>& c, second_order_state<Signal, 
     out.keep(out.last() + by);
 }
 
+/// Response of the section at f, as it runs with this period.
 template <class Real>
 std::complex<double> response(const second_order_coefficients<Real>& c, frequency f, duration period) {
     const auto number = [](const Real& x) { return detail::plain(x); };

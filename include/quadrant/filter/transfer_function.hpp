@@ -38,6 +38,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using gain = gain_of<Out, In, Real>;
 
+    /// Coefficients of both polynomials, the numerator's with their unit.
     struct parameters {
         std::array<gain_of<Out, In, number>, Order + 1> numerator{}; ///< by rising power of z^-1
         std::array<number, Order + 1> denominator{};                 ///< the same; denominator[0] not zero
@@ -51,6 +52,7 @@ public:
             return p;
         }
     };
+    /// The delays of transposed direct form II, in the unit of the output.
     struct state {
         std::array<value, Order> s{};
     };

@@ -27,6 +27,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     struct parameters {};
+    /// The last two positions.
     struct state {
         argument y1{}, y2{}; ///< last input and the one before
     };

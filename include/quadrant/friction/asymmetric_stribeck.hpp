@@ -35,6 +35,7 @@ public:
         quantity_of<In, number> fall{};          ///< where the static part has died out to 1/e; > 0
         quantity_of<In, number> rise{};          ///< where the Coulomb part is up to 1 - 1/e; > 0
     };
+    /// Levels of both directions, and the viscous slope that they share.
     struct parameters {
         side forward, backward;
         gain_of<Out, In, number> viscous{}; ///< >= 0

@@ -24,6 +24,7 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The level that opposes any motion, and the slope over speed.
     struct parameters {
         quantity_of<Out, number> coulomb{}; ///< level at any speed; >= 0
         gain_of<Out, In, number> viscous{}; ///< per unit of speed; >= 0

@@ -30,12 +30,14 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using time = quantity<si::time, Real>;
 
+    /// The sliding level, and the spring that it is reached by.
     struct parameters {
         quantity_of<Out, number> coulomb{};        ///< sliding level; > 0
         gain_rate_of<Out, In, number> stiffness{}; ///< at the start of a motion, per unit of way; > 0
         double shape = 1;                          ///< exponent; 0 ... 4
         gain_of<Out, In, number> viscous{};        ///< >= 0
     };
+    /// How far the bristles are bent, as their force.
     struct state {
         value force{}; ///< of the bristles
     };

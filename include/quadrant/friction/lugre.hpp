@@ -32,12 +32,14 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using time = quantity<si::time, Real>;
 
+    /// Curve of the sliding level, and spring and damping of the bristles.
     struct parameters {
         typename stribeck<In, Out, Real>::parameters curve{}; ///< g(v), and the viscous part; coulomb > 0
         gain_rate_of<Out, In, number> stiffness{};            ///< sigma0, of all bristles; > 0
         gain_of<Out, In, number> damping{};                   ///< sigma1, of all bristles; >= 0
         quantity_of<In, number> damping_velocity{};           ///< where damping has fallen to 1/e; 0: nowhere
     };
+    /// How far the bristles are bent, as the force of their spring.
     struct state {
         value force{}; ///< stiffness z
     };

@@ -38,6 +38,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using time = quantity<si::time, Real>;
 
+    /// Curve of the sliding level, and each spring's stiffness and share of the level.
     struct parameters {
         typename stribeck<In, Out, Real>::parameters curve{};     ///< s(v), and the viscous part; coulomb > 0
         std::array<number, N> weights{};                          ///< sum 1; or
@@ -45,10 +46,12 @@ public:
         std::array<gain_rate_of<Out, In, number>, N> stiffness{}; ///< of each element; > 0
         quantity<unit_quotient<typename Out::unit, si::time>, number> attraction{}; ///< C; > 0
     };
+    /// One spring: its force, and whether it slips in the direction of that force.
     struct element {
         value force{};
         bool slips = false; ///< the way its force points
     };
+    /// All springs; their forces add up to the friction without its viscous part.
     struct state {
         std::array<element, N> elements{};
     };

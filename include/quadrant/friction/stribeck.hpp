@@ -26,6 +26,7 @@ public:
     using value = quantity_of<Out, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Levels at breakaway and at speed, what lies between, and the viscous slope.
     struct parameters {
         quantity_of<Out, number> coulomb{};          ///< Fc, level at speed; >= 0
         quantity_of<Out, number> static_level{};     ///< Fs, level at breakaway; >= coulomb

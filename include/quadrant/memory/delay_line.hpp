@@ -29,9 +29,11 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How late the output is.
     struct parameters {
         std::size_t length; ///< in periods; 0 ... Capacity
     };
+    /// The last inputs, enough for the longest delay.
     struct state {
         std::array<value, Capacity + 1> x{}; ///< a ring
         std::size_t next = 0;                ///< where the coming input goes

@@ -36,9 +36,11 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The dead time, in seconds.
     struct parameters {
         quantity<si::time, number> delay; ///< (Order 1: 0, Order 3: 1) ... Capacity periods
     };
+    /// The last inputs, enough for the longest delay.
     struct state {
         std::array<value, Capacity + Order + 1> x{}; ///< a ring
         std::size_t next = 0;                        ///< where the coming input goes

@@ -45,6 +45,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     static constexpr std::size_t half = SmoothingTaps / 2;
 
+    /// The cycle, its filters and weights, and how fast another cycle takes over.
     struct parameters {
         quantity<si::time, number> cycle; ///< what repeats; (ahead + half + 2) ... Capacity periods
         std::array<number, Order> weights{
@@ -60,6 +61,7 @@ public:
             return q;
         }
     };
+    /// The cycles that were learnt, and the samples that are inside the filters.
     struct state {
         std::array<value, SmoothingTaps> m{};           ///< ring of e + r
         std::array<value, Order * Capacity + 3> p{};    ///< ring of Q (e + r), `half` samples late

@@ -49,11 +49,13 @@ public:
     using value = quantity_of<Command, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How fast the estimate follows, and the axis it is made against.
     struct parameters {
         quantity<si::frequency, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
         nominal_plant<PlantOrder, PlantZeros, number> plant{}; ///< or an `axis_model`
     };
     static constexpr std::size_t order = Order + PlantZeros; ///< of the common denominator
+    /// That of Q, in the unit of the command, and the last measurement and command that entered it.
     struct state {
         std::array<value, order> s{};
         argument measured{};

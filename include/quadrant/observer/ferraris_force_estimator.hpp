@@ -33,6 +33,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
     using applied = quantity_of<Command, Real>;
 
+    /// Mass and motor that the force is computed by, and the corner of its filter.
     struct parameters {
         quantity<si::mass, number> mass;                        ///< > 0
         gain_of<signal::force, Command, number> force_constant; ///< kf > 0

@@ -39,6 +39,7 @@ template <signal_tag Command> struct expected_noise {
     quantity_of<signal::position> encoder; ///< standard deviation of a reading; > 0
     quantity_of<Command> drift;            ///< that each amplitude gathers in one second; > 0
 };
+/// How the gains of a `harmonic_force_observer` are found.
 template <class D, class Command, std::size_t Harmonics>
 concept harmonic_design = std::same_as<D, placed_poles<Harmonics>> || std::same_as<D, expected_noise<Command>>;
 

@@ -44,12 +44,14 @@ public:
     using value = quantity_of<Command, Real>;
     using velocity = quantity_of<signal::velocity, Real>;
 
+    /// The axis as believed, the frequencies of the force, how the gains are found, and how late the axis acts.
     struct parameters {
         axis_model<Command> plant;                    ///< B > 0, A >= 0
         std::array<frequency, Harmonics> harmonics{}; ///< of the force; 0 < each < half the sampling rate
         Design design{};                              ///< `placed_poles` or `expected_noise`
         duration lead{}; ///< >= 0; the sum is that of this much later: the axis' delay
     };
+    /// Motion of the axis, and each harmonic with its quarter-turn, in the unit of the command; at the last sample.
     struct state {
         argument position{};
         quadrant::quantity<si::velocity, Real> velocity{};

@@ -40,6 +40,7 @@ public:
     using command = quantity_of<Command, Real>;
     using force = quantity_of<signal::force, Real>;
 
+    /// Mass and motor of the axis, and the noise that the gain follows from.
     struct parameters {
         quantity<si::mass, number> mass;                            ///< > 0
         gain_of<signal::force, Command, number> force_constant;     ///< > 0
@@ -49,6 +50,7 @@ public:
         quantity_of<signal::position, number>
             half_step{}; ///< of a quantizer taken as a bounded set; >= 0; 0: as noise
     };
+    /// The estimates: position [m], velocity [m/s], disturbing force [N].
     struct state {
         argument position{};
         value velocity{};

@@ -34,10 +34,12 @@ public:
     using position = quantity_of<signal::position, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The friction as believed, and how strongly an error bends the bristles.
     struct parameters {
         typename law::parameters friction{};        ///< as believed
         quantity<si::frequency, number> correction; ///< k; >= 0
     };
+    /// How far the bristles are bent, as the force of their spring.
     struct state {
         value force{}; ///< stiffness z
     };

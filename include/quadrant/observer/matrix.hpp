@@ -14,8 +14,10 @@
 /// includes an observer compiles as fast as before), no allocation. Design only; the steps write out what they need.
 namespace quadrant {
 
+/// Rows of numbers: m[row][column].
 template <std::size_t Rows, std::size_t Columns = Rows, class Number = double>
 using matrix = std::array<std::array<Number, Columns>, Rows>;
+/// A vector that stands upright.
 template <std::size_t Size, class Number = double> using column = std::array<Number, Size>;
 
 namespace detail {

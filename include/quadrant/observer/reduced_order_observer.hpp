@@ -35,12 +35,14 @@ public:
     using command = quantity_of<Command, Real>;
     using force = quantity_of<signal::force, Real>;
 
+    /// Mass and motor of the axis, and where position takes over from acceleration.
     struct parameters {
         quantity<si::mass, number> mass;                            ///< > 0
         gain_of<signal::force, Command, number> force_constant;     ///< kf > 0
         gain_of<signal::force, signal::velocity, number> viscous{}; ///< >= 0
         quantity<si::frequency, number> corner; ///< l1 / (2 pi): position below, acceleration above it
     };
+    /// The last measurements, and velocity [m/s] and disturbing force [N] made from them.
     struct state {
         argument position{};
         value velocity{};

@@ -25,6 +25,7 @@ class spline_path {
 public:
     static constexpr double feed_tolerance = 1e-4; ///< share
 
+    /// One polynomial of the path, and which of the places it leads to.
     struct piece {
         spline curve;
         std::size_t knot; ///< the piece is part of the way to this place; 0 is the first of the run

@@ -31,6 +31,7 @@ public:
     using position = quantity_of<signal::position, Real>;
     using force = quantity_of<signal::force, Real>;
 
+    /// Those of the boxes, in the order in which a force passes them.
     struct parameters {
         typename Cogging::parameters cogging{};
         typename Ripple::parameters ripple{};

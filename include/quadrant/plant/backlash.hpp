@@ -23,9 +23,11 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How far the drive can move without the load.
     struct parameters {
         quantity_of<Signal, number> width{}; ///< from flank to flank; >= 0
     };
+    /// Where the load stands.
     struct state {
         value y{};
     };

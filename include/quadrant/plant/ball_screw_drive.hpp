@@ -60,6 +60,7 @@ public:
     using argument = current;
     using value = position;
 
+    /// Motor, inertia and friction at the screw, and the way of one turn.
     struct parameters {
         quantity<si::moment_of_inertia, number> inertia;                     ///< J; > 0
         gain_of<signal::torque, signal::angular_velocity, number> viscous{}; ///< B; >= 0
@@ -68,6 +69,7 @@ public:
         typename Friction::parameters friction{};                            ///< of the friction box
         std::size_t substeps = 4;                                            ///< per servo period; 1 ... 1000
     };
+    /// Position [m] and velocity [m/s] of the table.
     struct state {
         position x{};
         velocity v{};

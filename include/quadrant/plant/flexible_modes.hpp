@@ -56,10 +56,12 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The modes, and the mass whose motion they are shares of.
     struct parameters {
         quantity<si::mass, number> mass; ///< of the rigid axis; > 0
         std::array<machine_mode<number>, Modes> modes{};
     };
+    /// How far each mode is bent [m], and how fast it moves [m/s].
     struct state {
         std::array<value, Modes> deflection{};
         std::array<quantity_of<signal::velocity, Real>, Modes> speed{};

@@ -28,6 +28,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     using parameters = periodic<signal::number, Harmonics, number>;
+    /// Where the axis was when it was last told; a call with a command alone takes this place.
     struct state {
         quantity_of<signal::position, Real> position{};
     };

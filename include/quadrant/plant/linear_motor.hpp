@@ -48,6 +48,7 @@ public:
     using argument = voltage;
     using value = position;
 
+    /// Amplifier, motor, mass, friction and encoder of one axis.
     struct parameters {
         quantity<si::mass, number> mass;                                ///< moving mass; > 0
         gain_of<signal::force, signal::voltage, number> force_constant; ///< motor and amplifier; > 0
@@ -59,6 +60,7 @@ public:
         std::size_t substeps = 10;                            ///< per servo period; 1 ... 1000
         typename Load::parameters load{};
     };
+    /// Motion of the mass, and the commands that are still on their way to it.
     struct state {
         position x{};
         velocity v{};

@@ -39,6 +39,7 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Motor, inverter and current controller, with the errors that they have.
     struct parameters {
         gain_of<signal::force, signal::current, number> force_constant; ///< kf, of the amplitude; > 0
         gain_of<signal::voltage, signal::current, number> resistance;   ///< of a phase; > 0
@@ -53,6 +54,7 @@ public:
         number gain_error = 0;                                          ///< of the sensor of phase a; > -1
         quantity_of<signal::current, number> current_offset{};          ///< likewise; finite
     };
+    /// Currents of the motor in the frame that stands, integrals of both controllers in that of the magnets.
     struct state {
         Real alpha{}, beta{};    ///< currents [A]
         Real held_d{}, held_q{}; ///< integrals [V]

@@ -46,12 +46,14 @@ public:
     using value = quantity_of<signal::force, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// The spindle's frequency, the harmonics of the force, and how it fades in and out.
     struct parameters {
         frequency fundamental;                       ///< 0 < Harmonics * fundamental < half the sampling rate
         quantity_of<signal::force, number> scale;    ///< of one unit of the table; finite
         harmonic_table<Harmonics, number> harmonics; ///< finite
         duration entry{};                            ///< in which the tool enters or leaves the cut; >= 0
     };
+    /// Where the cutter stands, and how far it is in the cut.
     struct state {
         turning_phase turn;
         tool_entry tool; ///< how far in the cut

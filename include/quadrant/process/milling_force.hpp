@@ -45,10 +45,12 @@ public:
     using edge_coefficient = gain_of<signal::force, signal::position, number>; ///< N/m
     using cutting_coefficient =
         quantity<unit_quotient<typename edge_coefficient::unit_type, si::length>, number>; ///< N/m^2
-    struct value { ///< of the table, positive along its axes
+    /// Force on the table [N], positive along its axes.
+    struct value {
         force x{}, y{};
     };
 
+    /// Spindle, cutter and chip, the coefficients of the material, and runout.
     struct parameters {
         frequency spindle; ///< turns per second; 0 < Edges * spindle < half the sampling rate
         quantity_of<signal::position> diameter;     ///< of the cutter; > 0
@@ -65,6 +67,7 @@ public:
         duration entry{};                           ///< in which the tool enters or leaves the cut; >= 0
         std::size_t substeps = 8;                   ///< per servo period; 1 ... 1000
     };
+    /// Where the cutter stands, and how far it is in the cut.
     struct state {
         turning_phase turn;
         tool_entry tool;

@@ -25,10 +25,12 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How strong the noise is, in the unit of the wire, and the seed that tells its sequence from all others.
     struct parameters {
         quantity_of<Signal, number> deviation{}; ///< standard deviation; >= 0
         std::uint64_t seed = 1;
     };
+    /// The count that the next number is drawn by.
     struct state {
         std::uint64_t k = 0; ///< of the coming sample
     };

@@ -29,6 +29,7 @@ struct path_reference {
 /// One thread: `push` between calls. For one axis from rest to rest without a path: `profile`.
 template <std::size_t Window = 128> class interpolator {
 public:
+    /// What path and axes bear, and how the speed changes.
     struct parameters {
         machine_limits limits;
         profile_kind kind = profile_kind::trapezoidal_acceleration;

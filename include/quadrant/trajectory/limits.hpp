@@ -9,8 +9,11 @@
 /// From a path to what each axis is asked for in every servo period.
 namespace quadrant::trajectory {
 
+/// m/s^3.
 using jerk_unit = unit_quotient<si::acceleration, si::time>;
+/// Change of acceleration over time.
 using jerk = quantity<jerk_unit>;
+/// A limit that never binds.
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// How fast, how hard, how suddenly; above 0, infinite = no bound.
@@ -24,6 +27,7 @@ struct motion_limits {
 struct bounds {
     double velocity = unlimited, acceleration = unlimited, jerk = unlimited;
 };
+/// Limits without their units.
 inline bounds plain(const motion_limits& of) {
     return {of.velocity.value(), of.acceleration.value(), of.jerk.value()};
 }

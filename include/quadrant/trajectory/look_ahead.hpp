@@ -21,6 +21,7 @@ template <std::size_t Window = 128> class look_ahead {
     static_assert(Window >= 2);
 
 public:
+    /// Moves that are driven as one, and the speed at which they are entered.
     struct piece {
         stretch whole;
         corner joint; ///< with the piece before it
@@ -36,6 +37,7 @@ public:
         double leg_out = 0; ///< of the joint ahead [m]
         speed_profile body; ///< between the two
     };
+    /// A place on the path: the segment, the way along it [m], its line in the program.
     struct place {
         const segment* path;
         double s; ///< along it

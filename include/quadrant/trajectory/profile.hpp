@@ -102,6 +102,7 @@ private:
 /// `interpolator`. For the logistic curve of the precision stage: `s_curve`.
 class profile {
 public:
+    /// A move: its length, its limits, and the speeds at its ends.
     struct parameters {
         quantity<si::length> length; ///< > 0
         motion_limits limits;        ///< velocity: the feed

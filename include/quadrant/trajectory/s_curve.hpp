@@ -16,6 +16,7 @@ namespace quadrant::trajectory {
 /// Cost: one exponential and one division a time.
 class s_curve {
 public:
+    /// A move: its length, its time, and how sharp its S is.
     struct parameters {
         quantity<si::length> length; ///< of the move, with its sign
         quadrant::duration duration; ///< of the move, > 0

@@ -39,11 +39,13 @@ public:
     using value = argument;
     using number = parameter_real<Real>; ///< of parameters
 
+    /// How fast, hard and suddenly the output may move.
     struct parameters {
         quantity<si::velocity, number> velocity;         ///< > 0, may be infinite
         quantity<si::acceleration, number> acceleration; ///< > 0
         quantity<jerk_unit, number> jerk = quantity<jerk_unit, number>::from_value(number(unlimited)); ///< > 0
     };
+    /// The stream, the path that follows it, and the samples that the mean is taken over.
     struct state {
         value x{}, p{}, step{};           ///< last input, last p, p minus the one before
         std::array<value, Capacity> of{}; ///< a ring of p

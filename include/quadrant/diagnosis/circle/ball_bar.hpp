@@ -7,6 +7,7 @@
 
 namespace quadrant::diagnosis {
 
+/// What the owner of a machine says before its circles are judged.
 struct circle_options {
     std::vector<std::string> excluded_effects{}; ///< of the machine file: what this machine cannot have
     std::array<std::string, 2> axes{"x", "y"};   ///< what the first and second axis are called in the files

@@ -9,12 +9,15 @@
 /// What each error of a circle is called, what its sign means, what tells it from others and what may be behind it.
 namespace quadrant::diagnosis {
 
+/// The words for one error of a circle: its name, what a positive value means, what tells it from others, what may cause
+/// it.
 struct circle_error_words {
     std::string_view name, sign, needs;
     std::array<std::string_view, 4> effects; ///< of the machine file; empty ones are none
     bool behind_encoder = false;
 };
 
+/// Every error that a diagnosis of circles can name.
 inline constexpr std::array circle_error_names{
     circle_error_words{"scale_mismatch",
                        "the first axis travels further than the second, for the same command",
@@ -77,6 +80,7 @@ inline constexpr std::array circle_error_names{
                        "two feeds tell a fixed frequency from what is periodic along an axis",
                        {"structural_resonance", "cutting_force"}},
 };
+/// The words for an error by its name; for a name that is none of them the last ones.
 inline const circle_error_words& words_of_circle_error(std::string_view name) {
     return *std::find_if(circle_error_names.begin(), circle_error_names.end() - 1,
                          [&](const circle_error_words& w) { return w.name == name; });

@@ -58,6 +58,7 @@ struct circle_run_result {
     std::vector<double> model;             ///< deviation that the found errors leave, sample by sample
 };
 
+/// What runs along circles say of two axes: every run by itself, and the errors that explain them together.
 struct circle_result {
     circle_source source = circle_source::encoder;
     std::string first_axis = "x", second_axis = "y";

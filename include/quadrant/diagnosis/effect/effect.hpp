@@ -19,6 +19,7 @@ struct screening {
     double force_of_a_volt() const { return leader.force_constant * record.volt; }
 };
 
+/// A value that an effect proposes for the machine file.
 struct key_value {
     std::string key;            ///< the machine file's
     std::vector<double> values; ///< one, or one a harmonic

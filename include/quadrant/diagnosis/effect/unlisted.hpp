@@ -71,10 +71,13 @@ template <over Of> constexpr effect form(std::string_view name) {
 
 } // namespace detail
 
-inline constexpr effect by_position = detail::form<detail::over::position>("the position"),
-                        by_velocity = detail::form<detail::over::velocity>("the velocity"),
-                        by_time = detail::form<detail::over::time>("time"),
-                        by_command = detail::form<detail::over::command>("the command");
+inline constexpr effect by_position = detail::form<detail::over::position>(
+                            "the position"),                            ///< as a spring or a slope would be
+    by_velocity = detail::form<detail::over::velocity>("the velocity"), ///< as friction would be
+    by_time = detail::form<detail::over::time>("time"),                 ///< as what warms up or wears would be
+    by_command = detail::form<detail::over::command>("the command");    ///< as an amplifier that bends would be
+/// A force that no list names, as a free curve over one of four quantities: where it predicts best, a cause says so
+/// (better_form).
 inline constexpr std::array curves{&by_position, &by_velocity, &by_time, &by_command};
 
 } // namespace quadrant::diagnosis::unlisted

@@ -6,6 +6,7 @@
 
 namespace quadrant::diagnosis {
 
+/// Another program's log in the words of ours.
 struct imported_log {
     machine_log log;                ///< in SI: metres or radians
     std::string text;               ///< as FORMAT.md writes a log

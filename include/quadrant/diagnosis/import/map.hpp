@@ -7,6 +7,7 @@ namespace quadrant::diagnosis {
 
 /// Which column of another program's log is what (docs/schema/import.schema.json).
 struct import_map {
+    /// Where one quantity is found in a file, and what makes it SI.
     struct source {
         std::string column;     ///< its name; empty: by number
         std::size_t number = 0; ///< from 1
@@ -14,6 +15,7 @@ struct import_map {
         double factor = 1;      ///< SI per unit of the file
         std::string place;      ///< key path in the map, for messages
     };
+    /// The three columns of one axis.
     struct axis {
         std::string name;
         source reference, position, command;
