@@ -7,7 +7,7 @@
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/following_error.hpp>
 #include <quadrant/control/gain_schedule.hpp>
-#include <quadrant/friction/stribeck.hpp>
+#include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/literals.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
@@ -212,8 +212,8 @@ TEST_CASE("another tuning in motion, handed over whole: the command jumps by mil
 }
 
 TEST_CASE("milling_axis: another tuning in motion, observer and friction too") {
-    using observed =
-        milling_axis_boxes<stribeck<signal::velocity, signal::voltage>, disturbance_observer<signal::voltage>>;
+    using springs = maxwell_slip<2, signal::velocity, signal::voltage>;
+    using observed = milling_axis_boxes<springs, disturbance_observer<signal::voltage>>;
     std::mt19937 random(12);
     const auto about = [&](auto q) { return std::exp(std::uniform_real_distribution(-0.3, 0.3)(random)) * q; };
     const auto draw = [&] {
@@ -224,7 +224,10 @@ TEST_CASE("milling_axis: another tuning in motion, observer and friction too") {
                                .notch = {.centre = about(330_Hz), .damping = 0.06},
                                .plant_gain = about(4.26_mps2 / 1_V),
                                .plant_pole = 2.8 / 1_s,
-                               .friction = {about(0.08_V), 0.13_V, 2_mmps, about(0.2_V / 1_mps)},
+                               .friction = {.curve = {about(0.08_V), 0.13_V, 2_mmps, about(0.2_V / 1_mps)},
+                                            .weights = {0.4, 0.6},
+                                            .stiffness = {about(50_V / 1_mm), about(10_V / 1_mm)},
+                                            .attraction = 1_V / 1_s},
                                .limit = 10_V};
         p.disturbance = {about(20_Hz), axis_model<signal::voltage>{p.plant_gain, p.plant_pole}};
         return p;
@@ -254,6 +257,14 @@ TEST_CASE("milling_axis: another tuning in motion, observer and friction too") {
     CAPTURE(most);
     CHECK(most < 0.05); // V
     CHECK(most_naive > 1);
+
+    milling_axis<observed> begun{.box = {draw(), T}};
+    for (int k = 0; k < 6; ++k) begun(asked(k), asked(k).position); // 1 um
+    const auto bent = begun.box.friction.now().elements;
+    begun.retune(observed{begun.box}, asked(5));
+    for (std::size_t i = 0; i < 2; ++i) // no way counts twice
+        CHECK(begun.box.friction.now().elements[i].force == bent[i].force);
+    CHECK_FALSE(bent[1].slips);
 }
 
 TEST_CASE("homing: the frame of positions moves under a running axis, and no command changes") {

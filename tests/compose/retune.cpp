@@ -8,6 +8,9 @@
 #include <quadrant/filter/filtered_derivative.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
+#include <quadrant/friction/dahl.hpp>
+#include <quadrant/friction/lugre.hpp>
+#include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/literals.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/memory/fractional_delay.hpp>
@@ -338,6 +341,115 @@ TEST_CASE("retune: a memory keeps what it has learnt under other filters and wei
     CHECK(said.most > 0.9);
 }
 
+namespace {
+using slipping = stribeck<>;
+using dahl_law = dahl<>;
+using lugre_law = lugre<>;
+using springs = maxwell_slip<3>;
+
+auto draw_curve(random_numbers& r) {
+    const double level = r.decades(10, 1000);
+    return slipping::parameters{level * 1_N, r.between(1, 2) * level * 1_N, r.decades(1e-3, 0.1) * 1_mps,
+                                r.decades(1, 1e3) * (1_N / 1_mps)};
+}
+template <class Law> Law draw_law(random_numbers& r) {
+    const auto stiff = [&] { return r.decades(1e5, 1e8) * (1_N / 1_m); };
+    if constexpr (std::same_as<Law, slipping>)
+        return {draw_curve(r), T};
+    else if constexpr (std::same_as<Law, dahl_law>)
+        return {{r.decades(10, 1000) * 1_N, stiff(), r.between(0, 2), r.decades(1, 1e3) * (1_N / 1_mps)}, T};
+    else if constexpr (std::same_as<Law, lugre_law>)
+        return {{draw_curve(r), stiff(), r.decades(1, 1e5) * (1_N / 1_mps)}, T};
+    else {
+        springs::parameters p{.curve = draw_curve(r), .stiffness = {stiff(), stiff(), stiff()}};
+        p.weights = {r.between(0.1, 1), r.between(0.1, 1), r.between(0.1, 1)};
+        const double sum = p.weights[0] + p.weights[1] + p.weights[2];
+        for (double& w : p.weights) w /= sum;
+        p.attraction = r.decades(10, 1e6) * (1_N / 1_s);
+        return {p, T};
+    }
+}
+/// The dry part of what a law holds, and what it can hold at most.
+double held(const dahl_law& law) { return law.now().force.value(); }
+double held(const lugre_law& law) { return law.now().force.value(); }
+double held(const springs& law) {
+    double sum = 0;
+    for (const auto& each : law.now().elements) sum += each.force.value();
+    return sum;
+}
+double most_held(const dahl_law& law) { return law.given().coulomb.value(); }
+double most_held(const auto& law) { return law.given().curve.static_level.value(); }
+double viscous(const dahl_law& law) { return law.given().viscous.value(); }
+double viscous(const auto& law) { return law.given().curve.viscous.value(); }
+/// How far the dry part can go in one sample at v.
+double reach(const dahl_law& law, double v) {
+    return std::exp2(law.given().shape) * law.given().stiffness.value() * std::abs(v) * T.value();
+}
+double reach(const lugre_law& law, double v) {
+    const auto& p = law.given();
+    return (1 + p.curve.static_level / p.curve.coulomb) *
+           (p.stiffness.value() * T.value() + p.damping.value()) * std::abs(v);
+}
+double reach(const springs& law, double v) {
+    const auto& p = law.given();
+    const double relaxes = p.attraction.value() * std::max(1.0, p.curve.static_level / p.curve.coulomb - 1);
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        sum += std::max(p.stiffness[i].value() * std::abs(v), relaxes * p.weights[i]) * T.value();
+    return sum;
+}
+} // namespace
+
+TEST_CASE_TEMPLATE(
+    "retune: friction that remembers is off by no more than one step of either law, and what the new "
+    "one cannot hold",
+    Law, dahl_law, lugre_law, springs) {
+    random_numbers random;
+    verdict said, cut; // less than the new level held, or more
+    double beyond = 0, lost = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+        Law kept = draw_law<Law>(random), twin = kept;
+        const Law other = draw_law<Law>(random);
+        auto v = random.signal(60);
+        const double scale = random.decades(1e-6, 0.3) / largest(v); // sticks, breaks away, slides
+        for (double& each : v) each *= scale;
+        for (std::size_t k = 0; k + 1 < v.size(); ++k) step(kept, v[k]), step(twin, v[k]);
+        kept.retune(other);
+        const double before = held(twin), level = most_held(other), now = v.back();
+        beyond = std::max(beyond, std::abs(held(kept)) / level);
+        if (std::abs(before) <= level) lost = std::max(lost, std::abs(held(kept) - before) / level);
+        const double each = reach(twin, now), next = reach(other, now);
+        const double steps = std::same_as<Law, dahl_law> ? std::max(each, next) : each + next;
+        const double excess = std::max(0.0, std::abs(before) - level);
+        verdict& which = excess > 0 ? cut : said;
+        which(step(kept, now) - step(twin, now),
+              steps + std::abs(viscous(other) - viscous(twin)) * std::abs(now) + excess,
+              1e-11 * (std::abs(before) + level));
+    }
+    for (const verdict& each : {said, cut}) {
+        CAPTURE(each.most);
+        CHECK(each.broken == 0);
+        CHECK(each.most > 0.9);
+    }
+    CHECK(beyond <= 1 + 1e-12);
+    CHECK(lost <= 1e-12);
+}
+
+TEST_CASE("retune: a Stribeck curve jumps by what it changes at the speed") {
+    random_numbers random;
+    double most = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        slipping kept = draw_law<slipping>(random);
+        const slipping other = draw_law<slipping>(random);
+        const double v = random.decades(1e-5, 1) * (trial % 2 ? 1 : -1);
+        step(kept, -v);
+        kept.retune(other);
+        slipping fresh = other;
+        most = std::max(most, std::abs(step(kept, v) / step(fresh, v) - 1));
+    }
+    CHECK(most == 0);
+}
+
 TEST_CASE("retune: with the same parameters nothing changes, bit for bit; another period is refused") {
     random_numbers random;
     const auto x = random.signal(200);
@@ -361,6 +473,12 @@ TEST_CASE("retune: with the same parameters nothing changes, bit for bit; anothe
     both.operator()<lowpass<signal::force>>({100_Hz});
     both.operator()<disturbance_observer<signal::voltage>>(
         {60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V, 28.57 / 1_s}});
+    both.operator()<dahl_law>({122_N, 60_N / 1_um, 1, 850_N / 1_mps});
+    both.operator()<lugre_law>({{8_N, 12_N, 5_mmps, 15_N / 1_mps, 2}, 1500_N / 1_mm, 2985_N / 1_mps});
+    both.operator()<springs>({.curve = {122_N, 177_N, 2_mmps, 850_N / 1_mps},
+                              .weights = {0.2, 0.3, 0.5},
+                              .stiffness = {60_N / 1_um, 20_N / 1_um, 5_N / 1_um},
+                              .attraction = 450_N / 1_s});
     memory m = learner(random, 17);
     check(m, m, memory({.cycle = 20_ms, .ahead = 2}, 1_ms));
 }

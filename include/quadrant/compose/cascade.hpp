@@ -162,7 +162,7 @@ template <axis_boxes Boxes> struct cascade {
             box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
-        wire.friction = box.friction(wire.reference_velocity);
+        wire.friction = detail::foreseen(box.friction, wire.reference_velocity);
         const command less = before - (wire.inertia + wire.friction);
         wire.feedback += less;
         wire.damped += less;

@@ -34,6 +34,8 @@ template <class Block, class X> auto settled(Block& block, const X& x) {
     Block copy = block;
     return copy(x);
 }
+/// What the block would give, without stepping it.
+template <class Block, class X> auto foreseen(Block block, const X& x) noexcept { return block(x); }
 /// The parameters of another block of the same type, the state of this one; a block without parameters stays as it is.
 template <class Block> void retune(Block& block, const Block& next) noexcept {
     if constexpr (requires { block.retune(next); })

@@ -219,7 +219,7 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.velocity_error = wire.demand - wire.measured_velocity;
         wire.inertia = box.inertia(ahead.acceleration);
         wire.drag = box.drag(ahead.velocity);
-        wire.friction = box.friction(wire.travel);
+        wire.friction = detail::foreseen(box.friction, wire.travel);
         wire.compensated = wire.wanted - wire.friction;
         wire.linear = wire.compensated + wire.disturbance;
         wire.feedback = wire.linear - wire.inertia - wire.drag;

@@ -14,6 +14,8 @@ namespace quadrant {
 /// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
 /// State: F without the viscous part, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been
 /// applied for ever: +-coulomb, relaxed for v = 0.
+/// `retune(next)`: another law from the next step on; the bristles keep their force, but for what is beyond the new level.
+/// J <= max(K, K') |v| T + |viscous' - viscous| |v| + (|F| - coulomb' or 0), K = 2^shape stiffness: the step that either makes.
 /// Range: coulomb > 0, stiffness > 0, 0 <= shape <= 4, viscous >= 0. Shape 0: a spring up to the level; below 1 the level
 /// is reached within a finite way, from 1 on never quite. Stable at any step.
 /// Does not remember inner loops: they drift. Breakaway is the sliding level.
@@ -75,6 +77,13 @@ public:
         return to;
     }
     void become(const state& next) noexcept { memory_.become(next); }
+    void retune(const dahl& next) noexcept {
+        if (next.period_ != period_) return memory_.raise();
+        auto memory = memory_;
+        *this = next;
+        memory.become({detail::borne(memory.now().force, coulomb_)});
+        memory_ = memory;
+    }
 
     bool faulted() const noexcept { return memory_.faulted(); }
     const parameters& given() const noexcept { return given_; }

@@ -15,6 +15,8 @@ namespace quadrant {
 /// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a plant
 /// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
 /// State: stiffness z, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been applied for ever.
+/// `retune(next)`: another law from the next step on; the bristles keep their force, but for what is beyond the new Fs.
+/// J <= (K + K' + |viscous' - viscous|) |v| + (|stiffness z| - Fs' or 0), K = (1 + Fs/Fc) (stiffness T + damping): the step of each.
 /// Range: 0 < coulomb <= static_level and the rest of `stribeck`, stiffness > 0, damping >= 0, damping_velocity >= 0 (0:
 /// the damping does not fall). Stable at any step. passive(p) tells whether no motion can get energy out of it; with
 /// constant damping that needs viscous >= damping (Fs - Fc)/Fc [Barahanov2000].
@@ -91,6 +93,13 @@ public:
         return to;
     }
     void become(const state& next) noexcept { memory_.become(next); }
+    void retune(const lugre& next) noexcept {
+        if (next.period_ != period_) return memory_.raise();
+        auto memory = memory_;
+        *this = next;
+        memory.become({detail::borne(memory.now().force, curve_.breakaway())});
+        memory_ = memory;
+    }
 
     /// True when no motion gets energy out of friction, bristle energy counted: for all speeds and bends
     ///   y^2/v - s1(v) y + (s1(v) + viscous) g(v) >= 0 for 0 <= y <= Fs; constant damping: viscous >= damping (Fs - Fc)/Fc

@@ -20,6 +20,9 @@ namespace quadrant {
 /// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
 /// State: per element its force, in the unit of the output, and whether it slips. `reset` leaves all relaxed and sticking;
 /// `settle(v)` as if v had been applied for ever (relaxed for v = 0).
+/// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the new Fs: what one
+/// can hold no more the others take. A changed level is then gone to as the law says: at once by what sticks, with s/C by what slips.
+/// J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| - Fs' or 0), K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
 /// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as tables print
 /// them, divided by their sum, which must not be above Fs. The other stays zero.
 /// Range: 0 < coulomb <= static_level and the rest of `stribeck`; each share and stiffness > 0, attraction > 0. Stable at
@@ -84,6 +87,13 @@ public:
     /// The force after moving at v for h; changes nothing.
     outcome after(argument v, time h) const noexcept { return moved<true>(v, h); }
     void become(const state& next) noexcept { memory_.become(next); }
+    void retune(const maxwell_slip& next) noexcept {
+        if (next.period_ != period_) return memory_.raise();
+        auto memory = memory_;
+        *this = next;
+        memory.become(borne(memory.now()));
+        memory_ = memory;
+    }
 
     /// Shares of the level as they are used, sum 1.
     const std::array<Real, N>& weights() const noexcept { return weights_; }
@@ -127,6 +137,24 @@ private:
             }
             if (!forward) next.force = -next.force;
             to.force += next.force;
+        }
+        return to;
+    }
+    /// What an element holds beyond its share of the breakaway level goes to the others, as far as they can hold it; an element
+    /// whose force changes sticks.
+    state borne(const state& of) const noexcept {
+        state to = of;
+        value left{};
+        const auto hold = [&](std::size_t i, value force) {
+            to.elements[i].force = detail::borne(force, weights_[i] * curve_.breakaway());
+            left += force - to.elements[i].force;
+            to.elements[i].slips = of.elements[i].slips && to.elements[i].force == of.elements[i].force;
+        };
+        for (std::size_t i = 0; i < N; ++i) hold(i, of.elements[i].force);
+        for (std::size_t i = 0; i < N; ++i) {
+            const value more = left;
+            left = value();
+            hold(i, to.elements[i].force + more);
         }
         return to;
     }

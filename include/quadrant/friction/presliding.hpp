@@ -37,6 +37,10 @@ template <signal_tag In, signal_tag Out, class State, class Real> struct frictio
 };
 
 namespace detail {
+/// A force that something holds which can hold no more than `most`, either way.
+template <class Value> Value borne(const Value& force, const Value& most) noexcept {
+    return force > most ? most : force < -most ? -most : force;
+}
 /// Memory and last good output of a block that is a law with a memory; an outcome is taken over when it is finite.
 template <class Outcome, class Argument> class friction_memory {
     using value = decltype(Outcome::force);
@@ -58,6 +62,7 @@ public:
         out_.reset();
     }
     void become(const state& next) noexcept { state_ = next; }
+    void raise() noexcept { out_.raise(); }
     const state& now() const noexcept { return state_; }
     bool faulted() const noexcept { return out_.faulted(); }
 
