@@ -9,8 +9,6 @@
 #include <quadrant/compose/milling_axis_boxes.hpp>
 #include <quadrant/friction/stribeck.hpp>
 
-#include <cstring>
-
 /// The controller of an axis for HAL: `milling_axis` with Stribeck friction, disturbance observer and repetitive memory.
 /// Another friction law is another type below and its fields in `list()`; pins for the wires come with the loop.
 namespace hal {
@@ -82,79 +80,54 @@ public:
     static constexpr auto taps() { return loop::taps(); }
     const wires& wire() const noexcept { return loop_.wire; }
 
+    /// Off: the loop goes along and takes 0 for its last output, so that it begins without a bump, also on the move.
     bool step(const pins& p) noexcept {
-        if (!p.enable.get()) {
+        const bool on = p.enable.get();
+        fault_ = fault_ && on;
+        if (!on) {
             p.output.set(0);
             p.saturated.set(false);
-            enabled_ = missed_ = fault_ = false;
-            return true;
         }
         const length command = length::from_value(p.command.get() / given_.scale),
                      feedback = length::from_value(p.feedback.get() / given_.scale);
         if (!inside(command) || !inside(feedback)) {
-            missed_ = fault_ = true;
-            return false;
+            missed_ = true;
+            known_ = known_ && on;
+            fault_ = on;
+            return !on;
         }
-        if (!enabled_) { // at rest here, from now on
+        if (!known_) { // at rest here, from now on
             loop_.settle(feedback);
             velocity_.settle(command);
             acceleration_.settle({});
         } else if (missed_)
-            velocity_.settle(command - speed_ * period_, speed_);
-        enabled_ = true;
+            velocity_.settle(command - asked_.velocity * period_, asked_.velocity);
         missed_ = false;
-        speed_ = velocity_(command);
-        p.output.set(loop_({command, speed_, acceleration_(speed_)}, feedback).value());
-        p.saturated.set(loop_.limited());
-        fault_ = fault_ || loop_.faulted();
+        const auto speed = velocity_(command);
+        asked_ = {command, speed, acceleration_(speed)};
+        if (on) {
+            p.output.set(loop_(asked_, feedback).value());
+            p.saturated.set(loop_.limited());
+            fault_ = fault_ || loop_.faulted();
+        } else
+            loop_.track(asked_, feedback, {});
+        known_ = on || !loop_.faulted();
         return !fault_;
     }
 
-    /// Other parameters, in motion: boxes that stay the same keep what they know, the others go on from the wires.
+    /// Other parameters, also in motion: the first output after the change is off by no more than docs/integrator.md says. A
+    /// memory that is switched on or off begins with nothing learnt.
     bool adopt(const hal_axis& next) noexcept {
-        const auto& w = loop_.wire;
-        auto& now = loop_.box;
-        const auto& then = next.loop_.box;
-        const auto nothing = [](auto&) {};
-        if (given_.scale != next.given_.scale) enabled_ = false; // other units: begins anew
+        known_ = known_ && given_.scale == next.given_.scale; // other units: begins anew
+        const bool switched = (given_.weight == 0) != (next.given_.weight == 0);
+        if (switched) loop_.wire.learned = {};
         given_ = next.given_;
-        take(now.position_loop, then.position_loop, nothing);
-        take(now.reference_velocity, then.reference_velocity,
-             [&](auto& b) { b.settle(w.reference, w.reference_velocity); });
-        take(now.reference_notch, then.reference_notch, [&](auto& b) { b.settle(w.reference_velocity); });
-        take(now.measured_velocity, then.measured_velocity,
-             [&](auto& b) { b.settle(w.measured, w.measured_velocity); });
-        take(now.measured_notch, then.measured_notch, [&](auto& b) { b.settle(w.measured_velocity); });
-        take(now.velocity_loop, then.velocity_loop, [&](auto& b) { b.settle(w.velocity_error, w.feedback); });
-        take(now.inertia, then.inertia, nothing);
-        take(now.drag, then.drag, nothing);
-        take(now.disturbance, then.disturbance, [&](auto& b) {
-            const auto u = then.drag.given().gain * w.measured_velocity - w.disturbance;
-            b.settle_moving(w.measured, w.measured_velocity, u, w.disturbance, period_);
-        });
-        if (w.disturbance != loop::command() && then.disturbance.given().on == 0) // the PI carries on
-            now.velocity_loop.settle(w.velocity_error, w.feedback - w.disturbance);
-        take(now.friction, then.friction, nothing);
-        take(now.amplifier, then.amplifier, nothing);
-        take(now.dac, then.dac, nothing);
-        auto other_cycle = now.memory.given();
-        other_cycle.cycle = then.memory.given().cycle;
-        if (same(other_cycle, then.memory.given()))
-            now.memory.cycle(other_cycle.cycle); // fades by itself
-        else
-            take(now.memory, then.memory, [](auto& b) { b.settle(length(), length()); });
+        loop_.retune(next.loop_.box, asked_);
+        if (switched) loop_.box.memory.settle({}, {});
         return true;
     }
 
 private:
-    template <class P> static bool same(const P& a, const P& b) noexcept {
-        return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(P)) == 0;
-    }
-    template <class Box, class Settle> static void take(Box& now, const Box& then, Settle settle) noexcept {
-        if (same(now.given(), then.given())) return;
-        now = then;
-        settle(now);
-    }
     bool inside(length x) const noexcept { return x >= -given_.range && x <= given_.range; } // NaN is not
 
     /// The observer compares with the plant that is fed forward; the memory's filters are made for loop and period.
@@ -171,6 +144,7 @@ private:
         if (p.weight == 0) {
             box.memory.weights = {0};
             box.memory.cycle = 1000.0 * period;
+            box.memory.ahead = ahead;
             return p;
         }
         const analysis::axis_model<> axis{box.plant_pole, box.plant_gain, p.delay + 0.5 * period},
@@ -187,20 +161,22 @@ private:
         };
         const auto fade = box.memory.fade;
         const auto smooth = analysis::smoothing_filter<61>(p.corner, period);
-        const auto learning = analysis::learning_filter<90>(closed, smooth, 30, period);
+        const auto learning = analysis::learning_filter<90>(closed, smooth, ahead, period);
         box.memory = analysis::repetitive_parameters<memory>(closed, std::array{p.weight}, learning, smooth,
                                                              box.memory.cycle, analysis::up_to_nyquist(period));
         box.memory.fade = fade;
         return p;
     }
 
+    static constexpr std::size_t ahead = 30; ///< samples that the memory's filter looks ahead
+
     parameters given_;
     duration period_;
     loop loop_;
     quadrant::backward_difference<signal::position, signal::velocity> velocity_; ///< of the command
     quadrant::backward_difference<signal::velocity, signal::acceleration> acceleration_;
-    loop::velocity speed_{};
-    bool enabled_ = false, missed_ = false, fault_ = false;
+    loop::motion asked_{};
+    bool known_ = false, missed_ = false, fault_ = false; ///< known: the loop has seen where the axis is
 };
 
 } // namespace hal

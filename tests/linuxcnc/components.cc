@@ -4,7 +4,9 @@
 #include "linuxcnc/quadrant_axis.hpp"
 #include "linuxcnc/quadrant_plant.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <random>
@@ -91,15 +93,31 @@ int main() {
     const double usual = largest_step_of(20); // around full speed, 63 mm/s
     sine(740);
     double swapped = 0;
+    bool bounded = true;
+    const auto wire = [](const char* name) {
+        return real((std::string("quadrant-axis.0.wire.") + name).c_str());
+    };
+    const auto beside = [&] { // what the PI's part is added to
+        return wire("inertia") + wire("drag") - wire("disturbance") + wire("friction");
+    };
+    const auto next_step = [&](double error, double others) { // docs/integrator.md, with the gains of now
+        return real("quadrant-axis.0.velocity-gain") * std::abs(wire("velocity-error") - error) +
+               real("quadrant-axis.0.velocity-integral") * 1e-3 * std::abs(wire("velocity-error")) +
+               std::abs(beside() - others) + 1e-12;
+    };
     const auto at_full_speed = [&](const char* name, double value) {
         sine(250);
+        const double before = largest_step_of(1), error = wire("velocity-error"), others = beside();
         real((std::string("quadrant-axis.0.") + name).c_str()) = value;
         axis.look();
         claim(bit("quadrant-axis.0.pending"), name);
-        const double step = largest_step_of(10);
+        const double first = largest_step_of(1);
         claim(!bit("quadrant-axis.0.pending"), "in use from the next period on");
-        std::printf("largest step of the command: %.4f V\n", step);
-        swapped = std::max(swapped, step);
+        if (std::strncmp(name, "velocity-", 9) == 0) bounded = bounded && first <= next_step(error, others);
+        const double after = largest_step_of(9);
+        std::printf("steps of the command [mV]: %.3f before, %.3f at once, %.3f after\n", 1e3 * before,
+                    1e3 * first, 1e3 * after);
+        swapped = std::max({swapped, first, after});
         sine(740);
     };
     at_full_speed("velocity-gain", 40);
@@ -111,8 +129,25 @@ int main() {
     at_full_speed("estimator-corner", 120);
     at_full_speed("notch-centre", 300);
     at_full_speed("position-gain", 110);
-    std::printf("undisturbed: %.4f V\n", usual);
-    claim(swapped < 1.25 * usual, "no change of a parameter at full speed is seen in the command");
+    at_full_speed("friction-coulomb", 0.05);
+    at_full_speed("plant-gain", 4.4);
+    at_full_speed("plant-pole", 2);
+    at_full_speed("memory-weight", 1);
+    sine(3000); // it has learnt
+    at_full_speed("memory-weight", 0);
+    std::printf("undisturbed: %.3f\n", 1e3 * usual);
+    claim(swapped < 1.1 * usual, "no change of a parameter at full speed is seen in the command");
+    claim(bounded, "other gains of the PI: its next step is what they would have made of it anyway");
+
+    sine(250); // off for 30 ms at full speed, while the planner goes on
+    *stub::bits.at("quadrant-axis.0.enable") = false;
+    sine(30);
+    const double error = wire("velocity-error"), others = beside();
+    *stub::bits.at("quadrant-axis.0.enable") = true;
+    const double first = largest_step_of(1);
+    std::printf("%.3f mm behind: %.3f mV\n", 1e3 * wire("position-error"), 1e3 * first);
+    claim(first <= next_step(error, others) && first < 0.1, "enabled on the move: the command begins at 0");
+    sine(970);
 
     *stub::bits.at("quadrant-axis.0.apply") = false;
     real("quadrant-axis.0.velocity-gain") = 30;

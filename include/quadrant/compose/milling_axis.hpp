@@ -211,6 +211,8 @@ template <milling_boxes Boxes> struct milling_axis {
         detail::retune(box.inertia, next.inertia);
         detail::retune(box.drag, next.drag);
         detail::retune(box.disturbance, next.disturbance);
+        if constexpr (requires { box.disturbance.disturbance(); })
+            wire.disturbance = box.disturbance.disturbance();
         detail::retune(box.travel, next.travel);
         detail::retune(box.friction, next.friction);
         detail::retune(box.amplifier, next.amplifier);
