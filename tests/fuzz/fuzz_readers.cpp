@@ -3,6 +3,7 @@
 #include "../../examples/quadrant_cnc/gap_machine.hpp"
 #include "../../examples/quadrant_cnc/read_cnc.hpp"
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/circle/read_radius.hpp"
 #include "quadrant/diagnosis/import/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "quadrant/path/cl_reader.hpp"
@@ -93,6 +94,20 @@ void check_cnc(const std::string& text) {
     must_hold(machine.axes.size() == cnc.axes.size());
 }
 
+/// An instrument's file: whole turns at a feed, each sample with its place.
+void check_radius(const std::string& text) {
+    const auto runs = read_radius(text, "ball_bar.csv");
+    must_hold(!runs.empty());
+    for (const auto& run : runs) {
+        must_hold(run.turns > 0 && run.period_s > 0 && run.start_s >= 0 && run.radius > 0 && run.feed > 0 &&
+                  std::isfinite(run.feed));
+        must_hold(run.resolution >= 0 && run.angle.size() == run.deviation.size() && run.angle.size() > 1);
+        must_hold((run.angle.back() - run.angle.front()) * run.turning() > 0);
+        for (std::size_t k = 0; k < run.angle.size(); ++k)
+            must_hold(std::isfinite(run.angle[k]) && std::isfinite(run.deviation[k]));
+    }
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -106,7 +121,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                            check_foreign_log,
                                                            check_program<quadrant::gcode_reader>,
                                                            check_program<quadrant::cl_reader>,
-                                                           check_cnc};
+                                                           check_cnc,
+                                                           check_radius};
         readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
