@@ -114,7 +114,8 @@ private:
             row[j] = z.real(), row[j + 1] = z.imag();
         }
         for (std::size_t f = 0; f < friction_orders_.size(); ++f) {
-            const std::size_t j = first_ + 2 * (highest_ + f), of = first_ + 2 * (friction_orders_[f] - 1);
+            const std::size_t j = first_ + 2 * (highest_ + f),
+                              of = first_ + 2 * std::size_t(friction_orders_[f] - 1);
             row[j] = r.direction * row[of], row[j + 1] = r.direction * row[of + 1];
         }
     }

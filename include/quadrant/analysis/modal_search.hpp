@@ -66,8 +66,9 @@ public:
     /// Of two numbers a line; a mode counts as four unknowns, because its place was picked among all lines: with three, one
     /// record of noise in ten is given a mode.
     double information() const {
-        const double n = 2 * double(points_.size()), modes = double(x.size() / 3 - 1);
-        return n * std::log(cost / n) + (double(x.size()) + modes) * std::log(n);
+        const std::size_t modes = x.size() / 3 - 1;
+        const double n = 2 * double(points_.size());
+        return n * std::log(cost / n) + double(x.size() + modes) * std::log(n);
     }
     double surprise() const { return cost / double(2 * points_.size() - x.size()); }
 

@@ -161,7 +161,8 @@ inline controller_finding judge_controller(const controller_description& describ
             value = is_frequency ? std::min(x, nyquist) : x;
             try {
                 const double s = score(difference(replay(trial)));
-                return std::isfinite(s) ? s : none;
+                if (std::isfinite(s)) return s;
+                return none;
             } catch (const std::exception&) { // a controller of the user's own that cannot have this value
                 if (!is_own) throw;
                 return none;

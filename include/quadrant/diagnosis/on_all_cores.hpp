@@ -19,7 +19,7 @@ template <class Work> void on_all_cores(std::size_t count, std::size_t threads, 
     std::exception_ptr failed;
     std::mutex guard;
     const auto take = [&] {
-        for (std::size_t i; (i = next++) < count;) try {
+        for (std::size_t i = 0; (i = next++) < count;) try {
                 work(i);
             } catch (...) {
                 const std::lock_guard held(guard);

@@ -55,7 +55,7 @@ inline nlohmann::ordered_json controller_json(const controller_description& c) {
 /// The place of a key in a box of a machine file; a dotted one is that of a box inside, which is made where it is missing.
 inline nlohmann::ordered_json& place_in(nlohmann::ordered_json& box, std::string_view key) {
     nlohmann::ordered_json* place = &box;
-    for (std::size_t dot; (dot = key.find('.')) != key.npos; key.remove_prefix(dot + 1))
+    for (std::size_t dot = 0; (dot = key.find('.')) != key.npos; key.remove_prefix(dot + 1))
         place = &(*place)[std::string(key.substr(0, dot))];
     return (*place)[std::string(key)];
 }

@@ -62,7 +62,9 @@ public:
 
     /// Needs !full(). Throws for what is refused and changes nothing then.
     void push(const move& next) {
-        const stretch driven(next.path, next.rapid ? unlimited : next.feed, machine_);
+        double feed = next.feed;
+        if (next.rapid) feed = unlimited;
+        const stretch driven(next.path, feed, machine_);
         check(next, driven);
         const bool on = last_ && last_->ending == path_ending::continuous && count_ > 0;
         if (on && count_ > planned_ && !(count_ == 1 && begun_) && alike(*at(count_ - 1), driven)) {
@@ -125,7 +127,7 @@ private:
 
     place on(std::size_t first, std::size_t moves, double s) const noexcept {
         std::size_t i = first;
-        for (double l; i + 1 < first + moves && s > (l = move_at(i)->path.length()); ++i) s -= l;
+        for (double l = 0; i + 1 < first + moves && s > (l = move_at(i)->path.length()); ++i) s -= l;
         return {&move_at(i)->path, s, move_at(i)->line};
     }
     void check(const move& next, const stretch& driven) const {

@@ -45,7 +45,7 @@ inline stick_slip_found stick_slip_of(const circle_run& r, const std::vector<dou
         if (!inside) inside = true, number = 0, low = high = quick[k], up = true;
         low = std::min(low, quick[k]), high = std::max(high, quick[k]);
         if (up ? high - quick[k] > out.threshold : quick[k] - low > out.threshold) { // turned round
-            heights.push_back(up ? high - low : high - low), ++number, up = !up;
+            heights.push_back(high - low), ++number, up = !up;
             low = high = quick[k];
         }
     }
