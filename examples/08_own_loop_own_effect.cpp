@@ -9,6 +9,7 @@
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/own_controller.hpp>
 #include <quadrant/diagnosis/own_effect.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 
 #include <cmath>

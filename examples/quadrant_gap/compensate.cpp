@@ -4,7 +4,9 @@
 #include "compensation_summary.hpp"
 
 #include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/read_diagnosis.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/write_compensation.hpp>
 
 #include <memory>

@@ -2,6 +2,7 @@
 #pragma once
 #include "sha256.hpp"
 
+#include <quadrant/diagnosis/read/text.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 

@@ -5,7 +5,9 @@
 
 #include <quadrant/diagnosis/forecast.hpp>
 #include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/read_diagnosis.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
 
 #include <memory>
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/plant_model.hpp"
+#include "quadrant/diagnosis/read/machine_keys.hpp"
+#include "quadrant/diagnosis/read_diagnosis.hpp"
+#include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_diagnosis.hpp"
+#include "quadrant/diagnosis/write_machine.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/advice.hpp"
+#include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/compensate.hpp"
+#include "quadrant/diagnosis/effect_names.hpp"
 #include "quadrant/diagnosis/write_compensation.hpp"
 #include "workshop.hpp"
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "workshop.hpp"
+#include "claims.hpp"
 
 #include <quadrant/diagnosis/next_experiment.hpp>
 
-#include <doctest/doctest.h>
-
-using namespace quadrant::diagnosis;
 using namespace workshop;
 
 namespace {
@@ -218,4 +215,49 @@ TEST_CASE("next experiment: a record is a log of the machine: noise, steps of th
     for (std::size_t k = 1000; k < again.size(); ++k)
         difference = std::max(difference, std::abs(again[k] - log.command[k]));
     CHECK(difference < 2 * workshop::dac);
+}
+
+// Swings of one frequency under noise: a lag and a delay are one signal. The machine is that of the other simulator.
+TEST_CASE(
+    "diagnose: the next experiment names what the log could not, by at least the gain that was forecast") {
+    machine real;
+    auto file = described(real);
+    file.excluded_effects = {"stribeck_friction",
+                             "presliding_friction",
+                             "position_dependent_friction",
+                             "friction_drift",
+                             "backlash",
+                             "structural_resonance",
+                             "cogging",
+                             "force_ripple",
+                             "encoder_cyclic_error",
+                             "cutting_force",
+                             "sample_loss"}; // time
+    real.lag = 0.001;
+    real.noise = 5e-7;
+    std::vector<double> swings;
+    for (int k = 0; k < 5000; ++k)
+        swings.push_back(
+            0.02 * (1 - std::cos(2 * std::numbers::pi * std::max(0.0, 2 * (k - 200) * workshop::period))));
+    const auto before = diagnose(file, as_log(run(real, 2.5, 3, swings)));
+    REQUIRE(!before.causes.empty());
+    CHECK(before.causes[0].group_probability > 0.9);
+    CHECK(before.causes[0].probability < 0.8);
+    const experiment& next = before.next;
+    REQUIRE(next.separates.size() == 2);
+    CHECK(next.axis == "x");
+    CHECK(next.gain_of_log < 15);
+    CHECK(next.expected_gain > 30);
+    CHECK(next.motion.starts_with("multi-sine"));
+
+    const auto seconds = static_cast<double>(next.reference.size()) * workshop::period;
+    const auto log = run(real, seconds, 4, next.reference);
+    const auto after = diagnose(file, as_log(log));
+    named(after, "actuator_lag", "actuator.lag_s", 0.001, 0.1);
+    CHECK(after.causes[0].confusable_with.empty());
+    const auto record = prepare(log, workshop::period, workshop::count);
+    const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
+    const double kept = models.with({&suspect::actuator_lag}).total - models.with({&suspect::time_delay}).total;
+    CAPTURE(next.expected_gain);
+    CHECK(kept > 0.7 * next.expected_gain);
 }

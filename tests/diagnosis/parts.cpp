@@ -423,3 +423,17 @@ TEST_CASE("fit: bounds hold, and a value beyond them is found once it is free") 
     CHECK(models.calibrated().fit.plant.mass <= 180 * 1.012 * 1.02 * (1 + 1e-9));
     CHECK(models.with({&suspect::mass}).fit.plant.mass == doctest::Approx(225).epsilon(0.02));
 }
+
+TEST_CASE("diagnose: a value that stopped at the end of its range is marked, one inside is not") {
+    candidate c;
+    c.fit.parameters = {{.key = "mass_kg", .low = 1, .high = 4, .logarithmic = true},
+                        {.key = "spring_N_per_m", .low = 0, .high = 10}};
+    c.fit.x = Eigen::Vector2d(std::log(4.0), 5);
+    std::vector<parameter_estimate> found{{"mass_kg", {{4, 3, 5}}}, {"spring_N_per_m", {{5, 4, 6}}}};
+    mark_bounds(c, found);
+    CHECK(found[0].on_bound);
+    CHECK_FALSE(found[1].on_bound);
+    c.fit.x[1] = 0;
+    mark_bounds(c, found);
+    CHECK(found[1].on_bound);
+}

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/read_machine.hpp"
+#include "quadrant/diagnosis/effect_names.hpp"
 #include "quadrant/diagnosis/match.hpp"
+#include "quadrant/diagnosis/plant_model.hpp"
+#include "quadrant/diagnosis/read/machine_keys.hpp"
+#include "quadrant/diagnosis/read/text.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/controller_box.hpp"
 #include "quadrant/diagnosis/diagnose.hpp"
 #include "quadrant/diagnosis/own_effect.hpp"
+#include "quadrant/diagnosis/read_diagnosis.hpp"
+#include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_diagnosis.hpp"
 #include "quadrant/diagnosis/write_simulation.hpp"
 #include "workshop.hpp"

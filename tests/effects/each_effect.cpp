@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "diagnosis/claims.hpp"
 
+#include <quadrant/diagnosis/search.hpp>
+
 using namespace workshop;
 
 // Each effect alone, by a simulator with another friction law: 3 % on what friction hides, 1 % on the rest.

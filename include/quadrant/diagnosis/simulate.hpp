@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "bad_input.hpp"
-#include "how_far.hpp"
-#include "neighbour.hpp"
+#include "log.hpp"
+#include "machine.hpp"
+#include "result.hpp"
+#include "separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -27,73 +28,14 @@ struct simulation_result {
     std::vector<std::string> notes;
 };
 
-namespace detail {
-
-inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period) {
-    const double resolution = std::max(
-        {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
-    const axis_record record = prepare(log, period, resolution);
-    const plant_model plant = restarted(plant_model(axis), record);
-    const std::vector<double> all(record.segments, 1.0);
-    const auto scored_rms = [&](const std::vector<double>& x) {
-        return segment_energy(x, record.segment, record.segments, record.score.skip).rms(all);
-    };
-    simulated_axis out;
-    out.name = axis.name;
-    out.command_unit = axis.command_unit;
-    out.kind = axis.kind;
-    std::vector<double> innovation, acceleration;
-    record.observer.run(plant, innovation, &acceleration);
-    out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz);
-    out.gap.force_rms_N = scored_rms(out.force);
-    out.gap.noise_floor_force_rms_N = residual_force_floor(
-        plant.mass, position_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
-    out.gap.bandwidth_Hz = record.bandwidth_Hz;
-    out.where = regimes(out.force, record);
-    for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);
-    for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);
-    if (!axis.controller) return out;
-
-    out.closed_loop = true;
-    auto loop = simulate_closed_loop(*axis.controller, axis, plant, period, log);
-    std::vector<double> of_position(log.position.size()), of_command(log.position.size());
-    for (std::size_t k = 0; k < log.position.size(); ++k) {
-        of_position[k] = loop.position[k] - log.position[k];
-        of_command[k] = loop.command[k] - log.command[k];
-        if (k >= record.score.skip)
-            out.gap.position_peak_m = std::max(out.gap.position_peak_m, std::abs(of_position[k]));
-    }
-    out.gap.position_rms_m = scored_rms(of_position);
-    out.gap.command_rms_V = scored_rms(of_command);
-    out.position = std::move(loop.position);
-    out.command = std::move(loop.command);
-    return out;
-}
-
-} // namespace detail
-
 /// Predicts a log of a machine and says what remains between the two, in the numbers that a diagnosis forecasts: residual
 /// force behind the logged command, and position and command of the closed loop from the logged reference. Where in its
 /// cycle a process begins is found from the log; drift begins with its first row. Machine and log match (match.hpp); a
 /// log below 0.5 s is refused (bad_input). Costs a few passes over the log.
-inline simulation_result simulate(const machine_description& machine, const machine_log& log) {
-    constexpr double shortest_s = 0.5;
-    const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;
-    if (seconds < shortest_s)
-        throw bad_input(log.file, fmt::format("{} samples are {:.3g} s: a simulation needs at least {} s",
-                                              log.samples, seconds, shortest_s));
-    simulation_result out;
-    out.machine_file = machine.file;
-    out.log_file = log.file;
-    out.notes = machine.notes;
-    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
-    for (const axis_description& axis : machine.axes)
-        for (const axis_log& logged : log.axes)
-            if (logged.name == axis.name && !logged.still)
-                out.axes.push_back(
-                    detail::simulate_axis(axis, detail::with_neighbour(log, logged, machine.sample_period_s),
-                                          machine.sample_period_s));
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "impl/simulate.hpp"
+#endif

@@ -10,25 +10,6 @@
 
 namespace quadrant::diagnosis {
 
-/// One axis: how it follows now, and what each compensation would do.
-struct compensated_axis {
-    std::string name, command_unit;
-    bool forecast = false;                   ///< a controller is described, so that there is a loop to simulate
-    tracking measured;                       ///< on the log as it is
-    double missed_rms_m = 0;                 ///< simulated beside logged position, nothing compensated
-    double noise_m = 0;                      ///< of the position reading
-    std::vector<compensation> compensations; ///< one by one, then together
-    std::vector<advice> others;              ///< causes without a feedforward
-
-    /// Of those that are claimed the one that leaves least; nullptr: none.
-    const compensation* best() const {
-        const compensation* out = nullptr;
-        for (const compensation& c : compensations)
-            if (c.claimed && (!out || c.after.rms_m.value < out->after.rms_m.value)) out = &c;
-        return out;
-    }
-};
-
 namespace detail {
 
 /// Forecasts on one axis of one log. The error that was logged, plus what a compensation changes in the simulated loop: what

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../key_value.hpp"
 #include "../record.hpp"
 
 #include <string_view>
@@ -17,12 +18,6 @@ struct screening {
 
     /// Force of a volt, the scale of forces on this axis; of a tenth of the largest command where that is in other units [N].
     double force_of_a_volt() const { return leader.force_constant * record.volt; }
-};
-
-/// A value that an effect proposes for the machine file.
-struct key_value {
-    std::string key;            ///< the machine file's
-    std::vector<double> values; ///< one, or one a harmonic
 };
 
 /// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp; a user's own needs neither

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../bad_input.hpp"
+#include "../blind_spots.hpp"
+#include "../block_places.hpp"
+#include "../calibrated.hpp"
+#include "../causes.hpp"
+#include "../diagnose.hpp"
+#include "../effect_names.hpp"
+#include "../how_far.hpp"
+#include "../neighbour.hpp"
+#include "../next_experiment.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
+    if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
+        const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
+        // Suspects for what calibration leaves are no finding where that is immaterial.
+        const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
+                                               c.models.immaterial(c.path.front()));
+        if (!silent)
+            return std::all_of(causes.begin(), causes.end(), claimed) ? verdict::explained
+                                                                      : verdict::partly_explained;
+        const auto& given = c.models.given();
+        const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
+                              c.models.structure(given, c.noise) < c.limits.structure;
+        return as_given ? verdict::no_gap : verdict::within_tolerance;
+    }
+    const bool helps =
+        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.shrink.value > 0.2; });
+    return helps ? verdict::partly_explained : verdict::unexplained;
+}
+
+/// What is left when every cause is added: how large, and in which regimes.
+inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_result& result,
+                          const std::vector<cause>& causes) {
+    const double floor = square(c.floor_force());
+    double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
+    double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
+    if (c.count_unnamed)
+        before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
+    std::string text = "axis " + c.axis.name + ": ";
+    if (c.controller_differs()) {
+        before += square(rms(c.command_difference(c.log, *c.axis.controller)));
+        after += square(rms(c.command_difference(c.log, c.mended())));
+        if (c.controller_open())
+            text += std::string("the controller that ran is not the one described") +
+                    (c.controller_unnamed ? ", which the machine file excludes; "
+                                          : " and no single key of it mends the replay; ");
+    }
+    if (c.count_unnamed)
+        text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
+                       c.axis.encoder.resolution_m);
+    if (c.at_floor()) {
+        text += worded("%.3g N rms behind the command, the noise floor", result.gap_after.force_rms_N);
+    } else {
+        text += worded("%.3g N rms behind the command (floor %.3g N)", result.gap_after.force_rms_N,
+                       c.floor_force());
+        auto views = regimes(c.models.held_out_residual(c.best()), c.record);
+        std::erase_if(views, [](const place& v) { // an even spread over time says nothing
+            return v.view == "time" && v.share.value > 0.35 && v.share.value < 0.65;
+        });
+        std::stable_sort(views.begin(), views.end(),
+                         [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
+        for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
+            text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
+        const auto with_form =
+            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+        for (std::size_t i = 0; i < with_form.size(); ++i)
+            if (const double share = c.takes_off(with_form[i], c.best());
+                share > 0.5 && c.models.pays(with_form[i], c.best()))
+                text += worded("; a force that follows %s and is in no list takes %.0f %% off",
+                               std::string(unlisted::curves[i]->name).c_str(), 100 * share);
+        for (const cause& x : causes)
+            if (!x.better_form.empty())
+                text += worded("; a force that follows %s and is in no list predicts better than %s",
+                               x.better_form.c_str(), x.effect.c_str());
+    }
+    out.share_unexplained =
+        std::max(out.share_unexplained, before > 0 ? std::clamp(after / before, 0.0, 1.0) : 0);
+    out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text_of(text, c.axis.kind);
+}
+
+/// Keys and sentences as the axis' own kind has them.
+inline void put_in_words(axis_kind kind, std::vector<parameter_estimate>& parameters) {
+    for (auto& p : parameters) p.key = key_of(p.key, kind);
+}
+inline void put_in_words(axis_kind kind, std::vector<place>& places) {
+    for (place& p : places) p.finding = text_of(p.finding, kind);
+}
+inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
+    for (cause& x : causes) {
+        put_in_words(kind, x.parameters);
+        for (reading& r : x.readings) put_in_words(kind, r.parameters);
+        x.exciting_motion = text_of(x.exciting_motion, kind);
+    }
+}
+
+inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
+    axis_result result;
+    result.name = c.axis.name;
+    result.kind = c.axis.kind;
+    result.command_unit = c.axis.command_unit;
+    std::vector<std::vector<rival>> rivals;
+    auto causes = plant_causes(c, &rivals);
+    if (auto of_controller = controller_cause(c)) { // the first explains most
+        const double command = rms(c.command_difference(c.log, *c.axis.controller));
+        const bool first = command > rms(c.models.residual(c.models.given()));
+        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
+    }
+    if (auto of_count = count_cause(c)) {
+        const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
+        causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
+    }
+    how_far(c).measure(result, causes);
+    result.calibrated = calibrated(c, causes);
+    result.verdict = judge(c, causes);
+    result.where = block_places(c);
+    const auto views = regimes(c.models.residual(c.models.given()), c.record);
+    result.where.insert(result.where.end(), views.begin(), views.end());
+    for (cause& x : causes)
+        if (x.effect != "controller_mismatch") mark_bounds(c.best(), x.parameters);
+    mark_bounds(c.best(), result.calibrated);
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, causes);
+    out.verdict = std::max(out.verdict, result.verdict);
+    if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
+        out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+        describe_rest(out, c, result, causes);
+        const bool proposed = !out.next.motion.empty();
+        propose(out, c, causes, rivals);
+        if (!proposed) {
+            out.next.motion = text_of(out.next.motion, c.axis.kind);
+            out.next.finding = text_of(out.next.finding, c.axis.kind);
+        }
+    }
+    const auto unseen = unseen_by(result, causes);
+    out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
+    out.axes.push_back(std::move(result));
+}
+
+/// Effects of the caller's own have names of their own.
+inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
+    const auto& own = axis.own_effects;
+    for (auto e = own.begin(); e != own.end(); ++e) {
+        const auto refuse = [&](const std::string& why) {
+            throw std::invalid_argument(fmt::format("own_effects of axis {}: {}", axis.name, why));
+        };
+        if (!e->force || !e->searched) refuse("one is null");
+        const auto same = [&](const auto& other) { return other.name == e->force->name; };
+        if (std::any_of(effect_names.begin(), effect_names.end(), same))
+            refuse(fmt::format("{} is a name of the list", e->force->name));
+        if (std::any_of(own.begin(), e, [&](const own_suspect& before) { return same(*before.force); }))
+            refuse(fmt::format("{} is there twice", e->force->name));
+        if (std::find(names.begin(), names.end(), e->force->name) == names.end())
+            names.emplace_back(e->force->name);
+    }
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine, const machine_log& log,
+                                                  const machine_log* holdout, const progress& tell,
+                                                  const rules& r) {
+    constexpr double shortest_s = 2; // less holds too few motions to leave some out
+    for (const machine_log* l : {&log, holdout})
+        if (l && static_cast<double>(l->samples) * machine.sample_period_s < shortest_s)
+            throw bad_input(
+                l->file, detail::worded("%zu samples are %.3g s: a diagnosis needs at least %.0f s", l->samples,
+                                        static_cast<double>(l->samples) * machine.sample_period_s, shortest_s));
+    diagnosis_result out;
+    out.machine_file = machine.file;
+    out.log_file = log.file;
+    if (holdout) out.holdout_file = holdout->file;
+    out.notes = machine.notes;
+    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+    if (holdout) out.notes.insert(out.notes.end(), holdout->notes.begin(), holdout->notes.end());
+    for (const axis_description& axis : machine.axes) {
+        const axis_log* logged = detail::named(log.axes, axis.name);
+        if (!logged || logged->still) continue;
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s);
+        std::optional<axis_log> other;
+        if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
+            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s);
+        detail::add_own_effects(out.own_effects, axis);
+        if (axis.controller && axis.controller->own) // its file's kind is known after all
+            std::erase_if(out.notes, [&](const std::string& note) {
+                return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
+            });
+        tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+        detail::diagnose_axis(out, axis_case(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
+                                             machine.excluded_effects, r, tell));
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis
