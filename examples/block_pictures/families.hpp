@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "draw.hpp"
+
+namespace block_pictures {
+family filters();
+family signals(); ///< one wire in, one out, without dynamics of its own: limits, delays, supervision
+family memories();
+family frictions();
+family feedforwards();
+family plants();
+} // namespace block_pictures
