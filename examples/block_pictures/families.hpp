@@ -7,6 +7,10 @@ family filters();
 family signals(); ///< one wire in, one out, without dynamics of its own: limits, delays, supervision
 family memories();
 family frictions();
+family laws();
 family feedforwards();
 family plants();
+family observers();
+family loops();
+family published_machines();
 } // namespace block_pictures

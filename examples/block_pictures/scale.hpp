@@ -12,7 +12,7 @@ struct point {
     double x, y;
 };
 
-/// The points of a curve that the eye needs: no dropped one is further than a tenth of a pixel from what is drawn.
+/// The points of a curve that the eye needs: no dropped one is further than a fifth of a pixel from what is drawn.
 inline std::vector<point> simplified(const std::vector<point>& all) {
     std::vector<bool> keep(all.size(), false);
     std::vector<std::pair<std::size_t, std::size_t>> open;
@@ -25,7 +25,7 @@ inline std::vector<point> simplified(const std::vector<point>& all) {
         open.pop_back();
         const point a = all[from], b = all[to];
         const double length = std::hypot(b.x - a.x, b.y - a.y);
-        double most = 0.1;
+        double most = 0.2;
         std::size_t furthest = from;
         for (std::size_t i = from + 1; i < to; ++i) {
             const double along = length == 0
@@ -87,7 +87,7 @@ private:
         double step = std::pow(10, std::floor(std::log10((high_ - low_) / wanted)));
         for (const double factor : {2.0, 2.5, 2.0}) // 1, 2, 5, 10
             if ((high_ - low_) / step > wanted) step *= factor;
-        if (degrees_) step = high_ - low_ > 400 ? 180 : high_ - low_ > 150 ? 90 : 45;
+        if (degrees_) step = high_ - low_ > 400 ? 180 : high_ - low_ > 210 ? 90 : 45;
         std::vector<tick> all;
         for (double i = std::ceil(low_ / step - 1e-9); i * step <= high_ + 1e-9 * step; ++i)
             all.push_back({(*this)(i * step), fmt::format("{:.6g}", i == 0 ? 0.0 : i * step)});

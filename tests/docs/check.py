@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """What the pages promise stands: links and anchors lead somewhere, C++ in the tutorials, how-to pages and explanations is
-text of a file that is compiled, commands have the options that they are shown with, and docs/README.md leads to every page.
+text of a file that is compiled, commands have the options that they are shown with, docs/README.md leads to every page, and the
+page of every block has its picture.
 
     python3 tests/docs/check.py [root of the repository]
 """
@@ -9,6 +10,7 @@ import re
 import sys
 from functools import lru_cache
 from pathlib import Path
+from xml.etree import ElementTree
 
 root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2]).resolve()
 pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
@@ -175,10 +177,60 @@ def check_index():
             fault(index, 1, f"does not lead to {page.relative_to(root / 'docs')}")
 
 
+# --- 5. The page of every block has its picture, and the picture a curve (tests/docs/pictures.sh: it is what the block gives). ---
+blocks = root / "docs" / "blocks"
+pictures = blocks / "pictures"
+most_bytes = 40_000
+
+
+def longest_curve(drawing):
+    """Of the curves in a picture the most points that one has, and how far it reaches on the way [pixels]."""
+    best = (0, 0.0)
+    for path in drawing.iter("{http://www.w3.org/2000/svg}path"):
+        numbers = [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", path.get("d"))]
+        if path.get("fill") == "none" and path.get("stroke-width") and len(numbers) >= 4:
+            across, along = numbers[0::2], numbers[1::2]
+            best = max(best, (len(across), max(across) - min(across) + max(along) - min(along)))
+    return best
+
+
+def check_picture(page):
+    path, text = pictures / f"{page.stem}.svg", page.read_text()
+    shown = re.findall(r"^!\[([^\]]+)\]\(pictures/([\w-]+)\.svg\)\n\n(.+)$", text, re.M)
+    if [name for _, name, _ in shown] != [page.stem]:
+        return fault(page, 1, f"needs one picture, ![what one sees](pictures/{page.stem}.svg), and below it what to look at")
+    line = line_of(text, text.index("(pictures/"))
+    if not path.is_file():
+        return  # a link that leads nowhere, said already
+    try:
+        drawing = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        return fault(page, line, f"{path.name} is no XML: {error}")
+    if path.stat().st_size > most_bytes:
+        fault(page, line, f"{path.name} has {path.stat().st_size} bytes, more than {most_bytes}")
+    if drawing.get("aria-label") != shown[0][0]:
+        fault(page, line, f"{path.name} calls itself '{drawing.get('aria-label')}'")
+    points, reach = longest_curve(drawing)
+    if points < 2 or reach < 20:
+        fault(page, line, f"{path.name} has no curve")
+
+
+def check_pictures():
+    drawn = {n for s in (root / "examples/block_pictures").glob("*.cpp") for n in re.findall(r'\{"(\w+)", draw_', s.read_text())}
+    of_pages = {page.stem for page in blocks.glob("*.md")}
+    for name in sorted({path.stem for path in pictures.glob("*")} - of_pages):
+        fault(pictures / f"{name}.svg", 1, "is the picture of no block")
+    for name in sorted(drawn ^ of_pages):
+        fault(blocks / f"{name}.md", 1, "is a page, or a picture of examples/block_pictures, without the other")
+    for page in sorted(blocks.glob("*.md")):
+        check_picture(page)
+
+
 for each in pages:
     check_links(each)
     check_snippets(each)
     check_commands(each)
 check_index()
-print("\n".join(faults) if faults else f"{len(pages)} pages: links, snippets, options and index stand")
+check_pictures()
+print("\n".join(faults) if faults else f"{len(pages)} pages: links, snippets, options, index and pictures stand")
 sys.exit(bool(faults))
