@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""What the pages promise stands: links and anchors lead somewhere, C++ in the tutorials, how-to pages and explanations is
-text of a file that is compiled, commands have the options that they are shown with, docs/README.md leads to every page, and the
+"""What the pages promise stands: links and anchors lead somewhere, C++ is text of a file that is
+compiled, or compiled by snippets.py, commands have the options that they are shown with, docs/README.md leads to every page, and the
 page of every block has its picture.
 
     python3 tests/docs/check.py [root of the repository]
@@ -78,6 +78,8 @@ def check_links(page):
 # --- 2. Code that is shown is code that is compiled. ---
 compiled = re.compile(r"(examples|include)/\S+\.(cpp|hpp|c|h)")
 marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
+given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
+languages = {"", "cpp", "sh", "json"}
 
 
 def lines_of(text):
@@ -85,15 +87,22 @@ def lines_of(text):
 
 
 def check_snippets(page):
-    if not re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix()):
-        return
-    text, marked = page.read_text(), 0
+    """C++ is text of a file (<!-- from FILE -->) or compiled by snippets.py, with what stands in <!-- given ... --> above it."""
+    tells_how = re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix())
+    text, marked, completed = page.read_text(), 0, 0
     for match in fence.finditer(text):
-        if match.group(2) not in ("cpp", "c++", "c", "cc"):
+        line, language = line_of(text, match.start()), match.group(2)
+        if language not in languages:
+            fault(page, line, f"```{language} is none of {', '.join(sorted(languages - {''}))}")
+        if language == "" and re.search(r";[ \t]*(//.*)?$", match.group(3), re.M):
+            fault(page, line, "this looks like C++: ```cpp, or write it as an equation")
+        if language != "cpp":
             continue
-        line, from_file = line_of(text, match.start()), marker.search(text, 0, match.start())
+        from_file = marker.search(text, 0, match.start())
         if not from_file:
-            fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
+            completed += bool(given.search(text, 0, match.start()))
+            if tells_how:
+                fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
             continue
         marked += 1
         source = root / from_file.group(1)
@@ -103,8 +112,9 @@ def check_snippets(page):
         shown, there = lines_of(match.group(3)), lines_of(source.read_text())
         if not any(shown) or not any(there[k : k + len(shown)] == shown for k in range(len(there))):
             fault(page, line, f"this block does not stand like that in {from_file.group(1)}")
-    if text.count("<!-- from ") != marked:
-        fault(page, 1, f"{text.count('<!-- from ')} marks, {marked} blocks of code right below one")
+    for mark, used in (("from ", marked), ("given", completed)):
+        if text.count(f"<!-- {mark}") != used:
+            fault(page, 1, f"{text.count(f'<!-- {mark}')} marks <!-- {mark.strip()}, {used} blocks of C++ right below one")
 
 
 # --- 3. Commands have the options that they are shown with. ---
