@@ -78,4 +78,8 @@ inline curve asked(const run& r) {
     return c;
 }
 
+inline axis_motion<> step_50(double t) { return at_rest(t < 0.02 ? 0 : 50e-6); }
+inline axis_motion<> move_20(double t) { return smooth_move(t - 0.02, 0.02, 0.3); }
+inline const run step_and_push{0.4, step_50, 500, 0.2}, move_and_push{0.5, move_20, 500, 0.4};
+
 } // namespace block_pictures
