@@ -13,7 +13,6 @@
 
 namespace block_pictures {
 namespace {
-constexpr double pi = std::numbers::pi;
 const auto& G = trial_model;
 const duration T = trial_period;
 
