@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""What the pages promise stands: links and anchors lead somewhere, C++ in the tutorials, how-to pages and explanations is
-text of a file that is compiled, commands have the options that they are shown with, and docs/README.md leads to every page.
+"""What the pages promise stands: links and anchors lead somewhere, C++ is text of a file that is
+compiled, or compiled by snippets.py, commands have the options that they are shown with, docs/README.md leads to every page, and the
+page of every block has its picture.
 
     python3 tests/docs/check.py [root of the repository]
 """
@@ -9,6 +10,7 @@ import re
 import sys
 from functools import lru_cache
 from pathlib import Path
+from xml.etree import ElementTree
 
 root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[2]).resolve()
 pages = [root / "README.md", *sorted((root / "docs").rglob("*.md"))]
@@ -76,6 +78,8 @@ def check_links(page):
 # --- 2. Code that is shown is code that is compiled. ---
 compiled = re.compile(r"(examples|include)/\S+\.(cpp|hpp|c|h)")
 marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
+given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
+languages = {"", "cpp", "sh", "json"}
 
 
 def lines_of(text):
@@ -83,15 +87,22 @@ def lines_of(text):
 
 
 def check_snippets(page):
-    if not re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix()):
-        return
-    text, marked = page.read_text(), 0
+    """C++ is text of a file (<!-- from FILE -->) or compiled by snippets.py, with what stands in <!-- given ... --> above it."""
+    tells_how = re.match(r"docs/(tutorial|howto/|explanation/)", page.relative_to(root).as_posix())
+    text, marked, completed = page.read_text(), 0, 0
     for match in fence.finditer(text):
-        if match.group(2) not in ("cpp", "c++", "c", "cc"):
+        line, language = line_of(text, match.start()), match.group(2)
+        if language not in languages:
+            fault(page, line, f"```{language} is none of {', '.join(sorted(languages - {''}))}")
+        if language == "" and re.search(r";[ \t]*(//.*)?$", match.group(3), re.M):
+            fault(page, line, "this looks like C++: ```cpp, or write it as an equation")
+        if language != "cpp":
             continue
-        line, from_file = line_of(text, match.start()), marker.search(text, 0, match.start())
+        from_file = marker.search(text, 0, match.start())
         if not from_file:
-            fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
+            completed += bool(given.search(text, 0, match.start()))
+            if tells_how:
+                fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
             continue
         marked += 1
         source = root / from_file.group(1)
@@ -101,8 +112,9 @@ def check_snippets(page):
         shown, there = lines_of(match.group(3)), lines_of(source.read_text())
         if not any(shown) or not any(there[k : k + len(shown)] == shown for k in range(len(there))):
             fault(page, line, f"this block does not stand like that in {from_file.group(1)}")
-    if text.count("<!-- from ") != marked:
-        fault(page, 1, f"{text.count('<!-- from ')} marks, {marked} blocks of code right below one")
+    for mark, used in (("from ", marked), ("given", completed)):
+        if text.count(f"<!-- {mark}") != used:
+            fault(page, 1, f"{text.count(f'<!-- {mark}')} marks <!-- {mark.strip()}, {used} blocks of C++ right below one")
 
 
 # --- 3. Commands have the options that they are shown with. ---
@@ -175,10 +187,60 @@ def check_index():
             fault(index, 1, f"does not lead to {page.relative_to(root / 'docs')}")
 
 
+# --- 5. The page of every block has its picture, and the picture a curve (tests/docs/pictures.sh: it is what the block gives). ---
+blocks = root / "docs" / "blocks"
+pictures = blocks / "pictures"
+most_bytes = 40_000
+
+
+def longest_curve(drawing):
+    """Of the curves in a picture the most points that one has, and how far it reaches on the way [pixels]."""
+    best = (0, 0.0)
+    for path in drawing.iter("{http://www.w3.org/2000/svg}path"):
+        numbers = [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", path.get("d"))]
+        if path.get("fill") == "none" and path.get("stroke-width") and len(numbers) >= 4:
+            across, along = numbers[0::2], numbers[1::2]
+            best = max(best, (len(across), max(across) - min(across) + max(along) - min(along)))
+    return best
+
+
+def check_picture(page):
+    path, text = pictures / f"{page.stem}.svg", page.read_text()
+    shown = re.findall(r"^!\[([^\]]+)\]\(pictures/([\w-]+)\.svg\)\n\n(.+)$", text, re.M)
+    if [name for _, name, _ in shown] != [page.stem]:
+        return fault(page, 1, f"needs one picture, ![what one sees](pictures/{page.stem}.svg), and below it what to look at")
+    line = line_of(text, text.index("(pictures/"))
+    if not path.is_file():
+        return  # a link that leads nowhere, said already
+    try:
+        drawing = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        return fault(page, line, f"{path.name} is no XML: {error}")
+    if path.stat().st_size > most_bytes:
+        fault(page, line, f"{path.name} has {path.stat().st_size} bytes, more than {most_bytes}")
+    if drawing.get("aria-label") != shown[0][0]:
+        fault(page, line, f"{path.name} calls itself '{drawing.get('aria-label')}'")
+    points, reach = longest_curve(drawing)
+    if points < 2 or reach < 20:
+        fault(page, line, f"{path.name} has no curve")
+
+
+def check_pictures():
+    drawn = {n for s in (root / "examples/block_pictures").glob("*.cpp") for n in re.findall(r'\{"(\w+)", draw_', s.read_text())}
+    of_pages = {page.stem for page in blocks.glob("*.md")}
+    for name in sorted({path.stem for path in pictures.glob("*")} - of_pages):
+        fault(pictures / f"{name}.svg", 1, "is the picture of no block")
+    for name in sorted(drawn ^ of_pages):
+        fault(blocks / f"{name}.md", 1, "is a page, or a picture of examples/block_pictures, without the other")
+    for page in sorted(blocks.glob("*.md")):
+        check_picture(page)
+
+
 for each in pages:
     check_links(each)
     check_snippets(each)
     check_commands(each)
 check_index()
-print("\n".join(faults) if faults else f"{len(pages)} pages: links, snippets, options and index stand")
+check_pictures()
+print("\n".join(faults) if faults else f"{len(pages)} pages: links, snippets, options, index and pictures stand")
 sys.exit(bool(faults))
