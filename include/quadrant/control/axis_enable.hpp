@@ -114,7 +114,8 @@ private:
         using enum power_state;
         if (r.trip)
             state_.power = tripped;
-        else if (state_.power == tripped && !r.enable)
+        else if ((state_.power == tripped && !r.enable) ||
+                 (state_.power == stopping && state_.speed == velocity() && state_.brake-- == 0))
             state_.power = off;
         else if (state_.power == off && r.enable && !state_.enable && !r.emergency_stop && good)
             state_.power = on;
@@ -126,8 +127,7 @@ private:
                                            : v; // the stream may have jumped
             state_.brake = brake_;
             state_.emergency = false;
-        } else if (state_.power == stopping && state_.speed == velocity() && state_.brake-- == 0)
-            state_.power = off;
+        }
         if (r.emergency_stop) state_.emergency = true;
         if (good || !r.enable) state_.enable = r.enable;
     }
