@@ -43,10 +43,11 @@ template <class Outcome, class Argument> class friction_memory {
     using state = decltype(Outcome::next);
 
 public:
-    value step(Argument v, const Outcome& to) noexcept {
-        if (!finite(v, to.force)) return out_.hold();
-        state_ = to.next;
-        return out_.keep(to.force);
+    value step(Argument v, const Outcome& to) noexcept { return step(v, to.force, to.next); }
+    value step(Argument v, value force, const state& next) noexcept {
+        if (!finite(v, force)) return out_.hold();
+        state_ = next;
+        return out_.keep(force);
     }
     void settle(Argument v, value force, const state& at) noexcept {
         if (!finite(v, force)) return out_.raise();
