@@ -254,7 +254,7 @@ private:
             box.disturbance.applied(wire.compensated + (wire.command - wire.wanted));
         return wire.command;
     }
-    [[gnu::always_inline]] inline void look(const motion& reference, position measured) noexcept {
+    [[gnu::always_inline, gnu::flatten]] inline void look(const motion& reference, position measured) noexcept {
         wire.reference = reference.position;
         wire.measured = measured;
         wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
@@ -275,7 +275,7 @@ private:
         wire.limited = detail::settled(box.amplifier, wire.wanted);
         wire.command = detail::settled(box.dac, wire.limited);
     }
-    command estimate(position measured, command wanted) noexcept {
+    [[gnu::always_inline, gnu::flatten]] inline command estimate(position measured, command wanted) noexcept {
         if constexpr (requires { box.disturbance(measured, wanted); })
             return box.disturbance(measured, wanted);
         else

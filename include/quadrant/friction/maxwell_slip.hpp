@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 namespace quadrant {
 
@@ -71,12 +70,17 @@ public:
     value operator()(argument v) noexcept {
         const passage way(curve_, v, attraction_step_);
         value y = curve_.viscous() * v;
-        state next;
+        std::array<value, N> forces;
+        std::array<bool, N> slips;
         for (std::size_t i = 0; i < N; ++i) {
-            next.elements[i] = moved(i, way, stiffness_step_[i], [](auto&&...) {});
-            y += next.elements[i].force;
+            const element next = moved(i, way, stiffness_step_[i], [](auto&&...) {});
+            forces[i] = next.force;
+            slips[i] = next.slips;
+            y += next.force;
         }
-        return memory_.step(v, y, next);
+        return memory_.step(v, y, [&](state& memory) {
+            for (std::size_t i = 0; i < N; ++i) memory.elements[i] = {forces[i], slips[i]};
+        });
     }
     void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
@@ -123,13 +127,14 @@ private:
 
     /// What a step means for all elements.
     struct passage {
-        bool forward, moves;
+        Real sign; ///< of the velocity; one at rest
+        bool moves;
         argument speed;
         value level;
         Real relaxes, kept; ///< kept: what is left of the distance to its share of one that slips
 
         [[gnu::always_inline]] passage(const stribeck<In, Out, Real>& curve, argument v, value attraction_step) noexcept
-            : forward(v >= argument()), moves(v != argument()), speed(forward ? v : -v), level(curve.slip(v)),
+            : sign(v >= argument() ? 1 : -1), moves(v != argument()), speed(sign * v), level(curve.slip(v)),
               relaxes(attraction_step / level), kept(fallen(relaxes)) {}
         static Real fallen(const Real& by) noexcept {
             using std::exp;
@@ -139,7 +144,7 @@ private:
     /// Element i after it; tell(sticks, is relaxing towards its share, from how far).
     element moved(std::size_t i, const passage& way, slope stiff, auto&& tell) const noexcept {
         const element& now = memory_.now().elements[i];
-        const value along = way.forward ? now.force : -now.force; // positive: bent the way the axis goes
+        const value along = way.sign * now.force; // positive: bent the way the axis goes
         const value share = weights_[i] * way.level;
         element next;
         if (way.moves && now.slips && along > value()) { // slips on
@@ -154,7 +159,7 @@ private:
             next = {share + off * way.kept, true};
             tell(false, off > value(), off);
         }
-        if (!way.forward) next.force = -next.force;
+        next.force *= way.sign;
         return next;
     }
     static std::array<Real, N> normalised(const parameters& p) {

@@ -43,10 +43,12 @@ template <class Outcome, class Argument> class friction_memory {
     using state = decltype(Outcome::next);
 
 public:
-    value step(Argument v, const Outcome& to) noexcept { return step(v, to.force, to.next); }
-    value step(Argument v, value force, const state& next) noexcept {
+    value step(Argument v, const Outcome& to) noexcept {
+        return step(v, to.force, [&](state& memory) { memory = to.next; });
+    }
+    value step(Argument v, value force, auto&& move) noexcept {
         if (!finite(v, force)) return out_.hold();
-        state_ = next;
+        move(state_);
         return out_.keep(force);
     }
     void settle(Argument v, value force, const state& at) noexcept {

@@ -173,7 +173,7 @@ public:
         for (std::size_t i = 0; i < Order; ++i)
             for (std::size_t j = 0; j < 4; ++j)
                 memory += detail::plain(reader_.weight[i][j]) *
-                          std::polar(1.0, angle * double(reader_.first[i] + j + 1 + given_.ahead));
+                          std::polar(1.0, angle * double(reader_.oldest[i] + j - 3 + given_.ahead));
         for (std::size_t i = 0; i < SmoothingTaps; ++i)
             q += detail::plain(smoothing_[i]) * std::polar(1.0, angle * double(i));
         for (std::size_t i = 0; i < LearningTaps; ++i)
@@ -196,7 +196,7 @@ private:
 
     /// Which samples of p make r, and how much of each.
     struct memory_reader {
-        std::array<std::size_t, Order> first{}; ///< age of the youngest of the four, the newest p being 0
+        std::array<std::size_t, Order> oldest{}; ///< of the four: how far before the coming p
         std::array<std::array<Real, 4>, Order> weight{};
     };
     memory_reader reader(number periods) const noexcept {
@@ -208,7 +208,7 @@ private:
             const number delay = number(double(i + 1)) * periods;
             const double whole = std::floor(detail::plain(delay));
             const auto cubic = detail::cubic_weights(number(delay - number(whole)));
-            out.first[i] = std::size_t(whole) - given_.ahead - half - 2;
+            out.oldest[i] = std::size_t(whole) - given_.ahead - half + 2;
             for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(given_.weights[i] * cubic[j]);
         }
         return out;
@@ -216,7 +216,7 @@ private:
     value read(const memory_reader& from) const noexcept {
         value all{};
         for (std::size_t i = 0; i < Order; ++i) {
-            const std::size_t by = from.first[i] + 4, next = state_.next_p;
+            const std::size_t by = from.oldest[i], next = state_.next_p;
             const value* oldest = &state_.p[next >= by ? next - by : next + size_p - by];
             for (std::size_t j = 0; j < 4; ++j) all += from.weight[i][j] * oldest[3 - j];
         }
