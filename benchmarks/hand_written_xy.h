@@ -49,7 +49,8 @@ template <int LearningTaps, int SmoothingTaps> struct xy_axis {
     double coulomb, excess, stribeck_velocity, viscous, attraction_step, share[xy_springs],
         stiffness_step[xy_springs];
     double from_z0, from_z1, from_u0, from_u1, from_u2, feedback1, feedback2, solved;
-    double weight[2][4], learning[xy_window(LearningTaps)], smoothing[xy_window(SmoothingTaps)]; /* newest last */
+    double weight[2][4], learning[xy_window(LearningTaps)],
+        smoothing[xy_window(SmoothingTaps)]; /* newest last */
     size_t oldest[2], ahead;
     /* state */
     struct xy_estimator reference_velocity, measured_velocity;

@@ -133,7 +133,8 @@ private:
         value level;
         Real relaxes, kept; ///< kept: what is left of the distance to its share of one that slips
 
-        [[gnu::always_inline]] passage(const stribeck<In, Out, Real>& curve, argument v, value attraction_step) noexcept
+        [[gnu::always_inline]] passage(const stribeck<In, Out, Real>& curve, argument v,
+                                       value attraction_step) noexcept
             : sign(v >= argument() ? 1 : -1), moves(v != argument()), speed(sign * v), level(curve.slip(v)),
               relaxes(attraction_step / level), kept(fallen(relaxes)) {}
         static Real fallen(const Real& by) noexcept {

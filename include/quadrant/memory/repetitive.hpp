@@ -64,10 +64,11 @@ public:
     };
     struct state {
         detail::fir_window<value, detail::fir_taps<Real, SmoothingTaps>::size> m{}; ///< e + r
-        detail::fir_window<value, detail::fir_taps<Real, LearningTaps>::size> r{};  ///< r, `ahead` samples early
-        std::array<value, Order * Capacity + 5> p{}; ///< ring of Q (e + r), `half` samples late; its first three again at the end
-        std::size_t next_p = 0;                      ///< where the coming p goes
-        std::size_t fading = 0;                      ///< steps left of a change of cycle
+        detail::fir_window<value, detail::fir_taps<Real, LearningTaps>::size> r{}; ///< r, `ahead` samples early
+        std::array<value, Order * Capacity + 5>
+            p{};                ///< ring of Q (e + r), `half` samples late; its first three again at the end
+        std::size_t next_p = 0; ///< where the coming p goes
+        std::size_t fading = 0; ///< steps left of a change of cycle
     };
 
     repetitive(const parameters& p, duration period) : given_(p), period_(period) {
