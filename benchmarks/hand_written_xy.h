@@ -105,11 +105,18 @@ static inline double xy_notched(struct xy_notch* n, double b0, double b1, double
 }
 
 template <int Taps> inline double xy_fir(const double* c, const double* x) {
-    enum { n = xy_sums(Taps) };
-    double s[n] = {};
-    for (int i = 0; i < xy_window(Taps); i += n)
-        for (int j = 0; j < n; ++j) s[j] += c[i + j] * x[i + j];
-    return n == 1 ? s[0] : (s[0] + s[2 % n]) + (s[1 % n] + s[3 % n]);
+    double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    if (xy_sums(Taps) == 1) {
+        for (int i = 0; i < Taps; ++i) s0 += c[i] * x[i];
+        return s0;
+    }
+    for (int i = 0; i < xy_window(Taps); i += 4) {
+        s0 += c[i] * x[i];
+        s1 += c[i + 1] * x[i + 1];
+        s2 += c[i + 2] * x[i + 2];
+        s3 += c[i + 3] * x[i + 3];
+    }
+    return (s0 + s2) + (s1 + s3);
 }
 
 template <int LearningTaps, int SmoothingTaps>

@@ -34,13 +34,20 @@ public:
     constexpr const Real& operator[](std::size_t tap) const noexcept { return c_[size - 1 - tap]; }
 
     template <class Value> constexpr Value operator()(const Value* oldest) const noexcept {
-        std::array<Value, sums> s{};
-        for (std::size_t i = 0; i < size; i += sums)
-            for (std::size_t j = 0; j < sums; ++j) s[j] += c_[i + j] * oldest[i + j];
-        if constexpr (sums == 1)
-            return s[0];
-        else
-            return (s[0] + s[2]) + (s[1] + s[3]);
+        Value s0{};
+        if constexpr (sums == 1) {
+            for (std::size_t i = 0; i < size; ++i) s0 += c_[i] * oldest[i];
+            return s0;
+        } else { // four lines, not an inner loop: without SIMD (Cortex-M) that would stay a loop
+            Value s1{}, s2{}, s3{};
+            for (std::size_t i = 0; i < size; i += 4) {
+                s0 += c_[i] * oldest[i];
+                s1 += c_[i + 1] * oldest[i + 1];
+                s2 += c_[i + 2] * oldest[i + 2];
+                s3 += c_[i + 3] * oldest[i + 3];
+            }
+            return (s0 + s2) + (s1 + s3);
+        }
     }
     Real sum() const noexcept {
         Real all(0);
