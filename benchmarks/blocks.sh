@@ -23,8 +23,8 @@ per_sample() { # PROGRAM WHICH
     many=$(instructions "$1" "$2" 5000)
     awk "BEGIN { printf \"%.1f\", ($many - $few) / 4000 }"
 }
-shortest() { # PROGRAM: name and nanoseconds a sample, the shortest of five
-    "$1" --benchmark_min_time=0.02 --benchmark_repetitions=5 --benchmark_format=csv 2>/dev/null |
+shortest() { # PROGRAM: name and nanoseconds a sample, the shortest of 40: short ones, which other programs leave alone
+    "$1" --benchmark_min_time=0.005 --benchmark_repetitions=40 --benchmark_format=csv 2>/dev/null |
         awk -F'"' '/^"/ { t = $NF; sub(/.*,/, "", t); t *= 1e9
             if (!($2 in best)) order[++n] = $2
             if (!($2 in best) || t < best[$2]) best[$2] = t }
@@ -55,13 +55,14 @@ both_axes() {
 }
 rows >"$here/rows.txt"
 both_axes >"$here/xy_rows.txt"
+busy=$(cut -d' ' -f1 /proc/loadavg)
 (cd "$here" && examples/quadrant-latency >latency.txt) || true # 1: did not fit; the text says so
 
 cat <<EOF
 # Benchmarks
 
 Instructions per sample, counted by callgrind (repeatable, independent of the machine's load), $(g++ -dumpfullversion | sed 's/^/g++ /'), -O3; nanoseconds
-per sample on one core of $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), cache warm, the shortest of five runs.
+per sample on one core of $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), cache warm, the shortest of 40 runs.
 Written by \`sh benchmarks/blocks.sh >docs/benchmarks.md\`; the parameters are those of \`tests/conformance/blocks.hpp\`.
 Input is noise of the amplitude that the list gives. The call and the summing loop are included: \`through\` shows what
 passing a number costs. Library functions (\`sin\`, \`exp\`) are counted as what they execute.
@@ -112,7 +113,8 @@ $(cat "$here/xy_rows.txt")
 
 ## How the times are distributed
 
-What \`quadrant-latency\` says on this machine, which is a virtual one that others use as well:
+What \`quadrant-latency\` says on this machine, which is a virtual one of $(nproc) cores that others use as well (programs that wanted to
+run in the minute before: $busy):
 
 \`\`\`
 $(grep -v '^Page: ' "$here/latency.txt")
