@@ -125,7 +125,7 @@ public:
 private:
     using slope = gain_of<Out, In, Real>;
 
-    /// What a step means for all elements.
+    /// What a step means for all elements. Inlined by name: clang++ would call it with every quantity in memory.
     struct passage {
         Real sign; ///< of the velocity; one at rest
         bool moves;

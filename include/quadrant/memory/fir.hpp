@@ -28,9 +28,8 @@ public:
     static constexpr std::size_t sums = Taps < 4 ? 1 : 4;
     static constexpr std::size_t size = (Taps + sums - 1) / sums * sums; ///< of the window
 
-    constexpr Real& operator[](std::size_t tap) noexcept {
-        return c_[size - 1 - tap];
-    } ///< [0] is of the newest
+    /// [0] is of the newest.
+    constexpr Real& operator[](std::size_t tap) noexcept { return c_[size - 1 - tap]; }
     constexpr const Real& operator[](std::size_t tap) const noexcept { return c_[size - 1 - tap]; }
 
     template <class Value> constexpr Value operator()(const Value* oldest) const noexcept {
