@@ -28,7 +28,7 @@ private:
 int main(int argc, char** argv) {
     if (argc == 2 && std::string(argv[1]) == "list") {
         all(counter(-1, 0));
-        return same_notch() ? 0 : 1;
+        return same_notch() && same_sums() ? 0 : 1;
     }
     if (argc == 3) return all(counter(std::atoi(argv[1]), std::strtoul(argv[2], nullptr, 10))), 0;
     std::fprintf(stderr, "usage: blocks_count list, or blocks_count I N\n");

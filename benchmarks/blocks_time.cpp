@@ -6,7 +6,7 @@
 #include <string>
 
 int main(int argc, char** argv) {
-    if (!counted::same_notch()) return 1;
+    if (!counted::same_notch() || !counted::same_sums()) return 1;
     counted::all([](const char* name, double amplitude, auto make) {
         benchmark::RegisterBenchmark((std::string("blocks/") + name).c_str(), [amplitude,
                                                                                make](benchmark::State& state) {

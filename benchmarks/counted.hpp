@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "conformance/blocks.hpp"
+#include "sums.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -120,6 +121,29 @@ template <std::size_t Horizon> auto predicting() {
                 T)](double x) mutable { return block(x * 1_m).value(); };
 }
 
+/// Ways to sum a filter of 90 taps, then ways to have two axes: count(group, name, what makes the step), a group is one filter.
+template <class Count> void each_sum(Count&& count) {
+    using sums::over_a_window;
+    using four = over_a_window<sums::as_in_repetitive, sums::as_in_repetitive::size>;
+    using eight = over_a_window<sums::in_sums<8>, sums::in_sums<8>::size>;
+    using notches = sums::sections_beside_each_other<biquad_by_hand>;
+    const auto taps = sums::repetitive_taps();
+    count(0, "~ 90 taps, one sum around a ring", [] { return sums::around_a_ring(); });
+    count(0, "~ 90 taps, one sum", [] { return over_a_window<sums::in_sums<1>>(); });
+    count(0, "~ 90 taps, four sums (repetitive)", [=] { return four{taps}; });
+    count(0, "~ 90 taps, eight sums", [] { return eight(); });
+    count(0, "~ 90 taps, half the multiplications", [] { return over_a_window<sums::by_halves>(); });
+    count(0, "~ 90 taps, Eigen's dot", [] { return over_a_window<sums::by_eigen>(); });
+    count(1, "~ two axes, 90 taps, four sums each", [=] {
+        return sums::after_each_other<four>{{taps}, {taps}};
+    });
+    count(1, "~ two axes in lanes, 90 taps", [] { return sums::taps_beside_each_other(); });
+    count(2, "~ two axes, notch by hand", [] {
+        return sums::after_each_other<biquad_by_hand>{by_hand(), by_hand()};
+    });
+    count(2, "~ two axes in lanes, notch by hand", [] { return notches(by_hand()); });
+}
+
 /// count(name, amplitude of the input, what makes the step), always in the same order.
 template <class Count> void all(Count&& count) {
     for_each_block([&](const auto& e) {
@@ -140,8 +164,24 @@ template <class Count> void all(Count&& count) {
     count("= milling_axis, friction, observer, memory", 1e-5, one<friction_law, observer, memory>);
     count("= two axes of milling_axis", 1e-5, two<>);
     count("= two axes of milling_axis, friction, observer, memory", 1e-5, two<friction_law, observer, memory>);
+    each_sum([&](int, const char* name, auto make) { count(name, 1, make); });
 }
 
+/// The sums of a group are one filter, to rounding: looked at before anything is counted.
+inline bool same_sums() {
+    bool same = true;
+    std::vector<double> first;
+    int of = -1;
+    each_sum([&](int group, const char*, auto make) {
+        auto step = make();
+        std::vector<double> y;
+        for (const double x : input(1)) y.push_back(step(x));
+        if (group != of) first = y;
+        of = group;
+        for (std::size_t k = 0; k < y.size(); ++k) same = same && std::abs(y[k] - first[k]) < 1e-12;
+    });
+    return same;
+}
 /// The three notches are one filter: looked at before anything is counted.
 inline bool same_notch() {
     auto typed = notch<s::force>({330_Hz, 0.1}, T);

@@ -14,6 +14,10 @@
 
 enum { xy_springs = 4, xy_capacity = 100, xy_ring = 2 * xy_capacity + 2 };
 
+/* A window of inputs and how many sums make one, as in detail::fir_taps: four, the taps padded to a multiple of it. */
+constexpr int xy_sums(int taps) { return taps < 4 ? 1 : 4; }
+constexpr int xy_window(int taps) { return (taps + xy_sums(taps) - 1) / xy_sums(taps) * xy_sums(taps); }
+
 template <int LearningTaps, int SmoothingTaps> struct xy_parameters {
     double period, position_gain, velocity_gain, velocity_integral, estimator_corner;
     double notch_centre, notch_damping, plant_gain, plant_pole, limit, dac_step;
@@ -45,14 +49,15 @@ template <int LearningTaps, int SmoothingTaps> struct xy_axis {
     double coulomb, excess, stribeck_velocity, viscous, attraction_step, share[xy_springs],
         stiffness_step[xy_springs];
     double from_z0, from_z1, from_u0, from_u1, from_u2, feedback1, feedback2, solved;
-    double weight[2][4], learning[LearningTaps], smoothing[SmoothingTaps];
-    size_t first[2], ahead;
+    double weight[2][4], learning[xy_window(LearningTaps)],
+        smoothing[xy_window(SmoothingTaps)]; /* newest last */
+    size_t oldest[2], ahead;
     /* state */
     struct xy_estimator reference_velocity, measured_velocity;
     struct xy_notch reference_notch, measured_notch;
     double integral, travel_x, force[xy_springs], d0, d1, d_measured, d_command;
     bool slips[xy_springs], stepped;
-    double m[SmoothingTaps], p[xy_ring], r[LearningTaps];
+    double m[2 * xy_window(SmoothingTaps)], p[xy_ring + 3], r[2 * xy_window(LearningTaps)]; /* without a wrap */
     size_t next_m, next_p, next_r;
     /* last outputs, flags */
     struct xy_held memory, position_loop, velocity_loop, inertia, drag, disturbance, travel, friction,
@@ -77,7 +82,6 @@ static inline double xy_kept(struct xy_held* out, double y) {
     out->last = y;
     return y;
 }
-static inline size_t xy_back(size_t at, size_t by, size_t size) { return at >= by ? at - by : at + size - by; }
 static inline size_t xy_forward(size_t at, size_t size) { return at + 1 == size ? 0 : at + 1; }
 
 static inline double xy_estimate(struct xy_estimator* e, double keep, double take, double y) {
@@ -100,34 +104,41 @@ static inline double xy_notched(struct xy_notch* n, double b0, double b1, double
     return y;
 }
 
-/* Sum of c[j] x[newest - j] around the ring. */
-static inline double xy_fir(const double* c, const double* x, size_t taps, size_t newest) {
-    double y = 0;
-    for (size_t j = 0; j <= newest; ++j) y += c[j] * x[newest - j];
-    for (size_t j = newest + 1; j < taps; ++j) y += c[j] * x[newest + taps - j];
-    return y;
+template <int Taps> inline double xy_fir(const double* c, const double* x) {
+    double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    if (xy_sums(Taps) == 1) {
+        for (int i = 0; i < Taps; ++i) s0 += c[i] * x[i];
+        return s0;
+    }
+    for (int i = 0; i < xy_window(Taps); i += 4) {
+        s0 += c[i] * x[i];
+        s1 += c[i + 1] * x[i + 1];
+        s2 += c[i + 2] * x[i + 2];
+        s3 += c[i + 3] * x[i + 3];
+    }
+    return (s0 + s2) + (s1 + s3);
 }
 
 template <int LearningTaps, int SmoothingTaps>
 inline double xy_remember(struct xy_axis<LearningTaps, SmoothingTaps>* a, double e) {
+    enum { size_m = xy_window(SmoothingTaps), size_r = xy_window(LearningTaps) };
     double early = 0;
     for (int i = 0; i < 2; ++i) {
-        size_t at = xy_back(a->next_p, a->first[i] + 1, xy_ring);
-        for (int j = 0; j < 4; ++j) {
-            early += a->weight[i][j] * a->p[at];
-            at = xy_back(at, 1, xy_ring);
-        }
+        const size_t by = a->oldest[i];
+        const double* at = &a->p[a->next_p >= by ? a->next_p - by : a->next_p + xy_ring - by];
+        for (int j = 0; j < 4; ++j) early += a->weight[i][j] * at[3 - j];
     }
-    a->r[a->next_r] = early;
-    const double m = e + a->r[xy_back(a->next_r, a->ahead, LearningTaps)];
-    a->m[a->next_m] = m;
-    const double p = xy_fir(a->smoothing, a->m, SmoothingTaps, a->next_m);
-    const double y = xy_fir(a->learning, a->r, LearningTaps, a->next_r);
+    a->r[a->next_r] = a->r[a->next_r + size_r] = early;
+    const double m = e + a->r[a->next_r + size_r - a->ahead];
+    a->m[a->next_m] = a->m[a->next_m + size_m] = m;
+    const double p = xy_fir<SmoothingTaps>(a->smoothing, &a->m[a->next_m + 1]);
+    const double y = xy_fir<LearningTaps>(a->learning, &a->r[a->next_r + 1]);
     if (!xy_finite(early + (m + (p + y)))) return xy_hold(&a->memory);
     a->p[a->next_p] = p;
-    a->next_m = xy_forward(a->next_m, SmoothingTaps);
+    if (a->next_p < 3) a->p[a->next_p + xy_ring] = p;
+    a->next_m = xy_forward(a->next_m, size_m);
     a->next_p = xy_forward(a->next_p, xy_ring);
-    a->next_r = xy_forward(a->next_r, LearningTaps);
+    a->next_r = xy_forward(a->next_r, size_r);
     a->memory.last = y;
     return y;
 }
@@ -321,13 +332,13 @@ inline void xy_design(const struct xy_parameters<LearningTaps, SmoothingTaps>* p
         a->solved = 1 / (1 - a->from_u0);
     }
 
-    memcpy(a->learning, p->learning, sizeof a->learning);
-    memcpy(a->smoothing, p->smoothing, sizeof a->smoothing);
+    for (int i = 0; i < LearningTaps; ++i) a->learning[xy_window(LearningTaps) - 1 - i] = p->learning[i];
+    for (int i = 0; i < SmoothingTaps; ++i) a->smoothing[xy_window(SmoothingTaps) - 1 - i] = p->smoothing[i];
     a->ahead = (size_t)p->ahead;
     for (int i = 0; i < 2; ++i) {
         const double delay = (i + 1) * (p->cycle / h), whole = floor(delay), u = delay - whole;
         const double left = 1 + u, right = 1 - u, far = 2 - u, half = 1.0 / 2, sixth = 1.0 / 6;
-        a->first[i] = (size_t)whole - a->ahead - SmoothingTaps / 2 - 2;
+        a->oldest[i] = (size_t)whole - a->ahead - SmoothingTaps / 2 + 2;
         a->weight[i][0] = p->weights[i] * -(u * right * far * sixth);
         a->weight[i][1] = p->weights[i] * (left * right * far * half);
         a->weight[i][2] = p->weights[i] * (left * u * far * half);

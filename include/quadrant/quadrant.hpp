@@ -73,6 +73,7 @@
 #include "make.hpp"
 #include "memory/cubic_weights.hpp"
 #include "memory/delay_line.hpp"
+#include "memory/fir.hpp"
 #include "memory/fractional_delay.hpp"
 #include "memory/repetitive.hpp"
 #include "observer/dare.hpp"

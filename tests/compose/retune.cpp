@@ -333,9 +333,9 @@ TEST_CASE("retune: a memory keeps what it has learnt under other filters and wei
         const double weights =
             std::abs(other.given().weights[0] - twin.given().weights[0]) * 2; // both move alike
         said(is - was,
-             sum_of(taps) * peak(twin.now().r) +
+             sum_of(taps) * peak(twin.now().r.x) +
                  1.25 * std::abs(other.given().learning[0]) * weights * peak(twin.now().p),
-             1e-12 * (peak(twin.now().r) + peak(twin.now().p)));
+             1e-12 * (peak(twin.now().r.x) + peak(twin.now().p)));
     }
     CHECK(said.broken == 0);
     CHECK(said.most > 0.9);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <vector>
 
 using namespace quadrant;
@@ -31,7 +32,77 @@ template <class Block> double left(Block& memory, double cycle, int cycles) {
     }
     return most * 1e6;
 }
+/// The sum over a window against the exact one, in units of the bound that detail::fir_taps states, and of the plain sum's.
+template <class Real, std::size_t Taps> void sums_within_bound(std::mt19937& random) {
+    std::uniform_real_distribution<double> any(-1, 1);
+    detail::fir_taps<Real, Taps> taps;
+    detail::fir_window<Real, detail::fir_taps<Real, Taps>::size> window;
+    for (std::size_t i = 0; i < Taps; ++i) taps[i] = Real(any(random) * std::exp2(20 * any(random)));
+    std::vector<Real> past(Taps);
+    for (int k = 0; k < 1000; ++k) {
+        window.put(std::numeric_limits<Real>::quiet_NaN()); // put again: forgotten
+        past.insert(past.begin(), Real(any(random) * std::exp2(20 * any(random))));
+        window.put(past[0]);
+        long double exact = 0, size = 0;
+        for (std::size_t i = 0; i < Taps; ++i) {
+            REQUIRE(window.ago(i) == past[i]);
+            exact += (long double)taps[i] * (long double)past[i];
+            size += std::abs((long double)taps[i] * (long double)past[i]);
+        }
+        const double roundings = Taps < 4 ? double(Taps) : double(taps.size) / 4 + 2;
+        const double bound = roundings * double(std::numeric_limits<Real>::epsilon()) / 2 * double(size);
+        CHECK(std::abs(double((long double)taps(window.oldest()) - exact)) <= bound * (1 + 1e-6));
+        window.advance();
+    }
+}
 } // namespace
+
+TEST_CASE("repetitive: the sums over its windows keep their bound, at random, wherever the ring stands") {
+    std::mt19937 random(7);
+    sums_within_bound<double, 1>(random);
+    sums_within_bound<double, 3>(random);
+    sums_within_bound<double, 4>(random);
+    sums_within_bound<double, 61>(random);
+    sums_within_bound<double, 90>(random);
+    sums_within_bound<float, 5>(random);
+    sums_within_bound<float, 90>(random);
+}
+TEST_CASE("repetitive: with 90 and 61 taps it is its equation, written down without a ring, to 1e-12 of the "
+          "largest output") {
+    using large = repetitive<signal::position, 100, 2>;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> any(-1, 1);
+    large::parameters p{.cycle = 77.3_ms, .weights = {1.2, -0.4}, .ahead = 31};
+    for (double& tap : p.learning) tap = any(random) / 20;
+    for (std::size_t i = 0; i < 61; ++i) p.smoothing[i] = i > 30 ? p.smoothing[60 - i] : any(random) / 20;
+    large memory{p, 1_ms};
+    std::vector<long double> m, q, r; // e + r, Q (e + r) half a Q late, r from 31 samples ahead
+    const auto at = [](const std::vector<long double>& x, std::size_t late) {
+        return late < x.size() ? x[x.size() - 1 - late] : 0;
+    };
+    long double worst = 0, most = 0;
+    for (int k = 0; k < 2000; ++k) {
+        const double e = any(random);
+        long double early = 0, learnt = 0, smooth = 0;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const long double delay = (i + 1) * 77.3L, u = delay - std::floor(delay);
+            const auto newest =
+                std::size_t(std::floor(delay)) - 31 - 30 - 2; // of the four; q ends a sample ago
+            const long double cubic[] = {-u * (1 - u) * (2 - u) / 6, (1 + u) * (1 - u) * (2 - u) / 2,
+                                         (1 + u) * u * (2 - u) / 2, -(1 + u) * u * (1 - u) / 6};
+            for (std::size_t j = 0; j < 4; ++j) early += p.weights[i] * cubic[j] * at(q, newest + j);
+        }
+        r.push_back(early);
+        m.push_back(e + at(r, 31));
+        for (std::size_t i = 0; i < 61; ++i) smooth += p.smoothing[i] * at(m, i);
+        for (std::size_t i = 0; i < 90; ++i) learnt += p.learning[i] * at(r, i);
+        q.push_back(smooth);
+        most = std::max(most, std::abs(learnt));
+        worst = std::max(worst, std::abs(learnt - (long double)memory(e * 1_m).value()));
+    }
+    CHECK(most > 0.1);
+    CHECK(double(worst / most) < 1e-12);
+}
 
 TEST_CASE("repetitive: order 1 gives the error back one cycle later, and keeps adding") {
     plain m{{.cycle = 10_ms}, 1_ms};

@@ -107,8 +107,9 @@ inline experiment cutting() {
         "is 1 % short. Rms over three turns after the first, of the axes, not of their encoders. Radius and "
         "feed are our reading: with 25 mm at 5 mm/s, the circle of the real cut, (i) to (iii) do not reproduce "
         "the reference computation. There the memory repeats, a cycle later and twice as large, what friction "
-        "does at each reversal; weights [1] leave less than half of it. Plant sub-steps of 50 us; with 10 us "
-        "(i) and (ii) are the same to 0.1 %, (iii) to 6 %.",
+        "does at each reversal; weights [1] leave about half of it. Plant sub-steps of 50 us; with 10 us "
+        "(i) and (ii) are the same to 0.1 %, (iii) to 6 %. In (iii) last places count: three orders of summing "
+        "the filters of the memory give 0.24 to 0.25 um at the exact cycle, 1.6 to 2.1 um on the slow circle.",
         0.10,
         {{"thesis.cutting.i",
           [] {

@@ -110,35 +110,10 @@ template <milling_boxes Boxes> struct milling_axis {
     bool tracking = false; ///< the last sample was a `track`: nothing is learnt
 
     command operator()(const motion& reference, position measured) noexcept {
-        return (*this)(reference, reference, measured);
+        return step(reference, reference, measured);
     }
     command operator()(const motion& reference, const motion& ahead, position measured) noexcept {
-        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured)) {
-            fault = true;
-            return wire.command;
-        }
-        look(reference, measured);
-        wire.learned = box.memory(wire.position_error);
-        tracking = false;
-        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
-        wire.velocity_error = wire.demand - wire.measured_velocity;
-        wire.feedback = box.velocity_loop(wire.velocity_error);
-        wire.inertia = box.inertia(ahead.acceleration);
-        wire.drag = box.drag(ahead.velocity);
-        wire.linear = wire.feedback + wire.inertia + wire.drag;
-        wire.disturbance = estimate(measured, wire.linear);
-        wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
-        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
-        wire.friction = box.friction(wire.travel);
-        wire.wanted = wire.compensated + wire.friction;
-        wire.limited = box.amplifier(wire.wanted);
-        wire.command = box.dac(wire.limited);
-        // What was cut off is charged to the PI and to the observer, whoever asked for too much.
-        if constexpr (requires { box.velocity_loop.applied(wire.feedback); })
-            box.velocity_loop.applied(wire.feedback + (wire.limited - wire.wanted));
-        if constexpr (requires { box.disturbance.applied(wire.compensated); })
-            box.disturbance.applied(wire.compensated + (wire.command - wire.wanted));
-        return wire.command;
+        return step(reference, ahead, measured);
     }
 
     void settle(position x, command hold = command()) noexcept {
@@ -251,7 +226,37 @@ template <milling_boxes Boxes> struct milling_axis {
     static constexpr auto taps() { return wires::taps(); }
 
 private:
-    [[gnu::always_inline]] inline void look(const motion& reference, position measured) noexcept {
+    /// One function with all boxes in it, whatever the compiler would have left as calls.
+    [[gnu::always_inline, gnu::flatten]] inline command step(const motion& reference, const motion& ahead,
+                                                             position measured) noexcept {
+        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured)) {
+            fault = true;
+            return wire.command;
+        }
+        look(reference, measured);
+        wire.learned = box.memory(wire.position_error);
+        tracking = false;
+        wire.demand = box.position_loop(wire.position_error + wire.learned) + wire.reference_velocity;
+        wire.velocity_error = wire.demand - wire.measured_velocity;
+        wire.feedback = box.velocity_loop(wire.velocity_error);
+        wire.inertia = box.inertia(ahead.acceleration);
+        wire.drag = box.drag(ahead.velocity);
+        wire.linear = wire.feedback + wire.inertia + wire.drag;
+        wire.disturbance = estimate(measured, wire.linear);
+        wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
+        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
+        wire.friction = box.friction(wire.travel);
+        wire.wanted = wire.compensated + wire.friction;
+        wire.limited = box.amplifier(wire.wanted);
+        wire.command = box.dac(wire.limited);
+        // What was cut off is charged to the PI and to the observer, whoever asked for too much.
+        if constexpr (requires { box.velocity_loop.applied(wire.feedback); })
+            box.velocity_loop.applied(wire.feedback + (wire.limited - wire.wanted));
+        if constexpr (requires { box.disturbance.applied(wire.compensated); })
+            box.disturbance.applied(wire.compensated + (wire.command - wire.wanted));
+        return wire.command;
+    }
+    [[gnu::always_inline, gnu::flatten]] inline void look(const motion& reference, position measured) noexcept {
         wire.reference = reference.position;
         wire.measured = measured;
         wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
@@ -272,7 +277,7 @@ private:
         wire.limited = detail::settled(box.amplifier, wire.wanted);
         wire.command = detail::settled(box.dac, wire.limited);
     }
-    command estimate(position measured, command wanted) noexcept {
+    [[gnu::always_inline, gnu::flatten]] inline command estimate(position measured, command wanted) noexcept {
         if constexpr (requires { box.disturbance(measured, wanted); })
             return box.disturbance(measured, wanted);
         else

@@ -86,7 +86,7 @@ public:
         state_.integral = integral;
         if constexpr (std::same_as<AntiWindup, back_calculation>)
             state_.excess = u - clamped(u);
-        else
+        else if constexpr (std::same_as<AntiWindup, conditional_integration>)
             state_.excess = value();
         return out_.keep(u);
     }

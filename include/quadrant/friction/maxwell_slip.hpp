@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 namespace quadrant {
 
@@ -61,17 +60,34 @@ public:
     using outcome = friction_outcome<In, Out, state, Real>;
 
     maxwell_slip(const parameters& p, duration period)
-        : given_(p), curve_(p.curve, period), weights_(normalised(p)), attraction_(in_real<Real>(p.attraction)),
-          period_(time::from_value(Real(period.value()))) {
+        : given_(p), curve_(p.curve, period), weights_(normalised(p)),
+          attraction_(in_real<Real>(p.attraction)) {
+        const time h = time::from_value(Real(period.value()));
         require_positive("maxwell_slip.curve.coulomb", p.curve.coulomb);
         for (std::size_t i = 0; i < N; ++i) {
             require_positive("maxwell_slip.stiffness", p.stiffness[i]);
             stiffness_[i] = in_real<Real>(p.stiffness[i]);
+            stiffness_step_[i] = stiffness_[i] * h;
         }
         require_positive("maxwell_slip.attraction", p.attraction);
+        attraction_step_ = attraction_ * h;
     }
 
-    value operator()(argument v) noexcept { return memory_.step(v, moved<false>(v, period_)); }
+    value operator()(argument v) noexcept {
+        const passage way(curve_, v, attraction_step_);
+        value y = curve_.viscous() * v;
+        std::array<value, N> forces;
+        std::array<bool, N> slips;
+        for (std::size_t i = 0; i < N; ++i) {
+            const element next = moved(i, way, stiffness_step_[i], [](auto&&...) {});
+            forces[i] = next.force;
+            slips[i] = next.slips;
+            y += next.force;
+        }
+        return memory_.step(v, y, [&](state& memory) {
+            for (std::size_t i = 0; i < N; ++i) memory.elements[i] = {forces[i], slips[i]};
+        });
+    }
     void reset() noexcept { memory_.reset(); }
     void settle(argument v) noexcept {
         state to;
@@ -85,7 +101,25 @@ public:
     }
 
     /// The force after moving at v for h; changes nothing.
-    outcome after(argument v, time h) const noexcept { return moved<true>(v, h); }
+    outcome after(argument v, time h) const noexcept {
+        const passage way(curve_, v, attraction_ * h);
+        const slope fall = detail::slip_slope(curve_, v, way.level); // of the level by the speed, <= 0
+        outcome to{.force = curve_.viscous() * v, .slope = curve_.viscous(), .next = {}};
+        for (std::size_t i = 0; i < N; ++i) {
+            const slope stiff = stiffness_[i] * h;
+            to.next.elements[i] = moved(i, way, stiff, [&](bool sticks, bool holds_more, value off) {
+                if (sticks)
+                    to.slope += stiff;
+                else if (holds_more)
+                    to.slope += fall * (weights_[i] * (Real(1) - way.kept) +
+                                        Real(off / way.level) * way.kept * way.relaxes);
+                else
+                    to.slope += fall * weights_[i];
+            });
+            to.force += to.next.elements[i].force;
+        }
+        return to;
+    }
     void become(const state& next) noexcept { memory_.become(next); }
     void retune(const maxwell_slip& next) noexcept {
         if (next.period_ != period_) return memory_.raise();
@@ -102,43 +136,45 @@ public:
     const state& now() const noexcept { return memory_.now(); }
 
 private:
-    /// The slope only for those who ask: the step of a feedforward does not.
-    template <bool Slope> outcome moved(argument v, time h) const noexcept {
-        using std::exp;
-        const bool forward = v >= argument(), moves = v != argument();
-        const argument speed = forward ? v : -v;
-        const value level = curve_.slip(v);
-        gain_of<Out, In, Real> fall{}; // of the level by the speed, <= 0
-        if constexpr (Slope) fall = detail::slip_slope(curve_, v, level);
-        const Real relaxes(attraction_ * h / level), kept = exp(-relaxes);
-        outcome to{.force = curve_.viscous() * v, .slope = curve_.viscous(), .next = {}};
-        for (std::size_t i = 0; i < N; ++i) {
-            const element& now = memory_.now().elements[i];
-            const value along = forward ? now.force : -now.force; // positive: bent the way the axis goes
-            const value share = weights_[i] * level;
-            const gain_of<Out, In, Real> stiff = stiffness_[i] * h;
-            element& next = to.next.elements[i];
-            if (moves && now.slips && along > value()) { // slips on
-                const value off = along - share;
-                next = {share + off * kept, true};
-                if constexpr (Slope)
-                    to.slope += fall * (weights_[i] * (Real(1) - kept) + Real(off / level) * kept * relaxes);
-            } else if (const value reached = along + stiff * speed; !moves || reached < share) { // sticks
-                next = {reached, false};
-                if constexpr (Slope) to.slope += stiff;
-            } else { // breaks away, with what it holds where the level has fallen below that
-                const value off = along > share ? value(along - share) : value();
-                next = {share + off * kept, true};
-                if constexpr (Slope)
-                    to.slope += off > value()
-                                    ? gain_of<Out, In, Real>(fall * (weights_[i] * (Real(1) - kept) +
-                                                                     Real(off / level) * kept * relaxes))
-                                    : gain_of<Out, In, Real>(fall * weights_[i]);
-            }
-            if (!forward) next.force = -next.force;
-            to.force += next.force;
+    using slope = gain_of<Out, In, Real>;
+
+    /// What a step means for all elements. Inlined by name: clang++ would call it with every quantity in memory.
+    struct passage {
+        Real sign; ///< of the velocity; one at rest
+        bool moves;
+        argument speed;
+        value level;
+        Real relaxes, kept; ///< kept: what is left of the distance to its share of one that slips
+
+        [[gnu::always_inline]] passage(const stribeck<In, Out, Real>& curve, argument v,
+                                       value attraction_step) noexcept
+            : sign(v >= argument() ? 1 : -1), moves(v != argument()), speed(sign * v), level(curve.slip(v)),
+              relaxes(attraction_step / level), kept(fallen(relaxes)) {}
+        static Real fallen(const Real& by) noexcept {
+            using std::exp;
+            return exp(-by);
         }
-        return to;
+    };
+    /// Element i after it; tell(sticks, is relaxing towards its share, from how far).
+    element moved(std::size_t i, const passage& way, slope stiff, auto&& tell) const noexcept {
+        const element& now = memory_.now().elements[i];
+        const value along = way.sign * now.force; // positive: bent the way the axis goes
+        const value share = weights_[i] * way.level;
+        element next;
+        if (way.moves && now.slips && along > value()) { // slips on
+            const value off = along - share;
+            next = {share + off * way.kept, true};
+            tell(false, true, off);
+        } else if (const value reached = along + stiff * way.speed; !way.moves || reached < share) { // sticks
+            next = {reached, false};
+            tell(true, false, value());
+        } else { // breaks away, with what it holds where the level has fallen below that
+            const value off = along > share ? value(along - share) : value();
+            next = {share + off * way.kept, true};
+            tell(false, off > value(), off);
+        }
+        next.force *= way.sign;
+        return next;
     }
     /// What an element holds beyond its share of the breakaway level goes to the others, as far as they can hold it; an element
     /// whose force changes sticks.
@@ -192,8 +228,9 @@ private:
     stribeck<In, Out, Real> curve_;
     std::array<Real, N> weights_;
     quantity<unit_quotient<typename Out::unit, si::time>, Real> attraction_;
-    time period_;
+    value attraction_step_{};
     std::array<gain_rate_of<Out, In, Real>, N> stiffness_{};
+    std::array<slope, N> stiffness_step_{};
     detail::friction_memory<outcome, argument> memory_;
 };
 

@@ -48,9 +48,12 @@ template <class Outcome, class Argument> class friction_memory {
 
 public:
     value step(Argument v, const Outcome& to) noexcept {
-        if (!finite(v, to.force)) return out_.hold();
-        state_ = to.next;
-        return out_.keep(to.force);
+        return step(v, to.force, [&](state& memory) { memory = to.next; });
+    }
+    value step(Argument v, value force, auto&& move) noexcept {
+        if (!finite(v, force)) return out_.hold();
+        move(state_);
+        return out_.keep(force);
     }
     void settle(Argument v, value force, const state& at) noexcept {
         if (!finite(v, force)) return out_.raise();

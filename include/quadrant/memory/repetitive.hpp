@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "cubic_weights.hpp"
+#include "fir.hpp"
 
 #include <array>
 #include <cmath>
@@ -32,7 +33,8 @@ namespace quadrant {
 /// limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity: analysis/repetitive_design.hpp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "repetitive.<field> = ...: must ..." for period, cycle, fade, weights, learning, ahead, smoothing.
-/// Cost: LearningTaps + SmoothingTaps + 4 Order multiplications (8 Order in a fade), 8 (Order Capacity + both taps) bytes.
+/// Cost: LearningTaps + SmoothingTaps + 4 Order multiplications (8 Order in a fade), 8 (Order Capacity + 2 both taps) bytes.
+/// Q and L are summed in four parts (SIMD where there is one): detail::fir_taps says how far that is from the exact sum.
 /// A delay alone: `delay_line`.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order = 1, std::size_t LearningTaps = 90,
           std::size_t SmoothingTaps = 61, class Real = double>
@@ -63,11 +65,12 @@ public:
     };
     /// The cycles that were learnt, and the samples that are inside the filters.
     struct state {
-        std::array<value, SmoothingTaps> m{};           ///< ring of e + r
-        std::array<value, Order * Capacity + 3> p{};    ///< ring of Q (e + r), `half` samples late
-        std::array<value, LearningTaps> r{};            ///< ring of r, `ahead` samples early
-        std::size_t next_m = 0, next_p = 0, next_r = 0; ///< where the coming one goes
-        std::size_t fading = 0;                         ///< steps left of a change of cycle
+        detail::fir_window<value, detail::fir_taps<Real, SmoothingTaps>::size> m{}; ///< e + r
+        detail::fir_window<value, detail::fir_taps<Real, LearningTaps>::size> r{}; ///< r, `ahead` samples early
+        std::array<value, Order * Capacity + 5>
+            p{};                ///< ring of Q (e + r), `half` samples late; its first three again at the end
+        std::size_t next_p = 0; ///< where the coming p goes
+        std::size_t fading = 0; ///< steps left of a change of cycle
     };
 
     repetitive(const parameters& p, duration period) : given_(p), period_(period) {
@@ -104,16 +107,17 @@ public:
         value early = read(reader_);
         if (state_.fading > 0)
             early += Real(double(state_.fading) / double(fade_)) * (read(old_reader_) - early);
-        const std::size_t now_m = state_.next_m, now_p = state_.next_p, now_r = state_.next_r;
-        state_.r[now_r] = early;
-        const value m = e + state_.r[back(now_r, given_.ahead, LearningTaps)];
-        state_.m[now_m] = m; // in the place of one that nobody reads any more: written again after a bad sample
-        const value p = through(smoothing_, state_.m, now_m), y = through(learning_, state_.r, now_r);
+        state_.r.put(early);
+        const value m = e + state_.r.ago(given_.ahead);
+        state_.m.put(m);
+        const value p = smoothing_(state_.m.oldest()), y = learning_(state_.r.oldest());
         if (!finite(early, m, p, y)) return out_.hold();
-        state_.p[now_p] = p;
-        state_.next_m = forward(now_m, SmoothingTaps);
-        state_.next_p = forward(now_p, size_p);
-        state_.next_r = forward(now_r, LearningTaps);
+        const std::size_t now = state_.next_p;
+        state_.p[now] = p;
+        if (now < 3) state_.p[now + size_p] = p;
+        state_.next_p = now + 1 == size_p ? 0 : now + 1;
+        state_.m.advance();
+        state_.r.advance();
         if (state_.fading > 0 && --state_.fading == 0 && pending_) start(wanted_);
         return out_.keep(y);
     }
@@ -126,12 +130,12 @@ public:
     }
     void settle(argument x) noexcept {
         if (integrates()) return settle(x, out_.last());
-        const Real g = sum(smoothing_) * sum(weights_);
+        const Real g = smoothing_.sum() * sum(weights_);
         const value r = g / (1 - g) * x;
-        fill(x + r, r, sum(learning_) * r);
+        fill(x + r, r, learning_.sum() * r);
     }
     void settle(argument x, value y) noexcept {
-        const Real gain = sum(learning_), g = sum(smoothing_) * sum(weights_);
+        const Real gain = learning_.sum(), g = smoothing_.sum() * sum(weights_);
         if (!finite(x, y)) return out_.raise();
         if (gain == Real(0) || g == Real(0)) return integrates() ? fill({}, {}, {}) : settle(x);
         const value r = y / gain;
@@ -172,7 +176,7 @@ public:
         for (std::size_t i = 0; i < Order; ++i)
             for (std::size_t j = 0; j < 4; ++j)
                 memory += detail::plain(reader_.weight[i][j]) *
-                          std::polar(1.0, angle * double(reader_.first[i] + j + 1 + given_.ahead));
+                          std::polar(1.0, angle * double(reader_.oldest[i] + j - 3 + given_.ahead));
         for (std::size_t i = 0; i < SmoothingTaps; ++i)
             q += detail::plain(smoothing_[i]) * std::polar(1.0, angle * double(i));
         for (std::size_t i = 0; i < LearningTaps; ++i)
@@ -180,7 +184,7 @@ public:
         return l * memory * q / (1.0 - memory * q);
     }
     bool integrates() const noexcept { ///< has a pole at z = 1
-        return std::abs(detail::plain(sum(smoothing_)) * detail::plain(sum(weights_)) - 1) <=
+        return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <=
                16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
     }
     bool fading() const noexcept { return state_.fading > 0; }
@@ -195,7 +199,7 @@ private:
 
     /// Which samples of p make r, and how much of each.
     struct memory_reader {
-        std::array<std::size_t, Order> first{}; ///< age of the youngest of the four, the newest p being 0
+        std::array<std::size_t, Order> oldest{}; ///< of the four: how far before the coming p
         std::array<std::array<Real, 4>, Order> weight{};
     };
     memory_reader reader(number periods) const noexcept {
@@ -207,21 +211,19 @@ private:
             const number delay = number(double(i + 1)) * periods;
             const double whole = std::floor(detail::plain(delay));
             const auto cubic = detail::cubic_weights(number(delay - number(whole)));
-            out.first[i] = std::size_t(whole) - given_.ahead - half - 2;
+            out.oldest[i] = std::size_t(whole) - given_.ahead - half + 2;
             for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(given_.weights[i] * cubic[j]);
         }
         return out;
     }
     value read(const memory_reader& from) const noexcept {
-        value sum{};
+        value all{};
         for (std::size_t i = 0; i < Order; ++i) {
-            std::size_t at = back(state_.next_p, from.first[i] + 1, size_p);
-            for (std::size_t j = 0; j < 4; ++j) {
-                sum += from.weight[i][j] * state_.p[at];
-                at = back(at, 1, size_p);
-            }
+            const std::size_t by = from.oldest[i], next = state_.next_p;
+            const value* oldest = &state_.p[next >= by ? next - by : next + size_p - by];
+            for (std::size_t j = 0; j < 4; ++j) all += from.weight[i][j] * oldest[3 - j];
         }
-        return sum;
+        return all;
     }
     void start(number periods) noexcept {
         pending_ = false;
@@ -234,31 +236,16 @@ private:
         fade_ = state_.fading = std::size_t(std::ceil(steps));
     }
     void fill(value m, value r, value y) noexcept {
-        const value p = sum(smoothing_) * m;
+        const value p = smoothing_.sum() * m;
         if (!finite(m, p, r, y)) return out_.raise();
-        state_.m.fill(m), state_.p.fill(p), state_.r.fill(r);
+        state_.m.x.fill(m), state_.p.fill(p), state_.r.x.fill(r);
         state_.fading = 0;
         if (pending_) start(wanted_);
         state_.fading = 0; // nothing to fade: both cycles read the same
         out_.reset(y);
     }
 
-    static constexpr std::size_t back(std::size_t at, std::size_t by, std::size_t size) noexcept {
-        return at >= by ? at - by : at + size - by;
-    }
-    static constexpr std::size_t forward(std::size_t at, std::size_t size) noexcept {
-        return at + 1 == size ? 0 : at + 1;
-    }
-    /// Sum of c[j] x[newest - j] around the ring.
-    template <std::size_t Taps>
-    static value through(const std::array<Real, Taps>& c, const std::array<value, Taps>& x,
-                         std::size_t newest) noexcept {
-        value y{};
-        for (std::size_t j = 0; j <= newest; ++j) y += c[j] * x[newest - j];
-        for (std::size_t j = newest + 1; j < Taps; ++j) y += c[j] * x[newest + Taps - j];
-        return y;
-    }
-    template <std::size_t Taps> static Real sum(const std::array<Real, Taps>& c) noexcept {
+    static Real sum(const std::array<Real, Order>& c) noexcept {
         Real all(0);
         for (const Real& each : c) all += each;
         return all;
@@ -267,8 +254,8 @@ private:
     parameters given_;
     duration period_;
     std::array<Real, Order> weights_{};
-    std::array<Real, LearningTaps> learning_{};
-    std::array<Real, SmoothingTaps> smoothing_{};
+    detail::fir_taps<Real, LearningTaps> learning_{};
+    detail::fir_taps<Real, SmoothingTaps> smoothing_{};
     number periods_{0}, wanted_{0};
     memory_reader reader_, old_reader_;
     std::size_t fade_ = 1;
