@@ -60,17 +60,16 @@ public:
     using outcome = friction_outcome<In, Out, state, Real>;
 
     maxwell_slip(const parameters& p, duration period)
-        : given_(p), curve_(p.curve, period), weights_(normalised(p)),
-          attraction_(in_real<Real>(p.attraction)) {
-        const time h = time::from_value(Real(period.value()));
+        : given_(p), curve_(p.curve, period), weights_(normalised(p)), attraction_(in_real<Real>(p.attraction)),
+          period_(time::from_value(Real(period.value()))) {
         require_positive("maxwell_slip.curve.coulomb", p.curve.coulomb);
         for (std::size_t i = 0; i < N; ++i) {
             require_positive("maxwell_slip.stiffness", p.stiffness[i]);
             stiffness_[i] = in_real<Real>(p.stiffness[i]);
-            stiffness_step_[i] = stiffness_[i] * h;
+            stiffness_step_[i] = stiffness_[i] * period_;
         }
         require_positive("maxwell_slip.attraction", p.attraction);
-        attraction_step_ = attraction_ * h;
+        attraction_step_ = attraction_ * period_;
     }
 
     value operator()(argument v) noexcept {
@@ -228,6 +227,7 @@ private:
     stribeck<In, Out, Real> curve_;
     std::array<Real, N> weights_;
     quantity<unit_quotient<typename Out::unit, si::time>, Real> attraction_;
+    time period_;
     value attraction_step_{};
     std::array<gain_rate_of<Out, In, Real>, N> stiffness_{};
     std::array<slope, N> stiffness_step_{};
