@@ -150,6 +150,16 @@ inline void in_lowest_terms(std::vector<parameter_estimate>& values) {
     in_lowest_terms(values);
 }
 
+/// 1.96 times the scatter of a share that was counted in the periods whose loss would show.
+inline double counting_error(const axis_case& c, double share) {
+    plant_model plant = c.best().fit.plant;
+    plant.loss = 0;
+    std::vector<double> innovation;
+    c.record.observer.run(plant, innovation);
+    const auto found = c.record.observer.commands_with_loss(plant, innovation, {.probability = share});
+    return 1.96 * std::sqrt(share * (1 - share) / std::max(1.0, found.told));
+}
+
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none
 /// better than what is left beside what its effect explains (a pull as large as the rest, all of it along this value), no length
 /// better than half a count. An angle moves by as much in radian.
@@ -160,7 +170,8 @@ inline void add_model_error(std::vector<parameter_estimate>& values, const effec
     for (auto& p : values)
         for (estimate& v : p.values) {
             const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
-            const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
+            double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
+            if (p.key == "actuator.loss_probability") error = std::hypot(error, counting_error(c, v.value));
             v.low = v.value - std::hypot(v.value - v.low, error);
             v.high = v.value + std::hypot(v.high - v.value, error);
         }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../rules.hpp"
 #include "effect.hpp"
 
 namespace quadrant::diagnosis::suspect {
 
 /// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator. Shows as
-/// pulses whose size is what the command changed by in that period; see sample_loss.hpp for how they are found. Its
-/// probability is counted where a loss would stand out of the noise, by expectation and maximisation. A
-/// lost command leaves a pulse of known sign: what merely looks like pulses, at reversals say, has either.
+/// pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are found. A suspect when
+/// they speak for a loss clearly more than for pulses of half or twice the size or turned over, and not in a few
+/// places only: losses know nothing of the motion.
 inline constexpr effect sample_loss{
     .name = "sample_loss",
     .box = "actuator",
@@ -17,23 +18,20 @@ inline constexpr effect sample_loss{
         plant.loss = 0;
         std::vector<double> innovation;
         s.record.observer.run(plant, innovation);
-        double p = 0.05;
-        lossy_commands found;
-        for (int round = 0; round < 4; ++round) {
-            found = s.record.observer.commands_with_loss(plant, innovation, p);
-            if (found.told < 50) return {};
-            p = std::clamp(found.lost / found.told, 1e-3, 0.5);
-        }
-        // Five times the scatter: in a closed loop the sensor's noise is in the command and in the pulses.
-        const double net = found.lost - found.mirrored, scatter = std::sqrt(found.lost + found.mirrored);
-        if (net < 5 || net < 5 * scatter) return {};
-        if (p > 0.2) return {}; // no drive runs like that: something else makes the pulses
-        p = std::clamp(net / found.told, 1e-3, 0.5);
+        const auto with = [&](double size) {
+            return s.record.observer.commands_with_loss(plant, innovation, {.learned = true, .size = size});
+        };
+        const lossy_commands found = with(1);
+        const double p = found.probability, enough = rules{}.margin;
+        // Above a quarter no drive runs: something else makes the pulses.
+        if (found.told < 50 || p > 0.25 || found.gain < enough || found.gain_elsewhere < enough) return {};
+        for (double other : {-1.0, 0.5, 2.0})
+            if (found.gain - with(other).gain < enough) return {};
         return {{{.key = "actuator.loss_probability",
                   .of = [](plant_model& q) -> double& { return q.loss; },
                   .start = p,
-                  .low = p / 1.5,
-                  .high = 1.5 * p,
+                  .low = p / 2,
+                  .high = 2 * p,
                   .logarithmic = true,
                   .step = 1e-2}}};
     },
