@@ -125,6 +125,24 @@ TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction") {
     real.dead_zone = 0.03;
     named(diagnosed(file, real), "actuator_dead_zone", "actuator.dead_zone_V", 0.03, 0.05);
 }
+// Few losses in a record that hardly changes its command do not earn a claim; they are never called something else.
+TEST_CASE(
+    "diagnose: lost commands take their pulses out of the gap, a delay does not, and nothing else is claimed") {
+    machine real;
+    const auto file = described(real);
+    real.loss = 0.1;
+    const auto log = run(real);
+    const auto record = prepare(log, workshop::period, workshop::count);
+    const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
+    const double before = rms(models.held_out_residual(models.calibrated()));
+    candidate losing = models.calibrated();
+    losing.fit.plant.loss = real.loss;
+    CHECK(rms(models.residual(losing)) < 0.4 * before);
+    CHECK(rms(models.held_out_residual(models.with({&suspect::time_delay}))) > 0.95 * before);
+    const auto d = diagnose(file, as_log(log));
+    CHECK(d.verdict >= verdict::explained);
+    for (const auto& name : claims(d)) CHECK(name == "sample_loss");
+}
 // Slow strokes under tones of 50 to 180 Hz, so that every period has a step that its loss would show.
 std::vector<double> shaken(double seconds) {
     constexpr double turn = 2 * std::numbers::pi;
