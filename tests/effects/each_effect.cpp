@@ -145,6 +145,55 @@ TEST_CASE(
     CHECK(d.verdict >= verdict::explained);
     for (const auto& name : claims(d)) CHECK(name == "sample_loss");
 }
+// Slow strokes under tones of 50 to 180 Hz, so that every period has a step that its loss would show.
+std::vector<double> shaken(double seconds) {
+    constexpr double turn = 2 * std::numbers::pi;
+    std::vector<double> out(static_cast<std::size_t>(seconds / workshop::period));
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const double t = static_cast<double>(k) * workshop::period;
+        out[k] = 0.03 * (1 - std::cos(turn * 0.5 * t));
+        for (int i = 0; i < 8; ++i) {
+            const double f = 50 * std::pow(1.2, i);
+            out[k] += 0.05 / (f * f) * std::sin(turn * f * t + 1.7 * i * i);
+        }
+        out[k] *= std::min(1.0, t / 0.2);
+    }
+    return out;
+}
+TEST_CASE("diagnose: lost commands, few and many, with how many were lost") {
+    for (const double p : {0.02, 0.1}) {
+        machine real;
+        const auto file = described(real);
+        real.loss = p;
+        const auto d = diagnose(file, as_log(run(real, 4, 5, shaken(4))));
+        CAPTURE(said(d));
+        REQUIRE(claims(d) == std::vector<std::string>{"sample_loss"});
+        const auto& found = value_of(d.causes.front(), "actuator.loss_probability");
+        CAPTURE(found.value);
+        CHECK(found.low < p);
+        CHECK(found.high > p);
+        CHECK(found.high - found.low < 0.4 * p);
+    }
+}
+// In a closed loop the noise of the encoder is in the command and in what the observer has to correct.
+TEST_CASE("diagnose: no command is lost under strong noise of the encoder or a command that acts late") {
+    for (const double delay : {0.0006, 0.0009}) {
+        machine real;
+        const auto file = described(real);
+        real.noise = 1e-6;
+        real.delay = delay;
+        const auto log = run(real, 4, 5, shaken(4));
+        const auto record = prepare(log, workshop::period, workshop::count);
+        const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
+        std::vector<double> innovation;
+        record.observer.run(models.calibrated().fit.plant, innovation);
+        const auto found =
+            record.observer.commands_with_loss(models.calibrated().fit.plant, innovation, {.learned = true});
+        CHECK(found.told > 1000);
+        CHECK(found.gain < 5);
+        CHECK(found.probability < 0.001);
+    }
+}
 TEST_CASE("diagnose: a cyclic error of the encoder, not cogging of the same period") {
     machine real;
     const auto file = described(real);

@@ -20,8 +20,9 @@ struct predictor {
     double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
+    double resolution = 0;                        ///< step of the position [m]
 
-    /// Innovations; returned is what the model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the mean acceleration that the model gives the encoder over each
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the mean acceleration that the model gives the encoder over each
     /// period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const {
@@ -29,7 +30,8 @@ struct predictor {
         const std::span into(&innovation, 1);
         if (plant.loss > 0) {
             pass(one, command, into, nullptr);
-            const auto held = commands_with_loss(plant, innovation, plant.loss);
+            const auto held =
+                commands_with_loss(plant, innovation, {.probability = plant.loss, .learned = true});
             pass(one, held.applied, into, acceleration);
             return held.choices;
         }
@@ -52,11 +54,11 @@ struct predictor {
         }
     }
 
-    /// The commands that the drive acted on when it lost each with probability p, as the innovations of `plant` tell it.
+    /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss tell it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
-                                      double p) const {
-        return diagnosis::commands_with_loss(command, innovation, loss_response(plant),
-                                             whole_periods(plant.delay), p);
+                                      const loss_assumption& a) const {
+        return lost_commands::find(command, innovation, loss_response(plant), whole_periods(plant.delay),
+                                   resolution / std::sqrt(12.0), a);
     }
 
 private:
@@ -67,7 +69,7 @@ private:
     double l2() const { return (1 - pole()) * (1 - pole()) / period; }
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
 
-    /// Innovations after one volt too much in one period, on a free axis.
+    /// Innovations after one volt too much in one period, on a free axis, until the observer has forgotten it.
     std::vector<double> loss_response(const plant_model& plant) const {
         const double to_position = l1(), to_velocity = l2();
         const double late =
@@ -75,7 +77,7 @@ private:
         const double per_volt = plant.force_constant / plant.mass;
         std::vector<double> out;
         double x = 0, v = 0;
-        const auto rows = static_cast<std::size_t>(1.5 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
+        const auto rows = static_cast<std::size_t>(6 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
         for (std::size_t k = 0; k <= rows; ++k) {
             if (k > 0) out.push_back(x);
             const double e = x, length = k == 0   ? period - late

@@ -92,7 +92,8 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
                   .observer = {.period = period,
                                .position = log.position,
                                .command = log.command,
-                               .other_acceleration = log.other_acceleration}};
+                               .other_acceleration = log.other_acceleration,
+                               .resolution = std::max(resolution, log.position_step)}};
     const auto smooth = zero_phase(log.position, 60, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../rules.hpp"
 #include "effect.hpp"
+
+namespace quadrant::diagnosis::detail {
+
+/// Whether one gain is above another by more than a margin, and not in a few places only: the scatter of the places where either has a say
+/// leaves one chance in a hundred.
+inline bool everywhere(const std::vector<double>& gain, const std::vector<double>& other) {
+    std::vector<double> more;
+    for (std::size_t i = 0; i < gain.size(); ++i)
+        if (std::abs(gain[i]) + std::abs(other[i]) > 0.1) more.push_back(gain[i] - other[i]);
+    const double sum = std::accumulate(more.begin(), more.end(), 0.0), n = static_cast<double>(more.size());
+    double squares = 0;
+    for (double g : more) squares += (g - sum / n) * (g - sum / n);
+    return n >= 4 && sum >= rules{}.margin && sum >= 2.33 * std::sqrt(squares * n / (n - 1));
+}
+
+} // namespace quadrant::diagnosis::detail
 
 namespace quadrant::diagnosis::suspect {
 
 /// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator. Shows as
-/// pulses whose size is what the command changed by in that period; see sample_loss.hpp for how they are found. Its
-/// probability is counted where a loss would stand out of the noise, by expectation and maximisation. A
-/// lost command leaves a pulse of known sign: what merely looks like pulses, at reversals say, has either.
+/// pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are found. A suspect when
+/// they speak for a loss clearly more than for none and than for pulses of half or twice the size or turned over, and
+/// in most places: losses know nothing of the motion.
 inline constexpr effect sample_loss{
     .name = "sample_loss",
     .box = "actuator",
@@ -17,25 +34,25 @@ inline constexpr effect sample_loss{
         plant.loss = 0;
         std::vector<double> innovation;
         s.record.observer.run(plant, innovation);
-        double p = 0.05;
-        lossy_commands found;
-        for (int round = 0; round < 4; ++round) {
-            found = s.record.observer.commands_with_loss(plant, innovation, p);
-            if (found.told < 50) return {};
-            p = std::clamp(found.lost / found.told, 1e-3, 0.5);
-        }
-        // Five times the scatter: in a closed loop the sensor's noise is in the command and in the pulses.
-        const double net = found.lost - found.mirrored, scatter = std::sqrt(found.lost + found.mirrored);
-        if (net < 5 || net < 5 * scatter) return {};
-        if (p > 0.2) return {}; // no drive runs like that: something else makes the pulses
-        p = std::clamp(net / found.told, 1e-3, 0.5);
+        const auto with = [&](double size) {
+            return s.record.observer.commands_with_loss(plant, innovation, {.learned = true, .size = size});
+        };
+        const lossy_commands found = with(1);
+        const double p = found.probability;
+        if (found.told < 50 || p > 0.4) return {}; // no drive runs like that: something else makes the pulses
+        if (!detail::everywhere(found.gain_by_place, std::vector<double>(found.gain_by_place.size(), 0.0)))
+            return {};
+        for (double other : {-1.0, 0.5, 2.0})
+            if (!detail::everywhere(found.gain_by_place, with(other).gain_by_place)) return {};
         return {{{.key = "actuator.loss_probability",
                   .of = [](plant_model& q) -> double& { return q.loss; },
                   .start = p,
-                  .low = p / 1.5,
-                  .high = 1.5 * p,
+                  .low = p / 2,
+                  .high = 2 * p,
                   .logarithmic = true,
-                  .step = 1e-2}}};
+                  .step = 1e-2,
+                  .expected = std::log(p), // counted, not fitted
+                  .spread = std::sqrt((1 - p) / (p * found.told))}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"actuator.loss_probability", {p.loss}}};
