@@ -118,28 +118,11 @@ private:
     void follow() {
         std::vector<history> now(1), next;
         now.front().applied = command_[from_ - 1];
-        double before = 0, alone = 0, told = 0, lost = 0;
+        double before = 0, alone = 0;
         std::fill(gain_.begin(), gain_.end(), 0.0);
-        const double kept_by_chance = std::log(1 - p_), lost_by_chance = std::log(p_);
         for (std::size_t k = from_; k < end_; ++k) {
             next.clear();
-            for (const history& h : now) {
-                const double step = a_.size * (h.applied - command_[k]);
-                next.push_back(h);
-                next.back().lost <<= 1;
-                next.back().applied = command_[k];
-                if (!shows(step, k)) continue;
-                next.push_back(h);
-                history &kept = next[next.size() - 2], &gone = next.back();
-                gone.lost = (h.lost << 1) | 1;
-                for (std::size_t j = 0; j < shape_.size(); ++j) {
-                    double& of_kept = kept.to_come[(k + j) % reach];
-                    gone.to_come[(k + j) % reach] = of_kept + (1 - p_) * step * shape_[j];
-                    of_kept -= p_ * step * shape_[j]; // the mean of the losses is gone with the past
-                }
-                kept.score += kept_by_chance;
-                gone.score += lost_by_chance;
-            }
+            for (const history& h : now) go_on(h, k, next);
             const double seen = left_[k + first_], sigma = std::sqrt(variance_[(k + first_) / window]);
             for (history& h : next) {
                 double& expected = h.to_come[k % reach];
@@ -149,39 +132,59 @@ private:
             alone += log_density(seen / sigma);
             keep_the_likeliest(next);
             now.swap(next);
-            double best = now.front().score, sum = 0;
-            for (const history& h : now) best = std::max(best, h.score);
+            const double best = now.front().score;
+            double sum = 0;
             for (const history& h : now) sum += std::exp(h.score - best);
             const double ahead = best + std::log(sum) - alone;
             gain_[k] = ahead - before;
             before = ahead;
-            const bool last = k + 1 == end_;
-            for (std::size_t back = last ? 0 : lag; back <= lag && k >= from_ + back; ++back) {
-                const std::size_t row = k - back;
-                double share = 0;
+            for (std::size_t back = k + 1 == end_ ? 0 : lag; back <= lag && k >= from_ + back; ++back) {
+                weight_[k - back] = 0;
                 for (const history& h : now)
-                    share += static_cast<double>((h.lost >> back) & 1) * std::exp(h.score - best) / sum;
-                weight_[row] = share;
+                    if ((h.lost >> back) & 1) weight_[k - back] += std::exp(h.score - best) / sum;
             }
         }
-        for (std::size_t k = from_; k < end_; ++k) {
-            const double step = a_.size * (held_[k - 1] + step_[k]);
-            if (shows(step, k)) {
-                ++told;
-                lost += weight_[k];
-                pulse_[k] = (weight_[k] - p_) * step;
-            } else {
-                weight_[k] = p_;
-                pulse_[k] = 0;
-            }
-            held_[k] = weight_[k] * step;
-        }
-        told_ = told;
-        used_ = p_;
-        if (a_.learned && told > 0) p_ = std::clamp(lost / told, 1e-4, 0.5);
+        count();
     }
 
-    /// Histories that agree for as long as a pulse lasts are one.
+    /// One history becomes two where a loss would show.
+    void go_on(const history& h, std::size_t k, std::vector<history>& next) const {
+        const double step = a_.size * (h.applied - command_[k]);
+        history kept = h;
+        kept.lost <<= 1;
+        kept.applied = command_[k];
+        if (shows(step, k)) {
+            history lost = h;
+            lost.lost = kept.lost | 1;
+            for (std::size_t j = 0; j < shape_.size(); ++j) { // the mean of the losses is gone with the past
+                lost.to_come[(k + j) % reach] += (1 - p_) * step * shape_[j];
+                kept.to_come[(k + j) % reach] -= p_ * step * shape_[j];
+            }
+            lost.score += std::log(p_);
+            kept.score += std::log(1 - p_);
+            next.push_back(lost);
+        }
+        next.push_back(kept);
+    }
+
+    /// The commands and pulses of the weights, and how many were lost of those whose loss would show.
+    void count() {
+        double lost = 0;
+        told_ = 0;
+        for (std::size_t k = from_; k < end_; ++k) {
+            const double step = a_.size * (held_[k - 1] + step_[k]);
+            const bool told = shows(step, k);
+            if (!told) weight_[k] = p_;
+            told_ += told;
+            lost += told * weight_[k];
+            pulse_[k] = (weight_[k] - p_) * step;
+            held_[k] = weight_[k] * step;
+        }
+        used_ = p_;
+        if (a_.learned && told_ > 0) p_ = std::clamp(lost / told_, 1e-4, 0.5);
+    }
+
+    /// The likeliest first. Histories that agree for as long as a pulse lasts are one.
     static void keep_the_likeliest(std::vector<history>& of) {
         constexpr std::uint64_t lasting = (std::uint64_t(1) << reach) - 1;
         std::sort(of.begin(), of.end(), [](const history& a, const history& b) { return a.score > b.score; });
