@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: tests/run.sh          everything that a change must pass; 20 to 25 minutes on 2 cores
+# usage: tests/run.sh          everything that a change must pass; some 20 minutes on 2 cores, nothing cached
 #        tests/run.sh all      and clang-tidy and longer fuzzing
 #        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
