@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 /// One policy for NaN and infinities in every block: hold the last output, keep the state, raise a flag that only
 /// `reset` or `settle` clears.
@@ -45,6 +47,16 @@ template <class... Values> constexpr auto finite(const Values&... values) noexce
     return detail::is_finite((detail::bare(values) + ...));
 }
 
+/// What a block passes on to a block inside it: x where it is good, NaN in the other lanes, where the inner block then
+/// holds. For a number without lanes, which has returned by then: x.
+template <class Value>
+constexpr Value only_where([[maybe_unused]] const mask_of<Value>& good, const Value& x) noexcept {
+    if constexpr (std::is_same_v<mask_of<Value>, bool>)
+        return x;
+    else
+        return select(good, x, Value::from_value(std::numeric_limits<double>::quiet_NaN()));
+}
+
 /// The last good output of a block and its fault flag; for lanes, one of each in every lane.
 template <class Quantity> class held_output {
 public:
@@ -74,8 +86,8 @@ public:
         last_ = y;
         fault_ = mask(false);
     }
-    /// Sets the output and clears the fault in the good lanes; raises the fault of the others.
-    constexpr void reset(const mask& good, Quantity y) noexcept {
+    /// Sets the output and clears the fault in the good lanes; the others keep theirs and raise their fault.
+    constexpr void settle(const mask& good, Quantity y) noexcept {
         set_where(good, last_, y);
         fault_ = !good;
     }
