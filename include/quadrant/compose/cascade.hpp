@@ -93,7 +93,7 @@ template <axis_boxes Boxes> struct cascade {
         look(good, reference, measured);
         wire.feedback = box.velocity_loop(only_where(good, wire.velocity_error));
         wire.damped = box.resonance(only_where(good, wire.feedback));
-        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
+        wire.inertia = box.acceleration_feedforward(only_where(good, wire.reference_acceleration));
         wire.friction = box.friction(only_where(good, wire.reference_velocity));
         wire.wanted = wire.damped + wire.inertia + wire.friction;
         wire.limited = box.amplifier(only_where(good, wire.wanted));
@@ -112,12 +112,18 @@ template <axis_boxes Boxes> struct cascade {
         acceleration reference_acceleration{};
         cascade::command command{};
     };
-    void settle(const start& s) noexcept {
+    void settle(start s) noexcept {
         const auto good = finite(s.reference, s.measured, s.reference_velocity, s.measured_velocity,
                                  s.reference_acceleration, s.command);
         fault = !good;
         if (none(good)) return;
         const auto before = wires_before();
+        s = {only_where(good, s.reference),
+             only_where(good, s.measured),
+             only_where(good, s.reference_velocity),
+             only_where(good, s.measured_velocity),
+             only_where(good, s.reference_acceleration),
+             only_where(good, s.command)};
         wire.reference = s.reference;
         wire.measured = s.measured;
         wire.reference_velocity = s.reference_velocity;
@@ -143,7 +149,7 @@ template <axis_boxes Boxes> struct cascade {
         if (none(good)) return;
         const auto before = wires_before();
         look(good, reference, measured);
-        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
+        wire.inertia = box.acceleration_feedforward(only_where(good, wire.reference_acceleration));
         wire.friction = box.friction(only_where(good, wire.reference_velocity));
         carry(good, applied);
         restore(good, before);
