@@ -66,17 +66,17 @@ inline parameter freed(const char* key, double& (*of)(plant_model&), double valu
 /// a play) only looking helps. Each costs one pass over the log.
 inline double best_start(const screening& s, double& (*of)(plant_model&), const std::vector<double>& values) {
     const fitter fit(s.record.observer, s.record.score);
-    double best = values.front(), least = std::numeric_limits<double>::infinity();
+    std::vector<fit_course> looks;
     for (double value : values) {
-        fit_result trial{.plant = s.leader, .x = Eigen::VectorXd(0)};
-        of(trial.plant) = value;
-        fit.evaluate(trial);
-        if (trial.objective < least) {
-            least = trial.objective;
-            best = value;
-        }
+        plant_model plant = s.leader;
+        of(plant) = value;
+        looks.emplace_back(fit, plant, std::vector<parameter>{}, 0);
     }
-    return best;
+    fit.run(std::span(looks));
+    const auto least = std::min_element(looks.begin(), looks.end(), [](auto& a, auto& b) {
+        return a.result().objective < b.result().objective;
+    });
+    return values[static_cast<std::size_t>(least - looks.begin())];
 }
 
 } // namespace detail
