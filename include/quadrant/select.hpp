@@ -15,6 +15,8 @@ namespace quadrant {
 template <class Number> inline constexpr std::size_t lane_count = 1;
 template <class Unit, class Real>
 inline constexpr std::size_t lane_count<quantity<Unit, Real>> = lane_count<Real>;
+template <class Number, std::size_t N>
+inline constexpr std::size_t lane_count<std::array<Number, N>> = lane_count<Number>;
 
 /// A number with more than one instance in it.
 template <class Number>
@@ -128,6 +130,12 @@ requires(lane_count<Number> == 1) constexpr const Number& lane(const Number& x, 
 template <class Unit, multi_lane Real>
 constexpr auto lane(const quantity<Unit, Real>& x, std::size_t i) noexcept {
     return quantity<Unit, double>::from_value(x.value()[i]);
+}
+template <class Number, std::size_t N>
+requires(lane_count<Number> > 1) constexpr auto lane(const std::array<Number, N>& x, std::size_t i) noexcept {
+    std::array<std::remove_cvref_t<decltype(lane(x[0], i))>, N> out;
+    for (std::size_t k = 0; k < N; ++k) out[k] = lane(x[k], i);
+    return out;
 }
 /// Replaces one instance: the number itself, or one lane of it.
 template <class Number>
