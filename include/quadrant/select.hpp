@@ -117,6 +117,32 @@ template <class Value> constexpr Value smaller(const Value& a, const std::type_i
 template <class Value> constexpr Value larger(const Value& a, const std::type_identity_t<Value>& b) noexcept {
     return select(less(a, b), b, a);
 }
+/// x within its bounds: high above high, low below low, else x, a NaN too.
+template <class Value>
+constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
+                        const std::type_identity_t<Value>& high) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > high ? high : x < low ? low : x; // no bound is read that is not needed
+    else
+        return select(greater(x, high), high, select(less(x, low), low, x));
+}
+/// x within -most ... most.
+template <class Value>
+constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& most) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > most ? most : x < -most ? -most : x;
+    else
+        return clamped(x, -most, most);
+}
+/// True where x lies above high or below low.
+template <class Value>
+constexpr mask_of<Value> outside(const Value& x, const std::type_identity_t<Value>& low,
+                                 const std::type_identity_t<Value>& high) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > high || x < low;
+    else
+        return greater(x, high) | less(x, low);
+}
 /// The value without its sign.
 template <class Value> constexpr Value absolute(const Value& x) noexcept {
     return select(less(x, Value()), -x, x);

@@ -87,8 +87,10 @@ template <axis_boxes Boxes> struct cascade {
 
     command operator()(position reference, position measured) noexcept {
         const auto good = finite(reference, measured);
-        fault = either(fault, !good);
-        if (none(good)) return wire.command;
+        if (!all(good)) {
+            fault = either(fault, !good);
+            if (none(good)) return wire.command;
+        }
         const auto before = wires_before();
         look(good, reference, measured);
         wire.feedback = box.velocity_loop(only_where(good, wire.velocity_error));
@@ -145,8 +147,10 @@ template <axis_boxes Boxes> struct cascade {
     /// estimators go on, the integral is what makes the next step give `applied` if no wire changes till then.
     void track(position reference, position measured, command applied) noexcept {
         const auto good = finite(reference, measured, applied);
-        fault = either(fault, !good);
-        if (none(good)) return;
+        if (!all(good)) {
+            fault = either(fault, !good);
+            if (none(good)) return;
+        }
         const auto before = wires_before();
         look(good, reference, measured);
         wire.inertia = box.acceleration_feedforward(only_where(good, wire.reference_acceleration));

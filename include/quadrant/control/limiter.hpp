@@ -44,7 +44,7 @@ public:
     value operator()(value x) noexcept {
         const auto good = finite(x);
         if (none(good)) return out_.hold();
-        set_where(good, limited_, outside(x));
+        set_where(good, limited_, outside(x, low_, high_));
         return out_.keep(good, clipped(x));
     }
     void reset() noexcept {
@@ -53,7 +53,7 @@ public:
     }
     void settle(value x) noexcept {
         const auto good = finite(x);
-        set_where(good, limited_, outside(x));
+        set_where(good, limited_, outside(x, low_, high_));
         out_.settle(good, clipped(x));
     }
     void retune(const limiter& next) noexcept {
@@ -70,10 +70,7 @@ public:
     state now() const noexcept { return {}; }
 
 private:
-    mask_of<Real> outside(value x) const noexcept { return either(greater(x, high_), less(x, low_)); }
-    value clipped(value x) const noexcept {
-        return select(greater(x, high_), high_, select(less(x, low_), low_, x));
-    }
+    value clipped(value x) const noexcept { return clamped(x, low_, high_); }
 
     parameters given_;
     value low_, high_;

@@ -86,7 +86,7 @@ public:
         set_where(good, limited_, !equal(integral, free));
         set_where(good, state_.integral, integral);
         if constexpr (std::same_as<AntiWindup, back_calculation>)
-            set_where(good, state_.excess, u - clamped(u));
+            set_where(good, state_.excess, u - bounded(u));
         else if constexpr (std::same_as<AntiWindup, conditional_integration>)
             set_where(good, state_.excess, value());
         return out_.keep(good, u);
@@ -110,7 +110,7 @@ public:
         value integral = u - proportion; // after the coming step
         const auto good = finite(u, integral, more);
         if constexpr (std::same_as<AntiWindup, integral_clamp>)
-            integral = clamped(clamped(integral) - more);
+            integral = bounded(bounded(integral) - more);
         else if constexpr (std::same_as<AntiWindup, conditional_integration>)
             integral = select(drives_out(u, more), integral, integral - more);
         else
@@ -133,7 +133,7 @@ public:
         set_where(good, tracking_, next.tracking_);
         set_where(good, limited_, next.limited_);
         if constexpr (std::same_as<AntiWindup, integral_clamp>)
-            set_where(good, state_.integral, clamped(integral));
+            set_where(good, state_.integral, bounded(integral));
         else
             set_where(good, state_.integral, integral);
         out_.raise(!good);
@@ -152,16 +152,14 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
-    value clamped(value u) const noexcept {
-        return select(greater(u, limit_), limit_, select(less(u, -limit_), -limit_, u));
-    }
+    value bounded(value u) const noexcept { return clamped(u, limit_); }
     mask_of<Real> drives_out(value u, value more) const noexcept {
         return either(both(greater(more, value()), greater(u, limit_)),
                       both(less(more, value()), less(u, -limit_)));
     }
     value restrained(value free, value more, value proportion) const noexcept {
         if constexpr (std::same_as<AntiWindup, integral_clamp>) {
-            return clamped(free);
+            return bounded(free);
         } else if constexpr (std::same_as<AntiWindup, conditional_integration>) {
             const auto short_of_it = either(both(greater(more, value()), greater(state_.excess, value())),
                                             both(less(more, value()), less(state_.excess, value())));

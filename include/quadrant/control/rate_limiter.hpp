@@ -40,10 +40,10 @@ public:
 
     value operator()(value x) noexcept {
         const value low = state_.y - most_, high = state_.y + most_;
-        const value y = select(greater(x, high), high, select(less(x, low), low, x));
+        const value y = clamped(x, low, high);
         const auto good = finite(x, y);
         if (none(good)) return out_.hold();
-        set_where(good, limited_, either(greater(x, high), less(x, low)));
+        set_where(good, limited_, outside(x, low, high));
         set_where(good, state_.y, y);
         return out_.keep(good, y);
     }

@@ -103,9 +103,6 @@ private:
                    high = clamped(Real(2) * x + Real(1), Real(-1), Real(1));
         return clamped(side, low, high);
     }
-    static Real clamped(Real x, Real low, Real high) noexcept {
-        return select(less(x, low), low, select(greater(x, high), high, x));
-    }
     value at(argument v, Real side) const noexcept {
         return share_ * (law_.slip(v) * side + law_.viscous() * v);
     }

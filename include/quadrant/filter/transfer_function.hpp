@@ -87,12 +87,13 @@ public:
     value operator()(argument x) noexcept {
         std::array<value, Order> next;
         const value y = Order == 0 ? value(b_[0] * x) : value(b_[0] * x + first());
-        auto good = finite(y);
+        Real sum = y.value();
         for (std::size_t i = 0; i < Order; ++i) {
             next[i] = b_[i + 1] * x - a_[i] * y;
             if (i + 1 < Order) next[i] += state_.s[i + 1];
-            good = both(good, finite(next[i]));
+            sum += next[i].value();
         }
+        const auto good = finite(sum);
         if (none(good)) return out_.hold();
         set_where(good, state_.s, next);
         return out_.keep(good, y);
@@ -101,13 +102,14 @@ public:
     void settle(argument x) noexcept { settle(x, select(integrates_, out_.last(), value(standstill_ * x))); }
     void settle(argument x, value y) noexcept {
         std::array<value, Order> s;
-        auto good = finite(x, y);
+        Real sum = x.value() + y.value();
         for (std::size_t i = Order; i-- > 0;) {
             s[i] = b_[i + 1] * x - a_[i] * y; // as if x and y had stood for ever
             if (i + 1 < Order) s[i] += s[i + 1];
             if (i == 0) s[i] = y - b_[0] * x; // the same, but for a pole at z = 1
-            good = both(good, finite(s[i]));
+            sum += s[i].value();
         }
+        const auto good = finite(sum);
         set_where(good, state_.s, s);
         out_.settle(good, y);
     }

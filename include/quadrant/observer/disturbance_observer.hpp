@@ -97,12 +97,13 @@ public:
         const value free = from_measured_[0] * x + state_.s[0]; // d = free - q0 u and u = wanted - d
         const value d = solved_ * (free - from_command_[0] * wanted), u = wanted - d;
         std::array<value, order> next;
-        auto good = finite(measured, d, u);
+        Real sum = bare(measured, d, u);
         for (std::size_t i = 0; i < order; ++i) {
             next[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
             if (i + 1 < order) next[i] += state_.s[i + 1];
-            good = both(good, finite(next[i]));
+            sum += next[i].value();
         }
+        const auto good = finite(sum);
         stepped_ = good;
         if (none(good)) return out_.hold();
         set_where(good, state_.s, next);
@@ -116,16 +117,18 @@ public:
         if (none(stepped_)) return; // no sample was taken
         const value more = u - state_.command, d = out_.last() - from_command_[0] * more;
         std::array<value, order> s = state_.s;
-        auto good = finite(u, d);
+        Real sum = bare(u, d);
         for (std::size_t i = 0; i < order; ++i) {
             s[i] += (feedback_[i] * from_command_[0] - from_command_[i + 1]) * more;
-            good = both(good, finite(s[i]));
+            sum += s[i].value();
         }
+        const auto good = finite(sum);
+        const auto taken = both(stepped_, good);
+        if (none(taken)) return out_.raise(stepped_);
+        set_where(taken, state_.s, s);
+        set_where(taken, state_.command, u);
+        out_.keep(select(taken, d, out_.last()));
         out_.raise(both(stepped_, !good));
-        good = both(stepped_, good);
-        set_where(good, state_.s, s);
-        set_where(good, state_.command, u);
-        out_.keep(select(good, d, out_.last()));
     }
     void reset() noexcept { settle(argument()); }
     void settle(argument measured) noexcept { settle(measured, value()); }
@@ -133,8 +136,9 @@ public:
         const argument x = select(integrates_, argument(), measured);
         const value u = standstill_ * measured - d;
         const std::array<value, order> s = standing(x, u, d);
-        auto good = finite(measured, d);
-        for (const value& each : s) good = both(good, finite(each));
+        Real sum = bare(measured, d);
+        for (const value& each : s) sum += each.value();
+        const auto good = finite(sum);
         set_where(good, state_.s, s);
         set_where(good, state_.measured, measured);
         set_where(good, state_.moved, x);
@@ -148,11 +152,12 @@ public:
         const auto before = standing(state_.moved, state_.command, d),
                    after = next.standing(state_.moved, state_.command, d);
         std::array<value, order> s = state_.s;
-        auto good = select(integrates_, next.integrates_, !next.integrates_);
+        Real sum(0);
         for (std::size_t i = 0; i < order; ++i) {
             s[i] += after[i] - before[i];
-            good = both(good, finite(s[i]));
+            sum += s[i].value();
         }
+        const auto good = both(finite(sum), select(integrates_, next.integrates_, !next.integrates_));
         if (none(good)) return out_.raise();
         given_ = next.given_;
         set_where(good, from_measured_, next.from_measured_);
@@ -207,6 +212,10 @@ private:
         require_lanes(not_zero(under), "disturbance_observer.plant.denominator", under,
                       "highest coefficient must not be zero");
         return p;
+    }
+    /// Their sum without units, for `finite`.
+    template <class... Values> static Real bare(const Values&... values) noexcept {
+        return (values.value() + ...);
     }
     /// The state as if these had stood for ever.
     std::array<value, order> standing(argument x, value u, value d) const noexcept {
