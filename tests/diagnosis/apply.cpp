@@ -142,7 +142,8 @@ TEST_CASE("apply: the excess of static friction stays when the Coulomb level mov
     CHECK(out.changes[1].reason == "moves with the friction");
     const auto m = apply(read_machine(std::string_view(machine_text), "m.json"),
                          of({named("x", "coulomb_friction", {value("coulomb_N", {190})}, true)}));
-    const plant_model before(read_machine(std::string_view(machine_text), "m.json").axes[0]), after(m.axes[0]);
+    const plant_model before(read_machine(std::string_view(machine_text), "m.json").axes[0], 2e-7),
+        after(m.axes[0], 2e-7);
     CHECK(after.friction.coulomb == 190);
     CHECK(after.friction.excess == doctest::Approx(before.friction.excess));
 }
@@ -154,7 +155,7 @@ TEST_CASE("apply: the way in which friction gives way stays when its level moves
     const auto d = of({named("x", "coulomb_friction", {value("coulomb_N", {190})}, true)});
     const auto before = read_machine(json.dump(), "m.json");
     const auto lengths = [](const machine_description& m) {
-        return plant_model(m.axes[0]).friction.contact.lengths_as_described;
+        return plant_model(m.axes[0], 2e-7).friction.contact.lengths_as_described;
     };
     const auto a = lengths(before), b = lengths(apply(before, d));
     for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(b[i] / a[i] - 1) < 1e-12);

@@ -423,7 +423,7 @@ TEST_CASE("read_machine: what belongs together is given together") {
 
 TEST_CASE("read_machine: every effect that a file describes is in the plant that is simulated") {
     const auto simulated = [](const std::string& path, const char* value) {
-        return plant_model(read_machine(with(path, value), "m").axes[0]);
+        return plant_model(read_machine(with(path, value), "m").axes[0], 2e-7);
     };
     CHECK(simulated(plant + "/backlash_m", "1e-5").backlash == 1e-5);
     CHECK(simulated(plant + "/spring_N_per_m", "300").spring == 300);

@@ -78,7 +78,7 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
     for (std::size_t f = 0; f < folds; ++f) {
         Eigen::MatrixXd a = all.a - sums[f].a;
         a.diagonal() *= 1 + 1e-9;
-        step[f] = n > 0 ? Eigen::VectorXd(a.ldlt().solve(sums[f].g)) : Eigen::VectorXd(0);
+        step[f] = n > 0 ? solved(a, sums[f].g) : Eigen::VectorXd(0);
         for (Eigen::Index i = 0; i < n; ++i) {
             const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
             const double x = c.fit.x[i], low = p.to_fit(p.low) - x, high = p.to_fit(p.high) - x;

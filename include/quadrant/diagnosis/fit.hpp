@@ -10,6 +10,15 @@
 
 namespace quadrant::diagnosis {
 
+/// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so that no pivot
+/// depends on them.
+template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
+    const Eigen::VectorXd size =
+        a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
+    const Eigen::MatrixXd even = size.asDiagonal() * a * size.asDiagonal();
+    return size.asDiagonal() * even.ldlt().solve(size.asDiagonal() * b);
+}
+
 /// One number of the plant model that a fit may move.
 struct parameter {
     std::string key;                       ///< the machine file's key
@@ -215,13 +224,13 @@ private:
             if (open.empty()) break;
             Eigen::VectorXd rhs = -(g + a * (d - masked(d, open)));
             const Eigen::MatrixXd sub = a(open, open);
-            const Eigen::VectorXd solved = sub.ldlt().solve(rhs(open).eval());
+            const Eigen::VectorXd free = solved(sub, Eigen::VectorXd(rhs(open)));
             bool clipped = false;
             for (std::size_t j = 0; j < open.size(); ++j) {
                 const auto i = open[j];
                 const auto& q = p(r.parameters, i);
                 const double low = q.to_fit(q.low) - r.x[i], high = q.to_fit(q.high) - r.x[i];
-                d[i] = solved[static_cast<Eigen::Index>(j)];
+                d[i] = free[static_cast<Eigen::Index>(j)];
                 if (!(d[i] >= low && d[i] <= high)) {
                     d[i] = std::clamp(std::isfinite(d[i]) ? d[i] : 0.0, low, high);
                     fixed[static_cast<std::size_t>(i)] = clipped = true;

@@ -25,7 +25,7 @@ inline const pass_table& passes() { return passes_of<>; }
 struct predictor {
     static constexpr std::size_t abreast = 8; ///< plants in one pass
     double period;                            ///< T [s]
-    double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
+    double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
     double resolution = 0;                        ///< step of the position [m]

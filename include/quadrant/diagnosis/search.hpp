@@ -16,7 +16,7 @@ public:
     search(const axis_record& record, const axis_description& axis, std::vector<std::string> excluded, rules r,
            progress tell)
         : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
-        given_.fit.plant = plant_model(axis);
+        given_.fit.plant = plant_model(axis, record.scale.give());
         given_.fit.parameters = {};
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
@@ -25,7 +25,7 @@ public:
             -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
-        start.fit.parameters = calibration(axis.plant, axis.tolerance);
+        start.fit.parameters = calibration(axis.plant, axis.tolerance, record.scale.give());
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =

@@ -11,13 +11,13 @@ inline constexpr effect actuator_lag{
     .box = "actuator",
     .exciting_motion = "multi-sine of 20 to 300 Hz, or sharp starts and stops",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double t = s.record.period;
+        const double t = s.record.scale.response();
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.lag; };
         return {{{.key = "actuator.lag_s",
                   .of = of,
-                  .start = detail::best_start(s, of, {0.3 * t, t, 3 * t, 8 * t}),
-                  .low = 0.05 * t,
-                  .high = 50 * t,
+                  .start = detail::best_start(s, of, {0.06 * t, 0.2 * t, 0.6 * t, 1.6 * t}),
+                  .low = 0.01 * t,
+                  .high = 10 * t,
                   .logarithmic = true,
                   .step = 1e-2}}};
     },

@@ -19,7 +19,7 @@ inline constexpr effect cogging{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
         std::vector<std::vector<parameter>> out;
-        const double shortest = std::max(travel / 400, 2e-4);
+        const double shortest = std::max(travel / 400, 8 * s.record.resolution);
         const auto& x = s.record.position;
         for (double period :
              detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
@@ -29,7 +29,7 @@ inline constexpr effect cogging{
                                           [&](double p) { return p > 0.01 * most; }); // a tenth in force
             const auto repeats = many ? detail::repeating<detail::cogging_harmonics, 8>
                                       : detail::repeating<detail::cogging_harmonics, 3>;
-            out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, 2 * s.force_of_a_volt()));
+            out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, s.force_scale()));
         }
         return out;
     },

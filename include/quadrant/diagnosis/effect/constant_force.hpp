@@ -12,14 +12,14 @@ inline constexpr effect constant_force{
     .exciting_motion = "the same stroke in both directions, and rest after each",
     .equivalent = "asymmetric_friction",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double most = 10 * s.force_of_a_volt(); // a full-scale command of any amplifier
+        const double most = 3 * s.force_scale(); // the command holds it, by a force constant that may be wrong
         const double mean = detail::mean_residual(s, [](std::size_t) { return true; });
         return {{{.key = "constant_force_N",
                   .of = [](plant_model& p) -> double& { return p.constant_force; },
                   .start = std::clamp(s.leader.constant_force - mean, -most, most),
                   .low = -most,
                   .high = most,
-                  .step = 1e-5 * s.force_of_a_volt()}}};
+                  .step = 1e-6 * s.force_scale()}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"constant_force_N", {p.constant_force}}};

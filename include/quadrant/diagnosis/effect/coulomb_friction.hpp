@@ -14,7 +14,7 @@ inline constexpr effect coulomb_friction{
         const double jump =
             0.5 * (detail::mean_residual(s, [&](std::size_t k) { return s.record.velocity[k] > 0; }) -
                    detail::mean_residual(s, [&](std::size_t k) { return s.record.velocity[k] < 0; }));
-        const double scale = 1e-3 * s.force_of_a_volt(); // newtons a millivolt: below every machine's friction
+        const double scale = 1e-4 * s.force_scale(); // below every friction that matters to the command
         const double start =
             std::max({s.leader.friction.coulomb + jump, 0.3 * s.leader.friction.coulomb, scale});
         return {{{.key = "coulomb_N",

@@ -10,16 +10,18 @@ namespace quadrant::diagnosis::suspect {
 
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the force. Shows as
 /// lines in the frequency of the residual that no motion shifts. The mean cannot be told from a constant force; the phase
-/// begins anew with each log. The fundamental up to 200 Hz: above, rounding of the encoder makes limit cycles.
+/// begins anew with each log. The fundamental up to three times the corner: above, rounding of the encoder makes limit cycles.
 inline constexpr effect cutting_force{
     .name = "cutting_force",
     .box = "process",
     .exciting_motion = "rest and slow strokes with the process running, and again with it off",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double duration = detail::duration(s), most = 10 * s.force_of_a_volt();
+        const double duration = detail::duration(s),
+                     most = 10 * s.force_scale(); // the loop may be too slow to answer
         std::vector<double> time(s.residual.size());
         for (std::size_t k = 0; k < time.size(); ++k) time[k] = static_cast<double>(k) * s.record.period;
-        const double shortest = std::max(1.0 / 200, 10 * s.record.period), longest = 0.5;
+        const double cycle = 1 / s.record.scale.corner_Hz; // of the corner
+        const double shortest = std::max(0.3 * cycle, 10 * s.record.period), longest = 30 * cycle;
         std::vector<std::vector<parameter>> out;
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
@@ -30,7 +32,7 @@ inline constexpr effect cutting_force{
                                   .start = 0,
                                   .low = -most,
                                   .high = most,
-                                  .step = 1e-5 * s.force_of_a_volt()});
+                                  .step = 1e-6 * s.force_scale()});
         }
         return out;
     },

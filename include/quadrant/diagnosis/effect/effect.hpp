@@ -16,8 +16,8 @@ struct screening {
     const plant_model& leader;
     const std::vector<double>& residual; ///< [N], sign of residual_force()
 
-    /// Force of a volt, the scale of forces on this axis; of a tenth of the largest command where that is in other units [N].
-    double force_of_a_volt() const { return leader.force_constant * record.volt; }
+    /// Force of the largest command, the scale of forces on this axis [N].
+    double force_scale() const { return leader.force_constant * record.scale.command; }
 };
 
 /// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp; a user's own needs neither

@@ -21,8 +21,9 @@ inline constexpr effect force_ripple{
         std::vector<double> by_command(s.residual.size());
         for (std::size_t k = 0; k < by_command.size(); ++k) by_command[k] = s.residual[k] * s.record.command[k];
         std::vector<std::vector<parameter>> out;
-        for (double period : spatial_peaks(by_command, s.record.position, 0.5 * travel,
-                                           std::max(travel / 400, 2e-4), 2, s.record.score.skip))
+        for (double period :
+             spatial_peaks(by_command, s.record.position, 0.5 * travel,
+                           std::max(travel / 400, 8 * s.record.resolution), 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::force_ripple_harmonics, 1>("ripple_period_m", "ripple",
                                                                                period, travel, 0.9));
         return out;

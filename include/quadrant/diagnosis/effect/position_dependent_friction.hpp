@@ -18,16 +18,15 @@ inline constexpr effect position_dependent_friction{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         const double travel = detail::travel(s);
-        double peak = 0;
-        for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
+        const double peak = s.record.scale.speed;
         std::vector<double> against(s.residual.size());
         for (std::size_t k = 0; k < against.size(); ++k) {
             const double v = s.record.velocity[k];
             against[k] = std::abs(v) < 0.005 * peak ? 0 : v > 0 ? s.residual[k] : -s.residual[k];
         }
         std::vector<std::vector<parameter>> out;
-        for (double period : spatial_peaks(against, s.record.position, 2 * travel, std::max(travel / 50, 1e-3),
-                                           2, s.record.score.skip))
+        for (double period :
+             spatial_peaks(against, s.record.position, 2 * travel, travel / 50, 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::position_dependent_friction_harmonics, 1>(
                 "friction_position_period_m", "friction_position_amplitude", period, travel, 0.95));
         return out;

@@ -7,7 +7,7 @@ namespace quadrant::diagnosis::suspect {
 /// Friction that gives way before it slips and remembers where it turned: elements in parallel, each a spring with its share
 /// of the friction level (Maxwell-slip [Jamaludin2008] eq. 3.6-3.8; Dahl and LuGre have nearly the same curve). Joins the
 /// force, in the friction box. Shows within some ten micrometres after each reversal and in small motions. Every contact
-/// gives way by up to two micrometres: that much is no cause.
+/// gives way a little: ten times record_scales::give() is no cause.
 inline constexpr effect presliding_friction{
     .name = "presliding_friction",
     .box = "mechanics",
@@ -15,12 +15,12 @@ inline constexpr effect presliding_friction{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         std::vector<std::vector<parameter>> out;
-        for (double length : {3e-6, 1e-5, 4e-5})
+        for (double length : {15.0, 50.0, 200.0})
             out.push_back({{.key = "presliding_length_m",
                             .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
-                            .start = length * s.record.reach,
-                            .low = 1e-6,
-                            .high = 1e-3 * s.record.reach,
+                            .start = length * s.record.scale.give(),
+                            .low = 5 * s.record.scale.give(),
+                            .high = std::max(5e-3 * s.record.scale.travel, 500 * s.record.scale.give()),
                             .logarithmic = true,
                             .step = 1e-2},
                            {.key = "presliding_length_m",
@@ -32,10 +32,10 @@ inline constexpr effect presliding_friction{
                             .step = 1e-2},
                            {.key = "presliding_damping_s",
                             .of = [](plant_model& p) -> double& { return p.friction.contact.damping; },
-                            .start = 1e-3,
+                            .start = 0.4 * s.record.scale.response(),
                             .low = 0,
-                            .high = 0.05,
-                            .step = 1e-5}});
+                            .high = 20 * s.record.scale.response(),
+                            .step = 4e-3 * s.record.scale.response()}});
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

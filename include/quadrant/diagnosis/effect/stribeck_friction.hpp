@@ -11,12 +11,10 @@ inline constexpr effect stribeck_friction{
     .box = "mechanics",
     .exciting_motion = "slow reversals and constant speeds from creep to a few times the Stribeck velocity",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        double peak = 0;
-        for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
+        const double peak = s.record.scale.speed;
         std::vector<std::vector<parameter>> out;
-        for (double slow : {0.001, 0.005, 0.02}) {
-            const double velocity = slow * s.record.pace;
-            if (velocity > 0.5 * peak) continue;
+        for (double slow : {0.004, 0.02, 0.08}) {
+            const double velocity = slow * peak;
             const double force = detail::mean_residual(s,
                                                        [&](std::size_t k) {
                                                            const double v = s.record.velocity[k];
@@ -26,7 +24,7 @@ inline constexpr effect stribeck_friction{
                                      const double v = s.record.velocity[k];
                                      return -v > 0.1 * velocity && -v < velocity;
                                  });
-            const double scale = 1e-3 * s.force_of_a_volt();
+            const double scale = 1e-4 * s.force_scale();
             const double start =
                 std::max({s.leader.friction.excess + 0.5 * force, 0.3 * s.leader.friction.excess, scale});
             out.push_back({{.key = "static_N",
@@ -39,8 +37,8 @@ inline constexpr effect stribeck_friction{
                            {.key = "stribeck_velocity_m_per_s",
                             .of = [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
                             .start = velocity,
-                            .low = 2e-4,
-                            .high = 0.1 * s.record.pace,
+                            .low = 8e-4 * peak,
+                            .high = 0.4 * peak,
                             .logarithmic = true,
                             .step = 1e-3}});
         }

@@ -57,9 +57,10 @@ inline constexpr effect structural_resonance{
     .box = "mechanics",
     .exciting_motion = "multi-sine of 10 to 300 Hz, or a chirp through the suspected frequency",
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double m = s.leader.mass, highest = std::min(600.0, 0.3 / s.record.period);
+        const double m = s.leader.mass, corner = s.record.scale.corner_Hz,
+                     highest = std::min(10 * corner, 0.3 / s.record.period);
         std::vector<std::vector<parameter>> out;
-        for (double f : detail::ringing_frequencies(s, 6, highest, 3))
+        for (double f : detail::ringing_frequencies(s, 0.1 * corner, highest, 3))
             for (double share : {0.03, 0.2})
                 out.push_back({{.key = "mode_mass_kg",
                                 .of = [](plant_model& p) -> double& { return p.mode.mass; },
@@ -71,7 +72,7 @@ inline constexpr effect structural_resonance{
                                {.key = "mode_frequency_Hz",
                                 .of = [](plant_model& p) -> double& { return p.mode.frequency_Hz; },
                                 .start = f,
-                                .low = 5,
+                                .low = 0.08 * corner,
                                 .high = highest,
                                 .logarithmic = true,
                                 .step = 1e-3},

@@ -47,7 +47,7 @@ template <over Of> void span(plant_model& plant, const screening& s) {
 }
 
 template <over Of> std::vector<std::vector<parameter>> starts(const screening& s) {
-    const double most = 10 * s.force_of_a_volt();
+    const double most = 3 * s.force_scale();
     return {[&]<std::size_t... I>(std::index_sequence<I...>){
         return std::vector<parameter>{{.key = "force_N",
                                        .of = own_number<force<Of>, 2 + I>,

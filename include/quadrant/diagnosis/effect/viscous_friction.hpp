@@ -17,7 +17,7 @@ inline constexpr effect viscous_friction{
             vf += s.record.velocity[k] * s.residual[k];
         }
         const double b = s.leader.friction.viscous_slope, slope = vv > 0 ? vf / vv : 0;
-        const double start = std::max({b + slope, 0.25 * b, 1e-3 * s.leader.mass});
+        const double start = std::max({b + slope, 0.25 * b, 1e-5 * s.force_scale() / s.record.scale.speed});
         return {{{.key = "viscous_N_s_per_m",
                   .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
                   .start = start,

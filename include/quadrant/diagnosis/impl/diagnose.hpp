@@ -182,10 +182,11 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
     for (const axis_description& axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
-        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s);
+        const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
         if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
-            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s);
+            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s, band);
         detail::add_own_effects(out.own_effects, axis);
         if (axis.controller && axis.controller->own) // its file's kind is known after all
             std::erase_if(out.notes, [&](const std::string& note) {
