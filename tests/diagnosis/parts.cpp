@@ -385,7 +385,9 @@ TEST_CASE(
     const auto calibrated = [&] { // the machine file as calibration begins with it
         plant_model plant(d);
         bool moves = false;
-        for (const parameter& p : calibration(d, {})) {
+        axis_description axis;
+        axis.plant = d;
+        for (const parameter& p : calibration(axis)) {
             p.of(plant) = p.start;
             moves |= p.key == "presliding_length_m";
         }
