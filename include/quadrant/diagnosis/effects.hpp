@@ -20,6 +20,7 @@
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
 #include "effect/presliding_friction.hpp"
+#include "effect/quadratic_drag.hpp"
 #include "effect/sample_loss.hpp"
 #include "effect/stribeck_friction.hpp"
 #include "effect/structural_resonance.hpp"
@@ -45,6 +46,7 @@ inline constexpr std::array listed_effects{
     &suspect::backlash,
     &suspect::constant_force,
     &suspect::position_spring,
+    &suspect::quadratic_drag,
     &suspect::cross_coupling,
     &suspect::cogging,
     &suspect::force_ripple,
