@@ -2,7 +2,7 @@
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/blind_spots.hpp>
-#include <quadrant/diagnosis/effect_names.hpp>
+#include <quadrant/diagnosis/effect_list.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 using namespace workshop;
@@ -197,9 +197,9 @@ TEST_CASE("diagnose: a command in newtons is searched on its own scale, as one i
     machine real;
     auto file = described(real);
     file.axes[0].controller.reset();
-    for (const effect_name& e : effect_names) // what is left is enough to be wrong about
-        if (e.name != "cogging" && e.name != "constant_force" && e.name != "position_spring")
-            file.excluded_effects.emplace_back(e.name);
+    for (const std::string_view e : names_of_effects()) // what is left is enough to be wrong about
+        if (e != "cogging" && e != "constant_force" && e != "position_spring")
+            file.excluded_effects.emplace_back(e);
     real.cogging = 12;
     auto log = as_log(run(real, three_strokes));
     for (double& u : log.axes[0].command) u *= file.axes[0].plant.force_constant_N_per_V;

@@ -13,7 +13,7 @@ constexpr double rough = 0.001; ///< sample period where only models meet models
 confusable under(const effect& name, const axis_description& axis, const std::vector<parameter>& own) {
     confusable out{.name = &name, .model = {.effects = {&name}}};
     out.model.fit.plant = plant_model(axis, usual.give());
-    for (const auto& p : calibration(axis.plant, axis.tolerance, usual.give()))
+    for (const auto& p : calibration(axis, usual.give()))
         if (std::none_of(own.begin(), own.end(), [&](const auto& q) { return q.key == p.key; }))
             out.model.fit.parameters.push_back(p);
     out.model.fit.parameters.insert(out.model.fit.parameters.end(), own.begin(), own.end());

@@ -389,7 +389,9 @@ TEST_CASE(
     const auto calibrated = [&] { // the machine file as calibration begins with it
         plant_model plant(d, workshop::usual.give());
         bool moves = false;
-        for (const parameter& p : calibration(d, {}, workshop::usual.give())) {
+        axis_description axis;
+        axis.plant = d;
+        for (const parameter& p : calibration(axis, workshop::usual.give())) {
             p.of(plant) = p.start;
             moves |= p.key == "presliding_length_m";
         }

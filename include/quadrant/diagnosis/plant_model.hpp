@@ -44,7 +44,7 @@ struct plant_model {
     double spring = 0;         ///< [N/m], about position 0
     double coupling = 0;       ///< of the other axis' acceleration
     harmonics cogging;         ///< [N] over position
-    diagnosis::own_forces own; ///< forces that no list names
+    own_laws own;              ///< laws of effects that have no member here
     /// A second mass on a spring, not seen by the encoder.
     struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
@@ -101,7 +101,7 @@ struct plant_model {
             cutting = {1 / *a.process.fundamental_Hz, a.process.force_N, a.process.phase_rad};
         cutting_mean = a.process.mean_N.value_or(0);
         cyclic = one(a.encoder.cyclic_m, a.encoder.cyclic_period_m, a.encoder.cyclic_phase_rad);
-        for (const auto& f : a.own_forces) own.of(*f.force) = f.values;
+        for (const auto& l : a.laws) own.of(*l.law) = l.values;
     }
 
 private:

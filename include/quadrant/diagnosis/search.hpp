@@ -25,7 +25,7 @@ public:
             -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
-        start.fit.parameters = calibration(axis.plant, axis.tolerance, record.scale.give());
+        start.fit.parameters = calibration(axis, record.scale.give());
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -119,8 +119,7 @@ public:
             return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end();
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
-        for (const own_suspect& own : axis_.own_effects)
-            if (allowed(own.searched)) out.push_back(own.searched);
+        std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
         return out;
     }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../key_value.hpp"
 #include "../record.hpp"
+#include "effect_record.hpp"
 
-#include <string_view>
+#include <fmt/format.h>
 
 namespace quadrant::diagnosis {
 
@@ -18,24 +18,6 @@ struct screening {
 
     /// Force of the largest command, the scale of forces on this axis [N].
     double force_scale() const { return leader.force_constant * record.scale.command; }
-};
-
-/// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp; a user's own needs neither
-/// (own_effect.hpp).
-struct effect {
-    std::string_view name, box;
-    std::string_view exciting_motion; ///< what motion shows it
-    /// A name that is the same model on any motion as far as its other terms agree (gap/FORMAT.md, known equivalences).
-    std::string_view equivalent = "";
-    /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the same
-    /// key). None: it cannot be told from this record.
-    std::vector<std::vector<parameter>> (*starts)(const screening&);
-    /// The machine file's keys with the values of a fitted model.
-    std::vector<key_value> (*read)(const plant_model&);
-    /// What the plant model needs before the parameters mean anything; most effects need nothing.
-    void (*join)(plant_model&, const screening&) = [](plant_model&, const screening&) {};
-    /// Another law of the same effect, as good on this record, would have up to this multiple of the first value read.
-    double by_another_law = 1;
 };
 
 namespace detail {

@@ -9,8 +9,25 @@ namespace quadrant::diagnosis::suspect {
 /// belongs to it, so that the zero of the position does not matter.
 inline constexpr effect position_spring{
     .name = "position_spring",
+    .label = "spring force",
     .box = "mechanics",
+    .joins = joint::force,
     .exciting_motion = "slow strokes over the whole travel in both directions, with rest at both ends",
+    .shows = "proportional to position",
+    .keys = {machine_key{.name = "spring_N_per_m",
+                         .rule = detail::rule::any_number,
+                         .meaning = "force -spring x about position 0",
+                         .at = member<&plant_description::spring_N_per_m>}},
+    .prior = {0.2, "cable carriers and bellows pull, most of them weakly"},
+    .compensation = "a gain on the position",
+    .remedy = "Add a command proportional to the position; look at cable carrier, bellows and counterweight.",
+    .trial = {.low = 1e-4,
+              .high = 1,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("spring_N_per_m", m.amplitude * m.around.peak_force / m.around.travel);
+                  },
+              .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         double xx = 0, xf = 0, mean_x = 0, mean_f = 0, furthest = 0;
         const auto n = static_cast<double>(s.residual.size());

@@ -10,8 +10,59 @@ namespace quadrant::diagnosis::suspect {
 /// gives way a little: ten times record_scales::give() is no cause.
 inline constexpr effect presliding_friction{
     .name = "presliding_friction",
+    .label = "presliding friction",
     .box = "mechanics",
+    .joins = joint::friction,
     .exciting_motion = "sinusoids of 15 and 450 um at 0.1 to 1 Hz, where friction gives way before it slips",
+    .shows = "hysteresis in the first ten micrometres after a reversal",
+    .keys = {machine_key{.name = "presliding_length_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "deflection at which friction has reached 1 - 1/e of its level; "
+                                    "gms_weights say it more exactly and go before it",
+                         .at = member<&plant_description::presliding_length_m>},
+             machine_key{.name = "presliding_damping_s",
+                         .rule = detail::rule::up_to_a_second,
+                         .meaning = "damping of the contact before it slips, over its stiffness",
+                         .at = member<&plant_description::presliding_damping_s>},
+             machine_key{.name = "gms_weights",
+                         .rule = detail::rule::positive,
+                         .meaning = "shares of the friction level, one entry an element; they add up to 1",
+                         .at = member<&plant_description::gms_weights>,
+                         .needs = {"gms_stiffness_N_per_m"},
+                         .shape = key_shape::elements},
+             machine_key{.name = "gms_stiffness_N_per_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "stiffness of each element",
+                         .at = member<&plant_description::gms_stiffness_N_per_m>,
+                         .needs = {"gms_weights"},
+                         .entries_of = "gms_weights",
+                         .shape = key_shape::elements},
+             machine_key{.name = "gms_attraction_N_per_s",
+                         .rule = detail::rule::positive,
+                         .meaning = "how fast a slipping element reaches its limit; absent: at once",
+                         .at = member<&plant_description::gms_attraction_N_per_s>,
+                         .needs = {"gms_weights"}}},
+    .fault = [](const axis_description& a) -> key_fault {
+        const plant_description& p = a.plant;
+        if (!p.coulomb_N && !p.static_N) {
+            if (p.presliding_length_m)
+                return {"presliding_length_m", "needs {}: the friction that gives way", "coulomb_N"};
+            if (!p.gms_weights.empty())
+                return {"gms_weights", "needs {}: the friction that gives way", "coulomb_N"};
+        }
+        const double sum = std::accumulate(p.gms_weights.begin(), p.gms_weights.end(), 0.0);
+        if (!p.gms_weights.empty() && std::abs(sum - 1) > 1e-3)
+            return {"gms_weights", "must add up to 1: shares of the friction level"};
+        return {};
+    },
+    .prior = {0.5, "every contact gives way, but few logs reverse slowly enough to show by how much"},
+    .compensation = "friction with its give (maxwell_slip)",
+    .remedy = "Feed the friction forward with the give of the contact (maxwell_slip); it matters where circles "
+              "change quadrant.",
+    .trial = {.low = 3e-6,
+              .high = 3e-4,
+              .into = [](trial_machine& m) { m.set("presliding_length_m", m.amplitude); },
+              .needs_coulomb = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         std::vector<std::vector<parameter>> out;
