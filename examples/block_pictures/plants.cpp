@@ -2,6 +2,7 @@
 // Machines and what happens to them: motors, play, cogging, modes, cutting.
 #include "families.hpp"
 
+#include <quadrant/friction/slip_contact.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/backlash.hpp>
 #include <quadrant/plant/ball_screw_drive.hpp>
@@ -9,6 +10,7 @@
 #include <quadrant/plant/flexible_modes.hpp>
 #include <quadrant/plant/force_ripple.hpp>
 #include <quadrant/plant/linear_motor.hpp>
+#include <quadrant/plant/servo_axis.hpp>
 #include <quadrant/plant/three_phase_drive.hpp>
 #include <quadrant/process/cutting_force.hpp>
 #include <quadrant/process/milling_force.hpp>
@@ -74,6 +76,61 @@ picture draw_flexible_modes() {
     p.log_y = true;
     return of("Compliance over frequency of an axis of 340 kg with a mode at 47 Hz, share 0.2 and share -0.3",
               {p});
+}
+/// Four springs with the attraction of the thesis' table.
+template <class Parameters> void give_way(Parameters& friction) {
+    friction.weights = {0.4, 0.3, 0.2, 0.1};
+    const std::array<double, 4> newtons_per_um{12, 5, 2, 0.6};
+    for (std::size_t i = 0; i < 4; ++i) friction.stiffness[i] = newtons_per_um[i] * 1_N / 1_um;
+    friction.attraction = 2000_N / 1_s;
+}
+picture draw_servo_axis() {
+    servo_axis<>::parameters p;
+    p.mass = 340;
+    p.force_constant = 1450;
+    p.play = 30e-6;
+    p.friction.level = 122_N;
+    p.friction.excess = 55_N;
+    p.friction.stribeck_velocity = 1_mps / 450.0;
+    p.friction.viscous = 950_N / 1_mps;
+    give_way(p.friction);
+    const double h = 1e-4;
+    const servo_axis<> plant(p, h);
+    auto s = servo_axis<>::state::at(0);
+    curve motor("motor", dashed), load("load"), friction("springs of the friction");
+    for (int k = 0; k < 10000; ++k) {
+        const double x = 100e-6 * std::sin(2 * pi * 2 * k * h),
+                     v = 100e-6 * 4 * pi * std::cos(2 * pi * 2 * k * h);
+        plant.advance(s, 40 * (x - s.x) * 100 + 30 * (v - s.v), {});
+        if (k % 20 != 0) continue;
+        motor.add(1e3 * k * h, 1e6 * s.x);
+        load.add(1e3 * k * h, 1e6 * plant.reading(s));
+        double sum = 0;
+        for (const double f : s.friction.force) sum += f;
+        friction.add(1e3 * k * h, sum);
+    }
+    return of("Position, and friction, of an axis with presliding friction and play that is pushed to and fro",
+              {over("", "position [um]", {load, motor}), over("time [ms]", "force [N]", {friction})});
+}
+picture draw_slip_contact() {
+    slip_contact<4>::parameters p;
+    p.level = 122_N;
+    give_way(p);
+    curve large("60 um"), small("15 um");
+    for (curve* c : {&large, &small}) {
+        const double h = 1e-3, amplitude = c == &large ? 60e-6 : 15e-6, heavy = 1e9;
+        const slip_contact<4> guide(p, heavy, h);
+        slip_contact<4>::state s;
+        for (int k = 0; k < 2500; ++k) { // a heavy mass: it moves as it is told
+            const double v = 2 * pi * amplitude * std::cos(2 * pi * k * h);
+            guide(s, heavy * v, v);
+            double sum = 0;
+            for (const double f : s.force) sum += f;
+            if (k % 5 == 0) c->add(1e6 * amplitude * std::sin(2 * pi * k * h), sum);
+        }
+    }
+    return of("Friction over displacement of a guide that is moved to and fro by 60 um and by 15 um",
+              {over("displacement [um]", "force [N]", {large, small})});
 }
 picture draw_linear_motor() {
     using machine = linear_motor<stribeck<>>;
@@ -194,6 +251,8 @@ family plants() {
             {"cyclic_error", draw_cyclic_error},
             {"flexible_modes", draw_flexible_modes},
             {"linear_motor", draw_linear_motor},
+            {"servo_axis", draw_servo_axis},
+            {"slip_contact", draw_slip_contact},
             {"ball_screw_drive", draw_ball_screw_drive},
             {"three_phase_drive", draw_three_phase_drive},
             {"cutting_force", draw_cutting_force},
