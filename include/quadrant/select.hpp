@@ -24,6 +24,11 @@ concept multi_lane = requires {
     typename Number::mask;
 };
 
+/// The same for a class that keeps its lanes apart: lanes<1> is one instance.
+template <class Number>
+concept several_lanes = multi_lane<Number> && lane_count<Number> >
+1;
+
 namespace detail {
 template <class Number> struct mask_of { using type = bool; };
 template <multi_lane Number> struct mask_of<Number> { using type = typename Number::mask; };
@@ -119,7 +124,7 @@ template <class Value> constexpr Value larger(const Value& a, const std::type_id
 }
 /// x within its bounds: high above high, low below low, else x, a NaN too.
 template <class Value>
-constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
+constexpr Value limited_to(const Value& x, const std::type_identity_t<Value>& low,
                         const std::type_identity_t<Value>& high) noexcept {
     if constexpr (detail::single<Value, Value>)
         return x > high ? high : x < low ? low : x; // no bound is read that is not needed
@@ -128,11 +133,11 @@ constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
 }
 /// x within -most ... most.
 template <class Value>
-constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& most) noexcept {
+constexpr Value limited_to(const Value& x, const std::type_identity_t<Value>& most) noexcept {
     if constexpr (detail::single<Value, Value>)
         return x > most ? most : x < -most ? -most : x;
     else
-        return clamped(x, -most, most);
+        return limited_to(x, -most, most);
 }
 /// True where x lies above high or below low.
 template <class Value>

@@ -42,20 +42,28 @@ template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) no
         x);
 }
 template <std::size_t W, class Isa> lanes<W, Isa> sin(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
+    lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::sin;
             return sin(v);
         },
         x);
+    if (const auto near = within_turns(x); !all(near))
+        for (std::size_t i = 0; i < W; ++i)
+            if (!near[i]) y.set(i, std::sin(x[i]));
+    return y;
 }
 template <std::size_t W, class Isa> lanes<W, Isa> cos(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
+    lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::cos;
             return cos(v);
         },
         x);
+    if (const auto near = within_turns(x); !all(near))
+        for (std::size_t i = 0; i < W; ++i)
+            if (!near[i]) y.set(i, std::cos(x[i]));
+    return y;
 }
 template <std::size_t W, class Isa> lanes<W, Isa> tan(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::one_by_one([](double v) { return std::tan(v); }, x);

@@ -28,6 +28,7 @@ public:
     static_assert(W > 0, "at least one lane");
     using mask = lane_mask<W, Isa>;
     static constexpr std::size_t size = W;
+    using single = lanes<1, Isa>; ///< one instance in the same instruction set
 
     lanes() noexcept : lanes(0.0) {}
     /// The same number in every lane.
@@ -101,6 +102,9 @@ public:
     }
     friend mask finite_lanes(const lanes& a) noexcept {
         return test([](const piece& x) { return detail::is_finite(x); }, a);
+    }
+    friend mask within_turns(const lanes& a) noexcept {
+        return test([](const piece& x) { return detail::within_turns(x); }, a);
     }
     friend lanes select(const mask& choice, const lanes& one, const lanes& other) noexcept {
         return chosen(choice, one, other);
