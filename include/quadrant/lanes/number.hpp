@@ -145,7 +145,9 @@ private:
     std::array<piece, pieces> piece_;
 };
 
+/// W.
 template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lanes<W, Isa>> = W;
+/// W.
 template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lane_mask<W, Isa>> = W;
 /// The number in lane i.
 template <std::size_t W, class Isa> double lane(const lanes<W, Isa>& x, std::size_t i) noexcept { return x[i]; }
