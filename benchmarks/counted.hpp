@@ -3,6 +3,8 @@
 #include "conformance/blocks.hpp"
 #include "sums.hpp"
 
+#include <quadrant/lanes.hpp>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -121,6 +123,27 @@ template <std::size_t Horizon> auto predicting() {
                 T)](double x) mutable { return block(x * 1_m).value(); };
 }
 
+/// Four notches of the library, each with its own centre, and the same in lanes (registers of the build's instruction set).
+struct four_notches {
+    std::array<notch<s::force>, 4> each{notch<s::force>{{330_Hz, 0.1}, T}, notch<s::force>{{340_Hz, 0.1}, T},
+                                        notch<s::force>{{350_Hz, 0.1}, T}, notch<s::force>{{360_Hz, 0.1}, T}};
+    double operator()(double x) {
+        const auto in = quantity_of<s::force>::from_value(x);
+        return (each[0](in) + each[1](in) + each[2](in) + each[3](in)).value();
+    }
+};
+struct notches_in_lanes {
+    using number = lanes<4>;
+    notch<s::force, number> all{
+        {quantity<si::frequency, number>::from_value(number(std::array{330.0, 340.0, 350.0, 360.0})),
+         number(0.1)},
+        T};
+    double operator()(double x) {
+        const std::array y = all(quantity_of<s::force, number>::from_value(number(x))).value().each();
+        return y[0] + y[1] + y[2] + y[3];
+    }
+};
+
 /// Ways to sum a filter of 90 taps, then ways to have two axes: count(group, name, what makes the step), a group is one filter.
 template <class Count> void each_sum(Count&& count) {
     using sums::over_a_window;
@@ -142,6 +165,8 @@ template <class Count> void each_sum(Count&& count) {
         return sums::after_each_other<biquad_by_hand>{by_hand(), by_hand()};
     });
     count(2, "~ two axes in lanes, notch by hand", [] { return notches(by_hand()); });
+    count(3, "~ four notches, one after the other", [] { return four_notches(); });
+    count(3, "~ four notches, lanes<4>", [] { return notches_in_lanes(); });
 }
 
 /// count(name, amplitude of the input, what makes the step), always in the same order.

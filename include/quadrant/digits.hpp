@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "lanes/instruction_set.hpp"
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -18,14 +20,14 @@ struct number_text {
 
 #ifdef __cpp_exceptions
 /// The shortest text that reads back as the same number.
-inline number_text digits(double x) {
+template <class Isa = isa::here> number_text digits(double x) {
     number_text out;
     std::to_chars(out.text.data(), out.text.data() + out.text.size() - 1, x);
     return out;
 }
 #else
 /// Nine significant digits at most, without the standard library, whose to_chars brings in an unwinder and files.
-inline number_text digits(double x) {
+template <class Isa = isa::here> number_text digits(double x) {
     number_text out;
     char* at = out.text.data();
     const auto word = [&](const char* w) {

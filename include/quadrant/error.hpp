@@ -18,6 +18,7 @@
 
 /// Parameters that no machine could have. With exceptions a constructor throws invalid_parameter. Without them
 /// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does neither.
+/// What is no template by itself carries the instruction set, see lanes/instruction_set.hpp.
 namespace quadrant {
 
 namespace detail {
@@ -25,15 +26,15 @@ namespace detail {
 struct text_buffer {
     char* out;
     std::size_t size, used = 0;
-    void add(const char* words) {
+    [[gnu::always_inline]] void add(const char* words) {
         for (; *words != '\0'; ++words, ++used)
             if (used < size) out[used] = *words;
     }
-    void add(double number) { add(digits(number).text.data()); }
+    [[gnu::always_inline]] void add(double number) { add(digits(number).text.data()); }
 };
 
 #ifdef __cpp_exceptions
-template <class Written> std::string written(const Written& what) {
+template <class Isa = isa::here, class Written> std::string written(const Written& what) {
     text_buffer counted{nullptr, 0};
     what.write(counted);
     std::string out(counted.used, ' ');
@@ -55,7 +56,7 @@ public:
             left.pieces_[left.count_++] = right.pieces_[i];
         return left;
     }
-    void write(text_buffer& text) const {
+    template <class Isa = isa::here> void write(text_buffer& text) const {
         for (std::size_t i = 0; i < count_; ++i)
             pieces_[i].words != nullptr ? text.add(pieces_[i].words) : text.add(pieces_[i].number);
     }
@@ -80,6 +81,8 @@ struct field_name {
     const char *block = nullptr, *field = nullptr;
 };
 
+template <multi_lane Lanes>
+requires(lane_count<Lanes> == 1) constexpr double plain(const Lanes& x) noexcept { return x[0]; }
 constexpr double plain(double x) noexcept { return x; }
 template <class Dual>
 requires requires(const Dual& d) {
@@ -106,7 +109,7 @@ struct refused_parameter {
         if (size > 0) out[text.used < size ? text.used : size - 1] = '\0';
         return text.used;
     }
-    void write(detail::text_buffer& text) const {
+    template <class Isa = isa::here> void write(detail::text_buffer& text) const {
         if (field.block == nullptr) return text.add("nothing was made yet");
         for (const char* words : {field.block, field.field, " = "}) text.add(words);
         text.add(value);
@@ -119,7 +122,7 @@ struct refused_parameter {
 /// what() reads as refused_parameter::write. Thrown by constructors only, never by a step.
 struct invalid_parameter : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
-    explicit invalid_parameter(const refused_parameter& r)
+    [[gnu::always_inline]] explicit invalid_parameter(const refused_parameter& r)
         : std::invalid_argument(detail::written(r)), why(r) {}
     std::optional<refused_parameter> why; ///< none when thrown as text, which no block does
 };
@@ -139,7 +142,7 @@ struct attempt {
 #endif
 
 namespace detail {
-[[noreturn]] inline void refuse(const refused_parameter& why) {
+template <class Isa = isa::here> [[noreturn]] void refuse(const refused_parameter& why) {
 #ifdef __cpp_exceptions
     throw invalid_parameter(why);
 #else
@@ -154,38 +157,41 @@ namespace detail {
 } // namespace detail
 
 /// Refuses `value` unless `holds`, naming block, field, value and rule.
-template <class Value>
+template <class Value, class Isa = isa::here>
 void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
     if (!holds) detail::refuse({field, detail::plain(value), must});
 }
 /// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks it.
-template <class Value, class Rule>
+template <class Value, class Rule, class Isa = isa::here>
 requires std::is_invocable_r_v<bool, Rule, std::size_t>
 void require_lanes(Rule holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) require(holds(i), field, lane(value, i), must);
 }
 
 /// The rules that come up everywhere. Of a number of lanes each has to keep them.
-template <class Value> void require_finite(const detail::field_name& field, const Value& value) {
+template <class Value, class Isa = isa::here>
+void require_finite(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i)
         require(std::isfinite(detail::plain(lane(value, i))), field, lane(value, i), "must be finite");
 }
 /// Finite and above 0.
-template <class Value> void require_positive(const detail::field_name& field, const Value& value) {
+template <class Value, class Isa = isa::here>
+void require_positive(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
         require(std::isfinite(x) && x > 0, field, x, "must be finite and above 0");
     }
 }
 /// Finite and not below 0.
-template <class Value> void require_not_negative(const detail::field_name& field, const Value& value) {
+template <class Value, class Isa = isa::here>
+void require_not_negative(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
         require(std::isfinite(x) && x >= 0, field, x, "must be finite and not below 0");
     }
 }
 /// A corner or centre frequency of a block that runs every `period`.
-template <class Value>
+template <class Value, class Isa = isa::here>
 void require_below_nyquist(const detail::field_name& field, const Value& value, duration period) {
     const double nyquist = 0.5 / period.value();
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {

@@ -71,6 +71,7 @@ public:
         if constexpr (std::is_same_v<mask, bool>) {
             return good ? keep(y) : hold();
         } else {
+            if (all(good)) return keep(y);
             fault_ |= !good;
             set_where(good, last_, y);
             return last_;

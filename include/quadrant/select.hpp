@@ -13,8 +13,10 @@ namespace quadrant {
 
 /// How many instances a number holds: 1, or W for lanes<W>.
 template <class Number> inline constexpr std::size_t lane_count = 1;
+/// That of its number.
 template <class Unit, class Real>
 inline constexpr std::size_t lane_count<quantity<Unit, Real>> = lane_count<Real>;
+/// That of its elements.
 template <class Number, std::size_t N>
 inline constexpr std::size_t lane_count<std::array<Number, N>> = lane_count<Number>;
 
@@ -23,6 +25,11 @@ template <class Number>
 concept multi_lane = requires {
     typename Number::mask;
 };
+
+/// The same for a class that keeps its lanes apart: lanes<1> is one instance.
+template <class Number>
+concept several_lanes = multi_lane<Number> && lane_count<Number> >
+1;
 
 namespace detail {
 template <class Number> struct mask_of { using type = bool; };
@@ -40,6 +47,7 @@ template <class Number> using mask_of = typename detail::mask_of<Number>::type;
 template <class A, class B>
 requires detail::single<A, B>
 constexpr bool less(const A& a, const B& b) noexcept { return a < b; }
+/// The same for quantities of one unit.
 template <class Unit, class A, class B>
 requires(!detail::single<A, B>) constexpr auto less(const quantity<Unit, A>& a,
                                                     const quantity<Unit, B>& b) noexcept {
@@ -49,6 +57,7 @@ requires(!detail::single<A, B>) constexpr auto less(const quantity<Unit, A>& a,
 template <class A, class B>
 requires detail::single<A, B>
 constexpr bool less_equal(const A& a, const B& b) noexcept { return a <= b; }
+/// The same for quantities of one unit.
 template <class Unit, class A, class B>
 requires(!detail::single<A, B>) constexpr auto less_equal(const quantity<Unit, A>& a,
                                                           const quantity<Unit, B>& b) noexcept {
@@ -58,6 +67,7 @@ requires(!detail::single<A, B>) constexpr auto less_equal(const quantity<Unit, A
 template <class A, class B>
 requires detail::single<A, B>
 constexpr bool equal(const A& a, const B& b) noexcept { return a == b; }
+/// The same for quantities of one unit.
 template <class Unit, class A, class B>
 requires(!detail::single<A, B>) constexpr auto equal(const quantity<Unit, A>& a,
                                                      const quantity<Unit, B>& b) noexcept {
@@ -86,6 +96,7 @@ template <class Value>
 constexpr Value select(bool choice, const Value& one, const std::type_identity_t<Value>& other) noexcept {
     return choice ? one : other;
 }
+/// The same for quantities of lanes.
 template <class Unit, multi_lane Real>
 constexpr quantity<Unit, Real> select(const typename Real::mask& choice, const quantity<Unit, Real>& one,
                                       const std::type_identity_t<quantity<Unit, Real>>& other) noexcept {
@@ -100,7 +111,10 @@ constexpr void set_where(bool where, Value& to, const std::type_identity_t<Value
 template <class Mask, class Value>
 requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
     const Mask& where, Value& to, const std::type_identity_t<Value>& from) noexcept {
-    to = select(where, from, to);
+    if (all(where)) // nearly always, and a branch costs less than W selections
+        to = from;
+    else
+        to = select(where, from, to);
 }
 template <class Mask, class Value, std::size_t N>
 requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
@@ -119,8 +133,8 @@ template <class Value> constexpr Value larger(const Value& a, const std::type_id
 }
 /// x within its bounds: high above high, low below low, else x, a NaN too.
 template <class Value>
-constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
-                        const std::type_identity_t<Value>& high) noexcept {
+constexpr Value limited_to(const Value& x, const std::type_identity_t<Value>& low,
+                           const std::type_identity_t<Value>& high) noexcept {
     if constexpr (detail::single<Value, Value>)
         return x > high ? high : x < low ? low : x; // no bound is read that is not needed
     else
@@ -128,11 +142,11 @@ constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
 }
 /// x within -most ... most.
 template <class Value>
-constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& most) noexcept {
+constexpr Value limited_to(const Value& x, const std::type_identity_t<Value>& most) noexcept {
     if constexpr (detail::single<Value, Value>)
         return x > most ? most : x < -most ? -most : x;
     else
-        return clamped(x, -most, most);
+        return limited_to(x, -most, most);
 }
 /// True where x lies above high or below low.
 template <class Value>
@@ -153,10 +167,12 @@ template <class Number>
 requires(lane_count<Number> == 1) constexpr const Number& lane(const Number& x, std::size_t) noexcept {
     return x;
 }
+/// One lane, with its unit.
 template <class Unit, multi_lane Real>
 constexpr auto lane(const quantity<Unit, Real>& x, std::size_t i) noexcept {
     return quantity<Unit, double>::from_value(x.value()[i]);
 }
+/// One lane of every element.
 template <class Number, std::size_t N>
 requires(lane_count<Number> > 1) constexpr auto lane(const std::array<Number, N>& x, std::size_t i) noexcept {
     std::array<std::remove_cvref_t<decltype(lane(x[0], i))>, N> out;
@@ -169,6 +185,7 @@ requires(lane_count<Number> == 1) constexpr void set_lane(Number& x, std::size_t
                                                           const std::type_identity_t<Number>& value) noexcept {
     x = value;
 }
+/// Replaces one lane, unit checked.
 template <class Unit, multi_lane Real>
 constexpr void set_lane(quantity<Unit, Real>& x, std::size_t i, const quantity<Unit>& value) noexcept {
     Real lanes = x.value();

@@ -70,7 +70,7 @@ public:
     state now() const noexcept { return {}; }
 
 private:
-    value clipped(value x) const noexcept { return clamped(x, low_, high_); }
+    value clipped(value x) const noexcept { return limited_to(x, low_, high_); }
 
     parameters given_;
     value low_, high_;

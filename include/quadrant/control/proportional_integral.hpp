@@ -152,7 +152,7 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
-    value bounded(value u) const noexcept { return clamped(u, limit_); }
+    value bounded(value u) const noexcept { return limited_to(u, limit_); }
     mask_of<Real> drives_out(value u, value more) const noexcept {
         return either(both(greater(more, value()), greater(u, limit_)),
                       both(less(more, value()), less(u, -limit_)));

@@ -40,7 +40,7 @@ public:
 
     value operator()(value x) noexcept {
         const value low = state_.y - most_, high = state_.y + most_;
-        const value y = clamped(x, low, high);
+        const value y = limited_to(x, low, high);
         const auto good = finite(x, y);
         if (none(good)) return out_.hold();
         set_where(good, limited_, outside(x, low, high));

@@ -98,10 +98,10 @@ public:
 private:
     Real turned(argument v, Real side) const noexcept {
         const Real x = Real(v / width_);
-        if (given_.rest == at_rest::off) return clamped(x, Real(-1), Real(1));
-        const Real low = clamped(Real(2) * x - Real(1), Real(-1), Real(1)),
-                   high = clamped(Real(2) * x + Real(1), Real(-1), Real(1));
-        return clamped(side, low, high);
+        if (given_.rest == at_rest::off) return limited_to(x, Real(-1), Real(1));
+        const Real low = limited_to(Real(2) * x - Real(1), Real(-1), Real(1)),
+                   high = limited_to(Real(2) * x + Real(1), Real(-1), Real(1));
+        return limited_to(side, low, high);
     }
     value at(argument v, Real side) const noexcept {
         return share_ * (law_.slip(v) * side + law_.viscous() * v);

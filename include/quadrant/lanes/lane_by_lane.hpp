@@ -9,10 +9,11 @@
 
 namespace quadrant {
 
-/// W blocks in double behind the call of one block in lanes: for a law whose state holds whole numbers (where in a ring
-/// the delay of this lane is read). It loops over its lanes and costs what W blocks cost.
+/// W blocks of one lane behind the call of one block in lanes: for a law whose state holds whole numbers (where in a ring
+/// the delay of this lane is read). It loops over its lanes and costs what W blocks cost. The blocks run in lanes<1>, a
+/// double that carries the instruction set in its type.
 /// Lane i's block is of(i); what is not a verb of all blocks is asked of it, such as response.
-template <class Block, multi_lane Real> class lane_by_lane {
+template <class Block, several_lanes Real> class lane_by_lane {
 public:
     static constexpr std::size_t size = lane_count<Real>;
     using input = typename Block::input;
@@ -20,24 +21,26 @@ public:
     using argument = quantity_of<input, Real>;
     using value = quantity_of<output, Real>;
     using number = Real; ///< of parameters
+    using single = typename Real::single;
     using mask = mask_of<Real>;
     using state = std::array<typename Block::state, size>; ///< that of each lane
 
     value operator()(argument x) noexcept {
         const std::array<double, size> in = x.value().each();
         std::array<double, size> out;
-        for (std::size_t i = 0; i < size; ++i) out[i] = each_[i](Block::argument::from_value(in[i])).value();
+        for (std::size_t i = 0; i < size; ++i)
+            out[i] = each_[i](Block::argument::from_value(single(in[i]))).value()[0];
         return value::from_value(Real(out));
     }
     void reset() noexcept {
         for (Block& block : each_) block.reset();
     }
     void settle(argument x) noexcept {
-        for (std::size_t i = 0; i < size; ++i) each_[i].settle(lane(x, i));
+        for (std::size_t i = 0; i < size; ++i) each_[i].settle(in_real<single>(lane(x, i)));
     }
     void shift(argument by) noexcept requires requires(Block& b, typename Block::argument x) { b.shift(x); }
     {
-        for (std::size_t i = 0; i < size; ++i) each_[i].shift(lane(by, i));
+        for (std::size_t i = 0; i < size; ++i) each_[i].shift(in_real<single>(lane(by, i)));
     }
 
     /// The block of lane i.

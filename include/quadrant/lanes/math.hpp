@@ -9,6 +9,7 @@
 /// library lane by lane: a filter designed with them has the coefficients of its scalar twin, bit for bit.
 namespace quadrant {
 
+/// Without its sign, as std::abs.
 template <std::size_t W, class Isa> lanes<W, Isa> abs(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -17,6 +18,7 @@ template <std::size_t W, class Isa> lanes<W, Isa> abs(const lanes<W, Isa>& x) no
         },
         x);
 }
+/// As std::sqrt, bit for bit.
 template <std::size_t W, class Isa> lanes<W, Isa> sqrt(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -25,6 +27,7 @@ template <std::size_t W, class Isa> lanes<W, Isa> sqrt(const lanes<W, Isa>& x) n
         },
         x);
 }
+/// xsimd's in registers.
 template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -33,6 +36,7 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
         },
         x);
 }
+/// xsimd's in registers.
 template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -41,25 +45,37 @@ template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) no
         },
         x);
 }
+/// xsimd's in registers; the C library's in a lane beyond 2^18 pi/2.
 template <std::size_t W, class Isa> lanes<W, Isa> sin(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
+    lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::sin;
             return sin(v);
         },
         x);
+    if (const auto near = within_turns(x); !all(near))
+        for (std::size_t i = 0; i < W; ++i)
+            if (!near[i]) y.set(i, std::sin(x[i]));
+    return y;
 }
+/// xsimd's in registers; the C library's in a lane beyond 2^18 pi/2.
 template <std::size_t W, class Isa> lanes<W, Isa> cos(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
+    lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::cos;
             return cos(v);
         },
         x);
+    if (const auto near = within_turns(x); !all(near))
+        for (std::size_t i = 0; i < W; ++i)
+            if (!near[i]) y.set(i, std::cos(x[i]));
+    return y;
 }
+/// std::tan, lane by lane.
 template <std::size_t W, class Isa> lanes<W, Isa> tan(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::one_by_one([](double v) { return std::tan(v); }, x);
 }
+/// As std::floor.
 template <std::size_t W, class Isa> lanes<W, Isa> floor(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -77,6 +93,7 @@ template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) 
         },
         x);
 }
+/// As std::trunc.
 template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::map(
         [](const auto& v) {
@@ -85,14 +102,17 @@ template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) 
         },
         x);
 }
+/// std::atan2, lane by lane.
 template <std::size_t W, class Isa>
 lanes<W, Isa> atan2(const lanes<W, Isa>& y, const std::type_identity_t<lanes<W, Isa>>& x) noexcept {
     return lanes<W, Isa>::one_by_one([](double a, double b) { return std::atan2(a, b); }, y, x);
 }
+/// std::pow, lane by lane.
 template <std::size_t W, class Isa>
 lanes<W, Isa> pow(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& y) noexcept {
     return lanes<W, Isa>::one_by_one([](double a, double b) { return std::pow(a, b); }, x, y);
 }
+/// As std::copysign.
 template <std::size_t W, class Isa>
 lanes<W, Isa> copysign(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& sign) noexcept {
     return lanes<W, Isa>::map(
@@ -102,15 +122,17 @@ lanes<W, Isa> copysign(const lanes<W, Isa>& x, const std::type_identity_t<lanes<
         },
         x, sign);
 }
-/// As std::min, std::max and std::clamp: which of two is returned when one is NaN too.
+/// As std::min, also of NaN.
 template <std::size_t W, class Isa>
 lanes<W, Isa> min(const lanes<W, Isa>& a, const std::type_identity_t<lanes<W, Isa>>& b) noexcept {
     return select(less(b, a), b, a);
 }
+/// As std::max, also of NaN.
 template <std::size_t W, class Isa>
 lanes<W, Isa> max(const lanes<W, Isa>& a, const std::type_identity_t<lanes<W, Isa>>& b) noexcept {
     return select(less(a, b), b, a);
 }
+/// As std::clamp, also of NaN.
 template <std::size_t W, class Isa>
 lanes<W, Isa> clamp(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& low,
                     const std::type_identity_t<lanes<W, Isa>>& high) noexcept {

@@ -28,6 +28,7 @@ public:
     static_assert(W > 0, "at least one lane");
     using mask = lane_mask<W, Isa>;
     static constexpr std::size_t size = W;
+    using single = lanes<1, Isa>; ///< one instance in the same instruction set
 
     lanes() noexcept : lanes(0.0) {}
     /// The same number in every lane.
@@ -102,6 +103,9 @@ public:
     friend mask finite_lanes(const lanes& a) noexcept {
         return test([](const piece& x) { return detail::is_finite(x); }, a);
     }
+    friend mask within_turns(const lanes& a) noexcept {
+        return test([](const piece& x) { return detail::within_turns(x); }, a);
+    }
     friend lanes select(const mask& choice, const lanes& one, const lanes& other) noexcept {
         return chosen(choice, one, other);
     }
@@ -141,7 +145,9 @@ private:
     std::array<piece, pieces> piece_;
 };
 
+/// W.
 template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lanes<W, Isa>> = W;
+/// W.
 template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lane_mask<W, Isa>> = W;
 /// The number in lane i.
 template <std::size_t W, class Isa> double lane(const lanes<W, Isa>& x, std::size_t i) noexcept { return x[i]; }

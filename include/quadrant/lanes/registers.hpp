@@ -34,6 +34,28 @@ struct get_bool_simd_register<T, quadrant::detail::lane_set<avx512f, Extensions>
     : get_bool_simd_register<T, avx512f> {};
 #    endif
 } // namespace xsimd::types
+
+// The argument of sin and cos, brought near zero. xsimd's own way depends on the largest of the lanes and calls functions
+// that are no templates, which the linker could not tell apart between sets; this one is each lane's own.
+namespace xsimd::kernel::detail {
+template <class Set, unsigned Extensions>
+struct trigo_reducer<batch<double, quadrant::detail::lane_set<Set, Extensions>>, trigo_radian_tag> {
+    using number = batch<double, quadrant::detail::lane_set<Set, Extensions>>;
+    /// x = n pi/2 + rest, with pi/2 in three parts (fdlibm's); for 0 <= x <= mediumpi. Returns n modulo 4.
+    static number reduce(const number& x, number& rest) noexcept {
+        const number n = nearbyint(x * constants::twoopi<number>());
+        const number first = x - n * constants::pio2_1<number>();
+        number part = n * constants::pio2_2<number>();
+        const number second = first - part;
+        part = n * constants::pio2_2t<number>() - ((first - second) - part);
+        const number small = n * constants::pio2_3<number>();
+        const number third = second - small;
+        part = n * constants::pio2_3t<number>() - ((second - third) - small);
+        rest = third - part;
+        return quadrant(n);
+    }
+};
+} // namespace xsimd::kernel::detail
 #endif
 
 /// What the W numbers of a `lanes` are kept in: the widest registers that W fills, else doubles one by one.
@@ -86,6 +108,10 @@ xsimd::batch_bool<double, Set> join(const xsimd::batch_bool<double, Set>& a,
                                     const xsimd::batch_bool<double, Set>& b) noexcept {
     return a | b;
 }
+/// True where xsimd's sin and cos hold: the rest is for the C library.
+template <class Set> xsimd::batch_bool<double, Set> within_turns(const xsimd::batch<double, Set>& x) noexcept {
+    return xsimd::abs(x) <= xsimd::constants::mediumpi<xsimd::batch<double, Set>>();
+}
 template <class Set> bool any_of(const xsimd::batch_bool<double, Set>& m) noexcept { return xsimd::any(m); }
 template <class Set> bool all_of(const xsimd::batch_bool<double, Set>& m) noexcept { return xsimd::all(m); }
 template <class Set> void put(const xsimd::batch<double, Set>& x, double* out) noexcept {
@@ -105,6 +131,7 @@ template <class Set> void get(xsimd::batch_bool<double, Set>& m, const bool* in)
 constexpr double choose(bool c, double a, double b) noexcept { return c ? a : b; }
 constexpr bool meet(bool a, bool b) noexcept { return a && b; }
 constexpr bool join(bool a, bool b) noexcept { return a || b; }
+constexpr bool within_turns(double) noexcept { return true; } // std::sin and std::cos hold everywhere
 constexpr bool any_of(bool m) noexcept { return m; }
 constexpr bool all_of(bool m) noexcept { return m; }
 template <class Plain> constexpr void put(Plain x, Plain* out) noexcept { *out = x; }

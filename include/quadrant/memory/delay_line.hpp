@@ -47,7 +47,7 @@ public:
     }
 
     value operator()(value x) noexcept {
-        if (!finite(x)) return out_.hold();
+        if (none(finite(x))) return out_.hold();
         const std::size_t now = state_.next;
         state_.x[now] = x;
         state_.next = now == Capacity ? 0 : now + 1;
@@ -58,14 +58,14 @@ public:
         settle(value());
     }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
+        if (none(finite(x))) return out_.raise();
         state_.x.fill(x);
         state_.next = 0;
         out_.reset(x);
     }
 
     void shift(value by) noexcept {
-        if (!finite(by)) return out_.raise();
+        if (none(finite(by))) return out_.raise();
         for (value& each : state_.x) each += by;
         out_.keep(out_.last() + by);
     }
@@ -94,17 +94,18 @@ private:
 };
 
 /// In lanes: each lane has its own length, and the call loops over the lanes.
-template <signal_tag Signal, std::size_t Capacity, multi_lane Real>
-class delay_line<Signal, Capacity, Real> : public lane_by_lane<delay_line<Signal, Capacity>, Real> {
+template <signal_tag Signal, std::size_t Capacity, several_lanes Real>
+class delay_line<Signal, Capacity, Real>
+    : public lane_by_lane<delay_line<Signal, Capacity, typename Real::single>, Real> {
+    using one = delay_line<Signal, Capacity, typename Real::single>;
+
 public:
     /// How late the output of each lane is.
     struct parameters {
         std::array<std::size_t, lane_count<Real>> length; ///< in periods; 0 ... Capacity
     };
     delay_line(const parameters& p, duration period)
-        : lane_by_lane<delay_line<Signal, Capacity>, Real>(
-              [&](std::size_t i) { return typename delay_line<Signal, Capacity>::parameters{p.length[i]}; },
-              period),
+        : lane_by_lane<one, Real>([&](std::size_t i) { return typename one::parameters{p.length[i]}; }, period),
           given_(p) {}
     const parameters& given() const noexcept { return given_; }
 

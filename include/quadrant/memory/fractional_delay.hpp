@@ -62,7 +62,7 @@ public:
     }
 
     value operator()(value x) noexcept {
-        if (!finite(x)) return out_.hold();
+        if (none(finite(x))) return out_.hold();
         const std::size_t now = state_.next;
         state_.x[now] = x;
         std::size_t at = now >= first_ ? now - first_ : now + size - first_;
@@ -71,7 +71,7 @@ public:
             y += weight_[i] * state_.x[at];
             at = at == 0 ? size - 1 : at - 1;
         }
-        if (!finite(y)) return out_.hold(); // the next sample takes the same place
+        if (none(finite(y))) return out_.hold(); // the next sample takes the same place
         state_.next = now + 1 == size ? 0 : now + 1;
         return out_.keep(y);
     }
@@ -80,23 +80,24 @@ public:
         settle(value());
     }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
+        if (none(finite(x))) return out_.raise();
         state_.x.fill(x);
         state_.next = 0;
         out_.reset(x);
     }
 
     void shift(value by) noexcept {
-        if (!finite(by)) return out_.raise();
+        if (none(finite(by))) return out_.raise();
         for (value& each : state_.x) each += by;
         out_.keep(out_.last() + by);
     }
 
     void delay(quantity<si::time, number> d) noexcept {
-        if (!finite(d)) return out_.raise();
+        if (none(finite(d))) return out_.raise();
         number periods = d.value() / number(period_.value());
-        limited_ = periods < number(least) || periods > number(double(Capacity));
-        if (limited_) periods = periods < number(least) ? number(least) : number(double(Capacity));
+        const double plain = detail::plain(periods);
+        limited_ = plain < least || plain > double(Capacity);
+        if (limited_) periods = plain < least ? number(least) : number(double(Capacity));
         const double whole = std::floor(detail::plain(periods));
         first_ = std::size_t(whole - least);
         const number u = periods - number(whole); // 0 ... 1 between the two samples around the instant
@@ -134,11 +135,11 @@ private:
 };
 
 /// In lanes: each lane has its own delay, and the call loops over the lanes.
-template <signal_tag Signal, std::size_t Capacity, std::size_t Order, multi_lane Real>
+template <signal_tag Signal, std::size_t Capacity, std::size_t Order, several_lanes Real>
 requires detail::delay_order<Order, Capacity>
 class fractional_delay<Signal, Capacity, Order, Real>
-    : public lane_by_lane<fractional_delay<Signal, Capacity, Order>, Real> {
-    using one = fractional_delay<Signal, Capacity, Order>;
+    : public lane_by_lane<fractional_delay<Signal, Capacity, Order, typename Real::single>, Real> {
+    using one = fractional_delay<Signal, Capacity, Order, typename Real::single>;
 
 public:
     /// The dead time of each lane, in seconds.
@@ -146,11 +147,15 @@ public:
         quantity<si::time, Real> delay; ///< (Order 1: 0, Order 3: 1) ... Capacity periods
     };
     fractional_delay(const parameters& p, duration period)
-        : lane_by_lane<one, Real>([&](std::size_t i) { return typename one::parameters{lane(p.delay, i)}; },
-                                  period),
+        : lane_by_lane<one, Real>(
+              [&](std::size_t i) {
+                  return typename one::parameters{in_real<typename Real::single>(lane(p.delay, i))};
+              },
+              period),
           given_(p) {}
     void delay(quantity<si::time, Real> d) noexcept {
-        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).delay(lane(d, i));
+        for (std::size_t i = 0; i < lane_count<Real>; ++i)
+            this->of(i).delay(in_real<typename Real::single>(lane(d, i)));
     }
     const parameters& given() const noexcept { return given_; }
 

@@ -118,7 +118,7 @@ public:
         const value m = e + state_.r.ago(given_.ahead);
         state_.m.put(m);
         const value p = smoothing_(state_.m.oldest()), y = learning_(state_.r.oldest());
-        if (!finite(early, m, p, y)) return out_.hold();
+        if (none(finite(early, m, p, y))) return out_.hold();
         const std::size_t now = state_.next_p;
         state_.p[now] = p;
         if (now < 3) state_.p[now + size_p] = p;
@@ -143,15 +143,16 @@ public:
     }
     void settle(argument x, value y) noexcept {
         const Real gain = learning_.sum(), g = smoothing_.sum() * sum(weights_);
-        if (!finite(x, y)) return out_.raise();
-        if (gain == Real(0) || g == Real(0)) return integrates() ? fill({}, {}, {}) : settle(x);
+        if (none(finite(x, y))) return out_.raise();
+        if (any(equal(gain, Real(0))) || any(equal(g, Real(0))))
+            return integrates() ? fill({}, {}, {}) : settle(x);
         const value r = y / gain;
         fill(r / g, r, y);
     }
 
     /// Of what repeats, from the next step on; see above.
     void cycle(quantity<si::time, number> d) noexcept {
-        if (!finite(d)) return out_.raise();
+        if (none(finite(d))) return out_.raise();
         const number least(double(given_.ahead + half + 2)), most{double(Capacity)};
         number periods = d.value() / number(period_.value());
         const double plain = detail::plain(periods);
@@ -244,7 +245,7 @@ private:
     }
     void fill(value m, value r, value y) noexcept {
         const value p = smoothing_.sum() * m;
-        if (!finite(m, p, r, y)) return out_.raise();
+        if (none(finite(m, p, r, y))) return out_.raise();
         state_.m.x.fill(m), state_.p.fill(p), state_.r.x.fill(r);
         state_.fading = 0;
         if (pending_) start(wanted_);
@@ -273,11 +274,14 @@ private:
 
 /// In lanes: each lane has its own cycle, weights and filters, and the call loops over the lanes.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
-          std::size_t SmoothingTaps, multi_lane Real>
+          std::size_t SmoothingTaps, several_lanes Real>
 requires detail::repeats<Order, LearningTaps, SmoothingTaps>
 class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real>
-    : public lane_by_lane<repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps>, Real> {
-    using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps>;
+    : public lane_by_lane<
+          repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>, Real> {
+    using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>;
+
+    using single = typename Real::single;
 
 public:
     /// As those of one memory; `ahead` and `fade` are the same in all lanes.
@@ -296,18 +300,25 @@ public:
         }
         /// Those of lane i.
         typename one::parameters of(std::size_t i) const {
-            return {lane(cycle, i), lane(weights, i), lane(learning, i), ahead, lane(smoothing, i), fade};
+            const auto taps = [i](const auto& from) {
+                std::array<single, std::tuple_size_v<std::remove_cvref_t<decltype(from)>>> out;
+                for (std::size_t k = 0; k < out.size(); ++k) out[k] = single(lane(from[k], i));
+                return out;
+            };
+            return {
+                in_real<single>(lane(cycle, i)), taps(weights), taps(learning), ahead, taps(smoothing), fade};
         }
     };
     repetitive(const parameters& p, duration period)
         : lane_by_lane<one, Real>([&](std::size_t i) { return p.of(i); }, period), given_(p) {}
     using lane_by_lane<one, Real>::settle;
     void settle(typename repetitive::argument x, typename repetitive::value y) noexcept {
-        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).settle(lane(x, i), lane(y, i));
+        for (std::size_t i = 0; i < lane_count<Real>; ++i)
+            this->of(i).settle(in_real<single>(lane(x, i)), in_real<single>(lane(y, i)));
     }
     /// Of what repeats in each lane, from the next step on.
     void cycle(quantity<si::time, Real> d) noexcept {
-        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).cycle(lane(d, i));
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).cycle(in_real<single>(lane(d, i)));
     }
     void retune(const repetitive& next) noexcept {
         for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).retune(next.of(i));
