@@ -84,3 +84,20 @@ TEST_CASE(
     CHECK(std::abs(moved) <= m.tolerance.mass);
     CHECK(moved != 0);
 }
+
+TEST_CASE(
+    "population: an effect whose law is in its record gets into a machine by that law, at the size asked for") {
+    std::size_t tried = 0;
+    for (const auto* e : withheld_effects()) {
+        if (!e->law) continue;
+        CAPTURE(e->name);
+        const drawn_machine m = draw(5, 7, {kind::poor, {std::string(e->name)}, false, false});
+        REQUIRE(m.truth[0].laws.size() == 1);
+        CHECK(m.truth[0].laws[0].law == e->law);
+        CHECK(m.effects.at(0).size >= 1.2);
+        for (const auto& key : e->keys) CHECK(m.effects[0].parameters.contains(std::string(key.name)));
+        CHECK(m.described[0].laws.empty());
+        ++tried;
+    }
+    CHECK(tried > 0);
+}
