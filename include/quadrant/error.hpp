@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "digits.hpp"
+#include "select.hpp"
 #include "signal.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #ifdef __cpp_exceptions
 #    include <optional>
 #    include <stdexcept>
@@ -156,27 +158,41 @@ template <class Value>
 void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
     if (!holds) detail::refuse({field, detail::plain(value), must});
 }
+/// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks it.
+template <class Value, class Rule>
+requires std::is_invocable_r_v<bool, Rule, std::size_t>
+void require_lanes(Rule holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
+    for (std::size_t i = 0; i < lane_count<Value>; ++i) require(holds(i), field, lane(value, i), must);
+}
 
-/// The rules that come up everywhere.
+/// The rules that come up everywhere. Of a number of lanes each has to keep them.
 template <class Value> void require_finite(const detail::field_name& field, const Value& value) {
-    require(std::isfinite(detail::plain(value)), field, value, "must be finite");
+    for (std::size_t i = 0; i < lane_count<Value>; ++i)
+        require(std::isfinite(detail::plain(lane(value, i))), field, lane(value, i), "must be finite");
 }
 /// Finite and above 0.
 template <class Value> void require_positive(const detail::field_name& field, const Value& value) {
-    require(std::isfinite(detail::plain(value)) && detail::plain(value) > 0, field, value,
-            "must be finite and above 0");
+    for (std::size_t i = 0; i < lane_count<Value>; ++i) {
+        const double x = detail::plain(lane(value, i));
+        require(std::isfinite(x) && x > 0, field, x, "must be finite and above 0");
+    }
 }
 /// Finite and not below 0.
 template <class Value> void require_not_negative(const detail::field_name& field, const Value& value) {
-    require(std::isfinite(detail::plain(value)) && detail::plain(value) >= 0, field, value,
-            "must be finite and not below 0");
+    for (std::size_t i = 0; i < lane_count<Value>; ++i) {
+        const double x = detail::plain(lane(value, i));
+        require(std::isfinite(x) && x >= 0, field, x, "must be finite and not below 0");
+    }
 }
 /// A corner or centre frequency of a block that runs every `period`.
 template <class Value>
 void require_below_nyquist(const detail::field_name& field, const Value& value, duration period) {
-    const double nyquist = 0.5 / period.value(), f = detail::plain(value);
-    require(f > 0 && f < nyquist, field, value,
-            "must lie between 0 and half the sampling rate (" + detail::shortest(nyquist) + ")");
+    const double nyquist = 0.5 / period.value();
+    for (std::size_t i = 0; i < lane_count<Value>; ++i) {
+        const double f = detail::plain(lane(value, i));
+        require(f > 0 && f < nyquist, field, f,
+                "must lie between 0 and half the sampling rate (" + detail::shortest(nyquist) + ")");
+    }
 }
 
 } // namespace quadrant

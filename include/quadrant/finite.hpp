@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "select.hpp"
+
 #include <bit>
-#include <boost/units/quantity.hpp>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 /// One policy for NaN and infinities in every block: hold the last output, keep the state, raise a flag that only
 /// `reset` or `settle` clears.
@@ -28,6 +31,9 @@ constexpr bool is_finite(const Dual& x) noexcept {
     for (const auto& p : x.partial) sum += p - p; // NaN when p is not finite
     return is_finite(sum);
 }
+template <multi_lane Lanes> auto is_finite(const Lanes& x) noexcept {
+    return finite_lanes(x);
+} // by its type's namespace
 template <class Real> constexpr const Real& bare(const Real& x) noexcept { return x; }
 template <class Unit, class Real>
 constexpr const Real& bare(const boost::units::quantity<Unit, Real>& x) noexcept {
@@ -36,33 +42,64 @@ constexpr const Real& bare(const boost::units::quantity<Unit, Real>& x) noexcept
 } // namespace detail
 
 /// True when every argument is finite: their sum is NaN or infinite as soon as one of them is. (A sum of finite
-/// values above 1e308 counts as infinite; no machine has one.)
-template <class... Values> constexpr bool finite(const Values&... values) noexcept {
+/// values above 1e308 counts as infinite; no machine has one.) For lanes: a mask, lane by lane.
+template <class... Values> constexpr auto finite(const Values&... values) noexcept {
     return detail::is_finite((detail::bare(values) + ...));
 }
 
-/// The last good output of a block and its fault flag.
+/// What a block passes on to a block inside it: x where it is good, NaN in the other lanes, where the inner block then
+/// holds. For a number without lanes, which has returned by then: x.
+template <class Value>
+constexpr Value only_where([[maybe_unused]] const mask_of<Value>& good, const Value& x) noexcept {
+    if constexpr (std::is_same_v<mask_of<Value>, bool>)
+        return x;
+    else
+        return select(good, x, Value::from_value(std::numeric_limits<double>::quiet_NaN()));
+}
+
+/// The last good output of a block and its fault flag; for lanes, one of each in every lane.
 template <class Quantity> class held_output {
 public:
+    using mask = mask_of<Quantity>; ///< bool, but for lanes
+
     constexpr Quantity keep(Quantity y) noexcept {
         last_ = y;
         return y;
     }
-    constexpr Quantity hold() noexcept {
-        fault_ = true;
+    /// Keeps the lanes of y that are good; the others hold their last output and raise their fault.
+    constexpr Quantity keep(const mask& good, Quantity y) noexcept {
+        if constexpr (!std::is_same_v<mask, bool>)
+            fault_ |= !good;
+        else if (!good)
+            return hold();
+        set_where(good, last_, y);
         return last_;
     }
-    constexpr void raise() noexcept { fault_ = true; }
+    constexpr Quantity hold() noexcept {
+        fault_ = mask(true);
+        return last_;
+    }
+    constexpr void raise() noexcept { fault_ = mask(true); }
+    /// Raises the fault where `bad` is true.
+    constexpr void raise(const mask& bad) noexcept { fault_ = either(fault_, bad); }
     constexpr void reset(Quantity y = Quantity()) noexcept {
         last_ = y;
-        fault_ = false;
+        fault_ = mask(false);
     }
-    constexpr bool faulted() const noexcept { return fault_; }
+    /// Sets the output and clears the fault in the good lanes; the others keep theirs and raise their fault.
+    constexpr void settle(const mask& good, Quantity y) noexcept {
+        set_where(good, last_, y);
+        fault_ = !good;
+    }
+    /// True when some lane has a fault.
+    constexpr bool faulted() const noexcept { return any(fault_); }
+    /// Which lanes have a fault; a bool for a number without lanes.
+    constexpr const mask& faulted_lanes() const noexcept { return fault_; }
     constexpr const Quantity& last() const noexcept { return last_; }
 
 private:
     Quantity last_{};
-    bool fault_ = false;
+    mask fault_{};
 };
 
 } // namespace quadrant

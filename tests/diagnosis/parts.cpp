@@ -114,13 +114,14 @@ TEST_CASE("predictor: a right model leaves nothing, a missing force leaves d T^2
     plant_model real(d);
     real.constant_force = force;
     std::vector<double> position, command;
-    plant_state s;
-    const stepper older(real, 0.0003), newer(real, period - 0.0003);
+    const auto boxes = axis_parameters(real);
+    const plant_axis older(boxes, 0.0003), newer(boxes, period - 0.0003);
+    plant_axis::state s;
     for (std::size_t k = 0; k < 6000; ++k) {
         position.push_back(s.x);
         command.push_back(std::sin(0.01 * static_cast<double>(k)));
-        older(s, command[k > 0 ? k - 1 : 0]);
-        newer(s, command[k]);
+        older.advance(s, command[k > 0 ? k - 1 : 0], {});
+        newer.advance(s, command[k], {});
     }
     const predictor observer{.period = period, .position = position, .command = command};
     std::vector<double> e;
@@ -151,18 +152,18 @@ TEST_CASE("plant model: moves as the library's linear motor does, and sticks") {
                       .viscous = q::gain_of<q::signal::force, q::signal::velocity>::from_value(300)},
          .substeps = 20},
         q::duration::from_value(0.0005)};
-    const stepper step(model, 0.0005 / 20);
-    plant_state s;
+    const plant_axis axis(axis_parameters(model), 0.0005 / 20);
+    plant_axis::state s;
     for (int k = 0; k < 4000; ++k) {
         const double u = 0.2 * std::sin(0.004 * k);
         motor(q::quantity<q::si::electric_potential>::from_value(u));
-        for (int i = 0; i < 20; ++i) step(s, u);
+        for (int i = 0; i < 20; ++i) axis.advance(s, u, {});
     }
     // 65 mm of motion; the contact's give of 0.2 um in four reversals is the difference.
     CHECK(s.x == doctest::Approx(motor.now().x.value()).epsilon(1e-4));
     s = {};
     for (int k = 0; k < 40000; ++k)
-        step(s, 0.085 * std::min(1.0, k / 20000.0)); // up to 85 N, below the 90 N that break away
+        axis.advance(s, 0.085 * std::min(1.0, k / 20000.0), {}); // up to 85 N, below the 90 N that break away
     CHECK(std::abs(s.v) < 1e-9);
     CHECK(s.x < 3e-7);
 }

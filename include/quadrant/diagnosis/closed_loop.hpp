@@ -2,7 +2,7 @@
 #pragma once
 #include "controller_box.hpp"
 #include "log.hpp"
-#include "stepper.hpp"
+#include "plant_axis.hpp"
 
 #include <random>
 
@@ -31,17 +31,18 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
                        log.command[0] - (added.empty() ? 0 : added[0]), period);
         const auto whole = static_cast<std::size_t>(std::max(0.0, plant.delay) / period);
         const double first = std::max(0.0, plant.delay) - static_cast<double>(whole) * period;
-        const stepper older(plant, (first > 0 ? first : period) / substeps),
-            newer(plant, (period - first) / substeps);
-        auto s = plant_state::at(log.position[0] - plant.cyclic.at(log.position[0]),
-                                 (log.position[1] - log.position[0]) / period);
+        using simulated = plant_axis;
+        const auto boxes = axis_parameters(plant);
+        const simulated older(boxes, (first > 0 ? first : period) / substeps),
+            newer(boxes, (period - first) / substeps);
+        auto s = simulated::state::at(newer.position_of(log.position[0]),
+                                      (log.position[1] - log.position[0]) / period);
         std::mt19937_64 random(20080901);
         std::vector<double> applied(n);
         const double q = axis.encoder.resolution_m;
         const double limit = axis.actuator.limit_V.value_or(std::numeric_limits<double>::infinity());
         for (std::size_t k = 0; k < n; ++k) {
-            const double reading =
-                s.load + plant.cyclic.at(s.load) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
+            const double reading = newer.reading(s) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
             out.position[k] = q > 0 ? std::round(reading / q) * q : reading;
             out.command[k] = k == 0 ? log.command[0]
                                     : controller(quantity_of<signal::position>::from_value(log.reference[k]),
@@ -52,13 +53,13 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
                 plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
             applied[k] = lost ? applied[k - 1] : out.command[k];
             const auto past = [&](std::size_t back) { return applied[k >= back ? k - back : 0]; };
-            surroundings now{.time = static_cast<double>(k) * period,
-                             .other_acceleration =
-                                 log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
+            simulated::surroundings now{.time = static_cast<double>(k) * period,
+                                        .other_acceleration =
+                                            log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
             for (int i = 0; i < substeps && first > 0; ++i, now.time += first / substeps)
-                older(s, past(whole + 1), now);
+                older.advance(s, past(whole + 1), now);
             for (int i = 0; i < substeps; ++i, now.time += (period - first) / substeps)
-                newer(s, past(whole), now);
+                newer.advance(s, past(whole), now);
         }
         return out;
     });

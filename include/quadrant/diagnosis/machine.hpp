@@ -30,6 +30,7 @@ struct plant_description {
     std::optional<double> presliding_length_m;        ///< deflection at 1 - 1/e of the Coulomb level
     std::optional<double> presliding_damping_s;       ///< of the contact before it slips, over its stiffness
     std::vector<double> gms_weights, gms_stiffness_N_per_m; ///< one entry an element; the weights add up to 1
+    std::optional<double> gms_attraction_N_per_s; ///< of an element that slips to its share; absent: at once
     std::optional<double> friction_position_amplitude, friction_position_period_m, friction_position_phase_rad;
     std::optional<double> friction_drift, friction_drift_time_s;
     std::optional<double> mode_mass_kg, mode_frequency_Hz, mode_damping; ///< second mass, part of mass_kg

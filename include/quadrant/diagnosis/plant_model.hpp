@@ -34,6 +34,11 @@ struct plant_model {
         friction_contact contact;
         harmonics along;                  ///< of the Coulomb level, relative, over position
         double drift = 0, drift_time = 1; ///< Coulomb level times 1 + drift (1 - exp(-t/drift_time))
+        /// Stiffness of a spring of the contact: its share of the breakaway level over its length [N/m].
+        double stiffness(std::size_t i) const {
+            const double level = std::max(0.0, coulomb + excess);
+            return i < contact.elements && level > 0 ? contact.weights[i] * level / contact.lengths()[i] : 0;
+        }
     } friction;
     double constant_force = 0; ///< [N]
     double spring = 0;         ///< [N/m], about position 0
@@ -76,6 +81,7 @@ struct plant_model {
         friction.coulomb_asymmetry = d.coulomb_asymmetry.value_or(0);
         if (d.presliding_length_m) friction.contact.exponential(*d.presliding_length_m);
         if (!d.gms_weights.empty()) describe_contact(d);
+        friction.contact.attraction = d.gms_attraction_N_per_s.value_or(friction.contact.attraction);
         friction.contact.damping = d.presliding_damping_s.value_or(0);
         friction.along =
             one(d.friction_position_amplitude, d.friction_position_period_m, d.friction_position_phase_rad);

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "pass.hpp"
 #include "sample_loss.hpp"
-#include "stepper.hpp"
 
 #include <span>
 #include <vector>
 
 namespace quadrant::diagnosis {
+
+/// The passes to use: those of this translation unit's instruction set; in a program that has more of them, those of the best set
+/// that the processor has.
+#ifdef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+const pass_table& passes();
+#else
+inline const pass_table& passes() { return passes_of<>; }
+#endif
 
 /// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what the
 /// correction had to be. One pass, no drift of the double integrator, and a right model leaves only the encoder's
@@ -15,7 +23,7 @@ namespace quadrant::diagnosis {
 /// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
 /// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
 struct predictor {
-    static constexpr std::size_t abreast = 4; ///< plants in one pass
+    static constexpr std::size_t abreast = 8; ///< plants in one pass
     double period;                            ///< T [s]
     double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
@@ -92,48 +100,31 @@ private:
         return out;
     }
 
-    /// One plant on its way through the log.
-    struct lane {
-        lane(const plant_model& p, double period, std::size_t whole_, double x)
-            : plant(p), whole(whole_), late(std::max(0.0, p.delay) - static_cast<double>(whole_) * period),
-              older(p, late > 0 ? late : period), newer(p, period - late),
-              s(plant_state::at(x - p.cyclic.at(x))) {}
-        const plant_model& plant;
-        std::size_t whole;
-        double late; ///< the older command's part of a period [s]
-        stepper older, newer;
-        plant_state s;
-        double before = 0;
-    };
-
-    /// Several plants side by side: each step waits for its own last one, so that the processor has time for the others'.
+    /// Several plants side by side in the lanes of one number.
     void pass(std::span<const plant_model> plants, std::span<const double> u,
               std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
-        const double to_position = l1(), to_velocity = l2();
-        std::vector<lane> lanes;
-        lanes.reserve(plants.size());
+        std::array<double*, abreast> e{}, a{};
+        std::array<pass_input::plant, abreast> each;
         for (std::size_t i = 0; i < plants.size(); ++i) {
-            lanes.emplace_back(plants[i], period, whole_periods(plants[i].delay), position[0]);
+            each[i] = {axis_parameters(plants[i]), plants[i].delay};
             innovation[i].resize(position.size());
-            if (acceleration) acceleration[i].resize(position.size());
+            e[i] = innovation[i].data();
+            if (!acceleration) continue;
+            acceleration[i].resize(position.size());
+            a[i] = acceleration[i].data();
         }
-        surroundings now;
-        for (std::size_t k = 0; k < position.size(); ++k) {
-            const auto past = [&](std::size_t back) { return u[k >= back ? k - back : 0]; };
-            if (!other_acceleration.empty()) now.other_acceleration = other_acceleration[k];
-            now.time = static_cast<double>(k) * period;
-            for (std::size_t i = 0; i < lanes.size(); ++i) {
-                lane& l = lanes[i];
-                const double e = position[k] - l.s.load - l.plant.cyclic.at(l.s.load);
-                innovation[i][k] = e;
-                l.s.shift(to_position * e, to_velocity * e);
-                l.before = l.plant.backlash > 0 ? l.s.load_velocity : l.s.v;
-                if (l.late > 0) l.older(l.s, past(l.whole + 1), now);
-            }
-            for (lane& l : lanes) l.newer(l.s, past(l.whole), {now.time + l.late, now.other_acceleration});
-            for (std::size_t i = 0; acceleration && i < lanes.size(); ++i)
-                acceleration[i][k] = (lanes[i].s.load_velocity - lanes[i].before) / period;
-        }
+        pass_all({.period = period,
+                  .rows = position.size(),
+                  .position = position.data(),
+                  .command = u.data(),
+                  .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
+                  .to_position = l1(),
+                  .to_velocity = l2(),
+                  .plants = plants.size(),
+                  .plant_of = each.data(),
+                  .innovation = e.data(),
+                  .acceleration = acceleration ? a.data() : nullptr},
+                 passes());
     }
 };
 

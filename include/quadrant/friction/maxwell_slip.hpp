@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "presliding.hpp"
+#include "spring_law.hpp"
 
 #include <array>
 #include <cmath>
@@ -158,19 +159,19 @@ private:
     element moved(std::size_t i, const passage& way, slope stiff, auto&& tell) const noexcept {
         const element& now = memory_.now().elements[i];
         const value along = way.sign * now.force; // positive: bent the way the axis goes
-        const value share = weights_[i] * way.level;
+        const detail::spring_law<value, Real> spring{weights_[i] * way.level, way.kept};
         element next;
         if (way.moves && now.slips && along > value()) { // slips on
-            const value off = along - share;
-            next = {share + off * way.kept, true};
-            tell(false, true, off);
-        } else if (const value reached = along + stiff * way.speed; !way.moves || reached < share) { // sticks
+            next = {spring.slips_on(along), true};
+            tell(false, true, along - spring.share);
+        } else if (const value reached = along + stiff * way.speed;
+                   !way.moves || spring.sticks(reached)) { // sticks
             next = {reached, false};
             tell(true, false, value());
         } else { // breaks away, with what it holds where the level has fallen below that
-            const value off = along > share ? value(along - share) : value();
-            next = {share + off * way.kept, true};
-            tell(false, off > value(), off);
+            next = {spring.breaks_away(along), true};
+            const bool more = along > spring.share;
+            tell(false, more, more ? value(along - spring.share) : value());
         }
         next.force *= way.sign;
         return next;

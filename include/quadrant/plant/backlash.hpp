@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "play_law.hpp"
 
 namespace quadrant {
 
@@ -38,8 +39,7 @@ public:
     }
 
     value operator()(argument x) noexcept {
-        const value low = x - half_, high = x + half_;
-        const value y = state_.y < low ? low : state_.y > high ? high : state_.y;
+        const value y = detail::play_law(state_.y, x, half_);
         if (!finite(x, y)) return out_.hold();
         state_.y = y;
         return out_.keep(y);

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "oscillator.hpp"
 
 #include <array>
 #include <cmath>
@@ -70,22 +71,18 @@ public:
     flexible_modes(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("flexible_modes.period", period);
         require_positive("flexible_modes.mass", p.mass);
-        using std::cos, std::exp, std::sin, std::sqrt;
         for (std::size_t i = 0; i < Modes; ++i) {
             const auto& m = p.modes[i];
             require_positive("flexible_modes.centre", m.centre);
             require(m.damping >= number(0) && m.damping < number(1), "flexible_modes.damping", m.damping,
                     "must not be below 0 and must be below 1");
             require_finite("flexible_modes.share", m.share);
-            const number w = number(2 * std::numbers::pi) * m.centre.value(), h = number(period.value());
-            const number decay = m.damping * w, ringing = w * sqrt(number(1) - m.damping * m.damping);
-            const number e = exp(-decay * h), c = e * cos(ringing * h), s = e * sin(ringing * h) / ringing;
-            // Around its bent shape the mode rings freely: the matrix exponential of a 2x2.
-            steps_[i] = {.stay = Real(c + decay * s),
-                         .onward = Real(s),
-                         .back = Real(-(w * w) * s),
-                         .keep = Real(c - decay * s),
-                         .compliance = Real(m.share / (p.mass.value() * w * w))};
+            const detail::oscillator<number> bell(m.centre.value(), m.damping, number(period.value()));
+            steps_[i] = {.stay = Real(bell.stay),
+                         .onward = Real(bell.onward),
+                         .back = Real(bell.back),
+                         .keep = Real(bell.keep),
+                         .compliance = Real(m.share / (p.mass.value() * bell.stiffness))};
         }
     }
 

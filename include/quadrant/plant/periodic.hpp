@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../signal.hpp"
+#include "harmonic_series.hpp"
 
 #include <array>
 #include <cmath>
@@ -31,29 +32,17 @@ public:
         for (std::size_t i = 0; i < Harmonics; ++i) {
             require_finite({block, ".size"}, p.size[i]);
             require_finite({block, ".phase"}, p.phase[i]);
-            sine_[i] = in_real<Real>(p.size[i] * Number(cos(p.phase[i])));
-            cosine_[i] = in_real<Real>(p.size[i] * Number(sin(p.phase[i])));
+            series_.sine[i] = in_real<Real>(p.size[i] * Number(cos(p.phase[i])));
+            series_.cosine[i] = in_real<Real>(p.size[i] * Number(sin(p.phase[i])));
         }
     }
     quantity_of<Signal, Real> operator()(quantity_of<signal::position, Real> x) const noexcept {
-        using std::cos, std::sin;
-        const Real turns = x / period_;
-        const Real part = turns - Real(std::floor(plain(turns))); // near zero even far away
-        const Real angle = part * Real(2 * std::numbers::pi), c1 = cos(angle), s1 = sin(angle);
-        Real c = c1, s = s1;
-        quantity_of<Signal, Real> sum{};
-        for (std::size_t i = 0; i < Harmonics; ++i) {
-            sum += sine_[i] * s + cosine_[i] * c;
-            const Real next = c * c1 - s * s1; // angle addition
-            s = s * c1 + c * s1;
-            c = next;
-        }
-        return sum;
+        return series_(Real(x / period_));
     }
 
 private:
     quantity_of<signal::position, Real> period_;
-    std::array<quantity_of<Signal, Real>, Harmonics> sine_{}, cosine_{};
+    harmonic_series<Harmonics, quantity_of<Signal, Real>, Real> series_;
 };
 } // namespace detail
 

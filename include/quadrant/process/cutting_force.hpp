@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "../plant/harmonic_series.hpp"
 #include "../signal.hpp"
 #include "tool_entry.hpp"
 #include "turning_phase.hpp"
@@ -61,8 +62,8 @@ public:
 
     cutting_force(const parameters& p, duration period) : given_(checked(p, period)) {
         for (std::size_t i = 0; i < Harmonics; ++i) {
-            real_[i] = in_real<Real>(p.scale * p.harmonics.real[i]);
-            imaginary_[i] = in_real<Real>(p.scale * p.harmonics.imaginary[i]);
+            series_.cosine[i] = in_real<Real>(p.scale * p.harmonics.real[i]);
+            series_.sine[i] = -in_real<Real>(p.scale * p.harmonics.imaginary[i]);
         }
         state_.turn = turning_phase(p.fundamental, period);
         state_.tool = tool_entry("cutting_force.entry", p.entry, period);
@@ -70,15 +71,7 @@ public:
 
     value operator()() noexcept {
         const double angle = state_.turn.angle();
-        const Real c1 = Real(std::cos(angle)), s1 = Real(std::sin(angle));
-        Real c = c1, s = s1;
-        value sum{};
-        for (std::size_t i = 0; i < Harmonics; ++i) {
-            sum += real_[i] * c - imaginary_[i] * s;
-            const Real next = c * c1 - s * s1; // angle addition
-            s = s * c1 + c * s1;
-            c = next;
-        }
+        const value sum = series_(Real(std::cos(angle)), Real(std::sin(angle)));
         const value force = sum * Real(state_.tool.depth());
         state_.turn.advance();
         state_.tool.advance();
@@ -113,7 +106,7 @@ private:
     }
 
     parameters given_;
-    std::array<value, Harmonics> real_{}, imaginary_{};
+    detail::harmonic_series<Harmonics, value, Real> series_;
     state state_;
 };
 

@@ -4,6 +4,7 @@
 #include "compensate.hpp"
 #include "diagnose.hpp"
 #include "forecast.hpp"
+#include "passes.hpp"
 #include "read_diagnosis.hpp"
 #include "read_machine.hpp"
 #include "simulate.hpp"

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../lanes.hpp"
+#include "plant_axis.hpp"
+
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// What one pass of an observer over a log needs, and where its results go.
+struct pass_input {
+    /// One plant: its axis, and the delay of its commands.
+    struct plant {
+        plant_axis::parameters axis{};
+        double delay = 0; ///< [s]
+    };
+    double period = 0;
+    std::size_t rows = 0;
+    const double *position = nullptr, *command = nullptr;
+    const double* other_acceleration = nullptr; ///< null: none
+    double to_position = 0, to_velocity = 0;    ///< gains of the correction by the innovation
+    std::size_t plants = 0;
+    const plant* plant_of = nullptr;
+    double* const* innovation = nullptr;   ///< one array a plant
+    double* const* acceleration = nullptr; ///< the same; null: not asked for
+
+    /// The plants from `first` on, at most `most`.
+    pass_input from(std::size_t first, std::size_t most) const {
+        pass_input out = *this;
+        out.plants = plants - first < most ? plants - first : most;
+        out.plant_of += first;
+        out.innovation += first;
+        if (acceleration) out.acceleration += first;
+        return out;
+    }
+};
+
+namespace detail {
+
+/// How many doubles one register of a set holds.
+template <class Isa>
+inline constexpr std::size_t register_width = quadrant::detail::lane_registers<8, Isa>::width == 8   ? 8
+                                              : quadrant::detail::lane_registers<4, Isa>::width == 4 ? 4
+                                                                                                     : 2;
+
+/// Plants in the lanes of one number, on their way through the log.
+template <class Real> class lane_group {
+    static constexpr std::size_t width = lane_count<Real>;
+    using axis = plant_axes<Real>;
+
+public:
+    explicit lane_group(const pass_input& in) : lane_group(in, delays(in)) {}
+
+    /// The innovation of row k, and the correction by it.
+    void correct(const pass_input& in, std::size_t k) {
+        now_.time = Real(static_cast<double>(k) * in.period);
+        if (in.other_acceleration) now_.other_acceleration = Real(in.other_acceleration[k]);
+        const Real e = Real(in.position[k]) - newer_.reading(state_);
+        keep(in, in.innovation, k, e);
+        state_.shift(Real(in.to_position) * e, Real(in.to_velocity) * e);
+        before_ = newer_.load_velocity(state_);
+    }
+    /// The part of the period in which the older command acts.
+    void begin(const pass_input& in, std::size_t k) {
+        if (!delay_.split) return;
+        if (delay_.all_late)
+            older_.advance(state_, command(in, k, 1), now_);
+        else {
+            auto moved = state_;
+            older_.advance(moved, command(in, k, 1), now_);
+            state_.take(greater(delay_.late, Real(0)), moved);
+        }
+        now_.time = now_.time + delay_.late;
+    }
+    /// The rest of it.
+    void end(const pass_input& in, std::size_t k) {
+        newer_.advance(state_, command(in, k, 0), now_);
+        if (in.acceleration)
+            keep(in, in.acceleration, k, (newer_.load_velocity(state_) - before_) * Real(1 / in.period));
+    }
+
+private:
+    struct delay {
+        std::array<std::size_t, width> whole{}; ///< periods
+        Real late{0};                           ///< the older command's part of a period [s]
+        bool split = false, all_late = false, same = true;
+    };
+    static delay delays(const pass_input& in) {
+        delay out;
+        for (std::size_t i = 0; i < width; ++i) {
+            const double given = in.plant_of[i < in.plants ? i : in.plants - 1].delay;
+            const double d = given > 0 ? given : 0;
+            out.whole[i] = static_cast<std::size_t>(d / in.period);
+            set_lane(out.late, i, d - static_cast<double>(out.whole[i]) * in.period);
+            out.same = out.same && out.whole[i] == out.whole[0];
+        }
+        const auto late = greater(out.late, Real(0));
+        out.split = any(late);
+        out.all_late = all(late);
+        return out;
+    }
+    lane_group(const pass_input& in, const delay& d)
+        : lane_group(in, d,
+                     axis::side_by_side(
+                         in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; })) {}
+    lane_group(const pass_input& in, const delay& d, const typename axis::parameters& boxes)
+        : delay_(d),
+          older_(boxes, select(greater(d.late, Real(0)), d.late, Real(in.period)), already_checked()),
+          newer_(boxes, Real(in.period) - d.late, already_checked()),
+          state_(axis::state::at(newer_.position_of(Real(in.position[0])))) {}
+
+    Real command(const pass_input& in, std::size_t k, std::size_t more) const {
+        const auto row = [&](std::size_t back) { return in.command[k >= back ? k - back : 0]; };
+        if (delay_.same) return Real(row(delay_.whole[0] + more));
+        Real u(0);
+        for (std::size_t i = 0; i < width; ++i) set_lane(u, i, row(delay_.whole[i] + more));
+        return u;
+    }
+    static void keep(const pass_input& in, double* const* out, std::size_t k, const Real& value) {
+        const auto numbers = value.each();
+        for (std::size_t i = 0; i < width && i < in.plants; ++i) out[i][k] = numbers[i];
+    }
+
+    delay delay_;
+    axis older_, newer_;
+    typename axis::state state_;
+    typename axis::surroundings now_{};
+    Real before_{0};
+};
+
+/// The observer of predictor.hpp on up to lanes times groups plants, from the first row to the last. The groups take turns, so that
+/// the processor works on the next one while a step waits for its own last result.
+template <class Real> void pass(const pass_input& in) {
+    constexpr std::size_t width = lane_count<Real>;
+    std::vector<lane_group<Real>> groups;
+    std::vector<pass_input> parts;
+    for (std::size_t first = 0; first < in.plants; first += width) {
+        parts.push_back(in.from(first, width));
+        groups.emplace_back(parts.back());
+    }
+    const std::size_t n = groups.size();
+    for (std::size_t k = 0; k < in.rows; ++k) {
+        for (std::size_t g = 0; g < n; ++g) groups[g].correct(parts[g], k);
+        for (std::size_t g = 0; g < n; ++g) groups[g].begin(parts[g], k);
+        for (std::size_t g = 0; g < n; ++g) groups[g].end(parts[g], k);
+    }
+}
+
+} // namespace detail
+
+/// The observer's pass compiled for one instruction set, for any number of plants: two, four or eight at a time.
+struct pass_table {
+    void (*one)(const pass_input&);
+    void (*two)(const pass_input&);
+    void (*more)(const pass_input&);
+    std::size_t abreast; ///< plants that `more` takes at once
+};
+template <class Isa = isa::here>
+inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>, &detail::pass<lanes<2, Isa>>,
+                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>, 8};
+
+/// All plants of `in`.
+inline void pass_all(const pass_input& in, const pass_table& by) {
+    for (std::size_t first = 0; first < in.plants;) {
+        const pass_input some = in.from(first, by.abreast);
+        (some.plants > 2 ? by.more : some.plants > 1 ? by.two : by.one)(some);
+        first += some.plants;
+    }
+}
+
+} // namespace quadrant::diagnosis

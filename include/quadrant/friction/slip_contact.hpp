@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../error.hpp"
+#include "../finite.hpp"
+#include "already_checked.hpp"
+#include "spring_law.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace quadrant {
+
+/// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved together with
+/// the mass that it brakes.
+///   M (v' - v)/h = drive - viscous v' - sum F_i',   F_i as in `maxwell_slip` with the level s(v) of the step's start,
+///   s(v) = level (1 + asymmetry sign v) (1 + change) + excess exp(-|v|/vs)
+/// A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found in at most
+/// 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity. Velocity and spring forces are
+/// implicit, so no step adds energy and a stiff contact neither rings nor needs a small h; the level is that of the start.
+/// Source: [AlBender2005]; [Jamaludin2008] eqs. (3.6-3.8). Derivation: docs/derivations/maxwell_slip.md.
+/// Ports: the momentum p = M v + h (all other forces) [N s], velocity v and change (relative, of the level) in, v' out.
+/// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many contacts by one law.
+/// Range: level, excess >= 0; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at once.
+/// A spring with the weight 0 and the stiffness 0 is not there.
+/// NaN and infinities pass on to v', for the plant to see. Runs in lanes.
+/// Throws "slip_contact.<field> = ...: must ...".
+/// Cost: 1 exponential (2 with a finite attraction), about 12 multiplications and, for N > 1, one division a round.
+template <std::size_t N, class Real = double>
+requires(N > 0) class slip_contact {
+public:
+    using number = parameter_real<Real>; ///< of parameters
+    template <class Signal> using of = quantity_of<Signal, number>;
+
+    /// The level, what it depends on, and the springs.
+    struct parameters {
+        of<signal::force> level{};  ///< Fc, at speed; >= 0
+        of<signal::force> excess{}; ///< Fs - Fc; >= 0
+        of<signal::velocity> stribeck_velocity = of<signal::velocity>::from_value(number(1)); ///< vs; > 0
+        gain_of<signal::force, signal::velocity, number> viscous{};                           ///< >= 0
+        number asymmetry{0};                                                         ///< of the level; -1 ... 1
+        number viscous_asymmetry{0};                                                 ///< -1 ... 1
+        std::array<number, N> weights{};                                             ///< shares of the level
+        std::array<gain_of<signal::force, signal::position, number>, N> stiffness{}; ///< >= 0
+        quantity<unit_quotient<si::force, si::time>, number> attraction =
+            quantity<unit_quotient<si::force, si::time>, number>::from_value(
+                number(std::numeric_limits<double>::infinity())); ///< C; > 0
+        quantity<si::time, number> damping{};                     ///< of a spring that sticks; >= 0
+    };
+    /// What the springs hold [N], and which of them slip.
+    struct state {
+        std::array<Real, N> force{};
+        std::array<mask_of<Real>, N> slips{};
+    };
+
+    /// `inertia`: what the momentum is of, a rigid mass or one with a mode on it [kg]; h: the step [s].
+    slip_contact(const parameters& p, Real inertia, Real h)
+        : slip_contact(checked(p), inertia, h, already_checked()) {}
+    slip_contact(const parameters& p, Real inertia, Real h, already_checked)
+        : h_(h), inverse_velocity_(Real(1) / in_real<Real>(p.stribeck_velocity).value()),
+          excess_(in_real<Real>(p.excess).value()), damping_(in_real<Real>(p.damping).value()) {
+        const Real attraction = in_real<Real>(p.attraction).value();
+        falls_ = any(greater(excess_, Real(0)));
+        relaxes_ = any(less(attraction, Real(std::numeric_limits<double>::infinity())));
+        attraction_step_ = attraction * h;
+        for (std::size_t i = 0; i < N; ++i) {
+            weight_[i] = Real(p.weights[i]);
+            stiffness_[i] = in_real<Real>(p.stiffness[i]).value();
+            if (any(greater(weight_[i], Real(0))) || any(greater(stiffness_[i], Real(0)))) springs_ = i + 1;
+        }
+        for (const bool forward : {false, true}) {
+            side& s = forward ? forward_ : backward_;
+            const Real sign = Real(forward ? 1 : -1);
+            s.level = in_real<Real>(p.level).value() * (Real(1) + Real(p.asymmetry) * sign);
+            s.inertia =
+                inertia + h * in_real<Real>(p.viscous).value() * (Real(1) + Real(p.viscous_asymmetry) * sign);
+            s.slipping = Real(1) / s.inertia;
+            s.sticking = Real(1) / (s.inertia + h * (h + damping_) * stiffness_[0]);
+        }
+    }
+
+    /// The velocity at the end of the step.
+    Real operator()(state& s, Real momentum, Real v) const noexcept {
+        return step(s, momentum, v, [](const Real& level) { return level; });
+    }
+    Real operator()(state& s, Real momentum, Real v, Real change) const noexcept {
+        return step(s, momentum, v, [&](const Real& level) { return level * (Real(1) + change); });
+    }
+
+private:
+    struct side { // of one direction of motion
+        Real level{}, inertia{};
+        Real slipping{}, sticking{}; ///< one over the inertia while the first spring slips, and while it sticks
+    };
+    using law = detail::spring_law<Real, Real>;
+    static Real along(const auto& positive, Real force) noexcept { return select(positive, force, -force); }
+
+    static const parameters& checked(const parameters& p) {
+        require_not_negative("slip_contact.level", p.level);
+        require_not_negative("slip_contact.excess", p.excess);
+        require_positive("slip_contact.stribeck_velocity", p.stribeck_velocity);
+        require_not_negative("slip_contact.viscous", p.viscous);
+        require_not_negative("slip_contact.damping", p.damping);
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) {
+            const double c = detail::plain(lane(p.attraction, i)), side = detail::plain(lane(p.asymmetry, i)),
+                         viscous_side = detail::plain(lane(p.viscous_asymmetry, i));
+            require(c > 0, "slip_contact.attraction", c, "must be above 0");
+            require(std::abs(side) <= 1, "slip_contact.asymmetry", side, "must lie between -1 and 1");
+            require(std::abs(viscous_side) <= 1, "slip_contact.viscous_asymmetry", viscous_side,
+                    "must lie between -1 and 1");
+        }
+        for (std::size_t i = 0; i < N; ++i) {
+            require_not_negative("slip_contact.weights", p.weights[i]);
+            require_not_negative("slip_contact.stiffness", p.stiffness[i]);
+        }
+        return p;
+    }
+    Real step(state& s, Real momentum, Real v, const auto& changed) const noexcept {
+        using std::abs, std::exp;
+        const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
+        Real level = changed(select(forward, forward_.level, backward_.level));
+        if (falls_) level = level + excess_ * exp(-abs(v) * inverse_velocity_);
+        Real kept(0);
+        if (relaxes_) { // a level of zero has no distance to keep
+            const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
+            kept = exp(-select(less(by, Real(700)), by, Real(700)));
+        }
+        return springs_ > 1
+                   ? several(s, momentum, level, kept, select(forward, forward_.inertia, backward_.inertia))
+                   : one(s, momentum, level, kept, forward);
+    }
+
+    /// A contact of one spring, which most guides are: all three ways, and the one that is true.
+    Real one(state& s, Real momentum, Real level, Real kept, const auto& forward) const noexcept {
+        using std::abs;
+        const law spring{weight_[0] * level, kept};
+        const Real slipping = select(forward, forward_.slipping, backward_.slipping),
+                   sticking = select(forward, forward_.sticking, backward_.sticking);
+        Real& force = s.force[0];
+        const auto bent = greater_equal(force, Real(0));
+        const Real on = along(bent, relaxes_ ? spring.slips_on(abs(force)) : spring.share);
+        const Real v_on = (momentum - h_ * on) * slipping;
+        const auto slips_on = both(s.slips[0], greater(v_on * force, Real(0)));
+
+        const Real v_stuck = (momentum - h_ * force) * sticking;
+        const Real reached = force + h_ * stiffness_[0] * v_stuck;
+        const auto ahead = greater(v_stuck, Real(0));
+        const auto rests =
+            both(!slips_on, either(spring.sticks(along(ahead, reached)), equal(v_stuck, Real(0))));
+        const Real away = along(ahead, relaxes_ ? spring.breaks_away(along(ahead, force)) : spring.share);
+        const Real v_away = (momentum - h_ * away) * slipping;
+
+        force = select(slips_on, on, select(rests, reached, away));
+        s.slips[0] = !rests;
+        return select(slips_on, v_on, select(rests, v_stuck, v_away));
+    }
+
+    /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was wrong.
+    Real several(state& s, Real momentum, Real level, Real kept, Real inertia) const noexcept {
+        using std::abs;
+        std::array<Real, N> end{};                             // force of the springs that slip, at the end
+        std::array<mask_of<Real>, N> slips = s.slips, fresh{}; // fresh: broke away in this step
+        for (std::size_t i = 0; i < springs_; ++i) {
+            const law spring{weight_[i] * level, kept};
+            end[i] = along(greater_equal(s.force[i], Real(0)), spring.slips_on(abs(s.force[i])));
+        }
+        Real v(0);
+        for (std::size_t round = 0; round <= 2 * springs_; ++round) {
+            Real pull(0), stiffness(0);
+            for (std::size_t i = 0; i < springs_; ++i) {
+                pull = pull + select(slips[i], end[i], s.force[i]);
+                stiffness = stiffness + select(slips[i], Real(0), stiffness_[i]);
+            }
+            v = (momentum - h_ * pull) / (inertia + h_ * (h_ + damping_) * stiffness);
+            const auto ahead = greater(v, Real(0)), moves = !equal(v, Real(0));
+            auto changed = !equal(v, v); // none, but for NaN
+            for (std::size_t i = 0; i < springs_; ++i) {
+                const law spring{weight_[i] * level, kept};
+                const auto turned = both(both(slips[i], !fresh[i]), less_equal(end[i] * v, Real(0)));
+                const Real before = along(ahead, s.force[i]);
+                const auto breaks =
+                    both(both(!slips[i], moves), !spring.sticks(before + h_ * stiffness_[i] * abs(v)));
+                end[i] = select(breaks, along(ahead, spring.breaks_away(before)), end[i]);
+                fresh[i] = either(fresh[i], breaks);
+                slips[i] = either(both(slips[i], !turned), breaks);
+                changed = either(changed, either(turned, breaks));
+            }
+            if (none(changed)) break;
+        }
+        for (std::size_t i = 0; i < springs_; ++i) {
+            s.force[i] = select(slips[i], end[i], s.force[i] + h_ * stiffness_[i] * v);
+            s.slips[i] = slips[i];
+        }
+        return v;
+    }
+
+    Real h_, inverse_velocity_, excess_, damping_, attraction_step_{};
+    bool relaxes_ = false, falls_ = false; ///< a finite attraction, a level that falls with the speed
+    std::size_t springs_ = 1;
+    std::array<Real, N> weight_{}, stiffness_{};
+    side forward_, backward_;
+};
+
+} // namespace quadrant

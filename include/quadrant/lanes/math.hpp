@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "number.hpp"
+
+#include <cmath>
+
+/// The functions of <cmath> on lanes, found by argument-dependent lookup as those of `dual` are. In registers exp, log,
+/// sin and cos are xsimd's; docs/lanes.md says how far they lie from the C library's. tan, atan2 and pow call the C
+/// library lane by lane: a filter designed with them has the coefficients of its scalar twin, bit for bit.
+namespace quadrant {
+
+template <std::size_t W, class Isa> lanes<W, Isa> abs(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::abs;
+            return abs(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> sqrt(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::sqrt;
+            return sqrt(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::exp;
+            return exp(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::log;
+            return log(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> sin(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::sin;
+            return sin(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> cos(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::cos;
+            return cos(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> tan(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::one_by_one([](double v) { return std::tan(v); }, x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> floor(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::floor;
+            return floor(v);
+        },
+        x);
+}
+/// Halves away from zero, as std::round.
+template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::round;
+            return round(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& v) {
+            using std::trunc;
+            return trunc(v);
+        },
+        x);
+}
+template <std::size_t W, class Isa>
+lanes<W, Isa> atan2(const lanes<W, Isa>& y, const std::type_identity_t<lanes<W, Isa>>& x) noexcept {
+    return lanes<W, Isa>::one_by_one([](double a, double b) { return std::atan2(a, b); }, y, x);
+}
+template <std::size_t W, class Isa>
+lanes<W, Isa> pow(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& y) noexcept {
+    return lanes<W, Isa>::one_by_one([](double a, double b) { return std::pow(a, b); }, x, y);
+}
+template <std::size_t W, class Isa>
+lanes<W, Isa> copysign(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& sign) noexcept {
+    return lanes<W, Isa>::map(
+        [](const auto& a, const auto& b) {
+            using std::copysign;
+            return copysign(a, b);
+        },
+        x, sign);
+}
+/// As std::min, std::max and std::clamp: which of two is returned when one is NaN too.
+template <std::size_t W, class Isa>
+lanes<W, Isa> min(const lanes<W, Isa>& a, const std::type_identity_t<lanes<W, Isa>>& b) noexcept {
+    return select(less(b, a), b, a);
+}
+template <std::size_t W, class Isa>
+lanes<W, Isa> max(const lanes<W, Isa>& a, const std::type_identity_t<lanes<W, Isa>>& b) noexcept {
+    return select(less(a, b), b, a);
+}
+template <std::size_t W, class Isa>
+lanes<W, Isa> clamp(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, Isa>>& low,
+                    const std::type_identity_t<lanes<W, Isa>>& high) noexcept {
+    return select(less(x, low), low, select(less(high, x), high, x));
+}
+
+} // namespace quadrant

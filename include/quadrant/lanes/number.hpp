@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../select.hpp"
+#include "mask.hpp"
+#include "registers.hpp"
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace quadrant {
+
+/// A number that holds W independent instances: run W loops side by side, one in each lane, with the registers of the
+/// processor. Every operation works lane by lane; + - * / and sqrt give in each lane what a double gives, bit for bit
+/// (exp, log, sin and the like: docs/lanes.md). Fits into a quantity.
+/// Comparisons are functions that return a mask: less(a, b), select(mask, a, b), any(mask) (select.hpp). There is no
+/// operator<, because one bool cannot answer for W lanes.
+/// With xsimd (Debian: libxsimd-dev) W numbers fill registers: 2 with SSE2, 4 with AVX, 8 with AVX-512; without it, or
+/// when W is odd, the lanes are W doubles. `Isa` is the instruction set, by default that of the translation unit.
+template <std::size_t W, class Isa = isa::here> class lanes {
+    using registers = detail::lane_registers<W, Isa>;
+    using piece = typename registers::number;
+    static constexpr std::size_t pieces = W / registers::width;
+
+public:
+    static_assert(W > 0, "at least one lane");
+    using mask = lane_mask<W, Isa>;
+    static constexpr std::size_t size = W;
+
+    lanes() noexcept : lanes(0.0) {}
+    /// The same number in every lane.
+    template <class Number>
+    requires std::is_arithmetic_v<Number> lanes(Number all)
+    noexcept { piece_.fill(piece(static_cast<double>(all))); }
+    /// One number for each lane.
+    explicit lanes(const std::array<double, W>& each) noexcept {
+        for (std::size_t i = 0; i < pieces; ++i) detail::get(piece_[i], each.data() + i * registers::width);
+    }
+
+    /// All lanes, as numbers.
+    std::array<double, W> each() const noexcept {
+        std::array<double, W> out;
+        for (std::size_t i = 0; i < pieces; ++i) detail::put(piece_[i], out.data() + i * registers::width);
+        return out;
+    }
+    /// The number in lane i < W.
+    double operator[](std::size_t i) const noexcept {
+        std::array<double, registers::width> out;
+        detail::put(piece_[i / registers::width], out.data());
+        return out[i % registers::width];
+    }
+    /// Another number in lane i < W.
+    void set(std::size_t i, double value) noexcept {
+        std::array<double, registers::width> out;
+        detail::put(piece_[i / registers::width], out.data());
+        out[i % registers::width] = value;
+        detail::get(piece_[i / registers::width], out.data());
+    }
+
+    lanes& operator+=(const lanes& o) noexcept { return *this = *this + o; }
+    lanes& operator-=(const lanes& o) noexcept { return *this = *this - o; }
+    lanes& operator*=(const lanes& o) noexcept { return *this = *this * o; }
+    lanes& operator/=(const lanes& o) noexcept { return *this = *this / o; }
+    friend lanes operator+(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return x + y; }, a, b);
+    }
+    friend lanes operator-(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return x - y; }, a, b);
+    }
+    friend lanes operator*(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return x * y; }, a, b);
+    }
+    friend lanes operator/(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return x / y; }, a, b);
+    }
+    friend lanes operator-(const lanes& a) noexcept {
+        return map([](const piece& x) { return -x; }, a);
+    }
+    friend lanes operator+(const lanes& a) noexcept { return a; }
+
+    /// Deleted: one bool cannot answer for W lanes. Use less, equal and so on.
+    friend bool operator<(const lanes&, const lanes&) = delete;
+    friend bool operator>(const lanes&, const lanes&) = delete;
+    friend bool operator<=(const lanes&, const lanes&) = delete;
+    friend bool operator>=(const lanes&, const lanes&) = delete;
+    friend bool operator==(const lanes&, const lanes&) = delete;
+    friend bool operator!=(const lanes&, const lanes&) = delete;
+
+    friend mask less(const lanes& a, const lanes& b) noexcept {
+        return test([](const piece& x, const piece& y) { return x < y; }, a, b);
+    }
+    friend mask less_equal(const lanes& a, const lanes& b) noexcept {
+        return test([](const piece& x, const piece& y) { return x <= y; }, a, b);
+    }
+    friend mask greater(const lanes& a, const lanes& b) noexcept { return less(b, a); }
+    friend mask greater_equal(const lanes& a, const lanes& b) noexcept { return less_equal(b, a); }
+    friend mask equal(const lanes& a, const lanes& b) noexcept {
+        return test([](const piece& x, const piece& y) { return x == y; }, a, b);
+    }
+    friend mask finite_lanes(const lanes& a) noexcept {
+        return test([](const piece& x) { return detail::is_finite(x); }, a);
+    }
+    friend lanes select(const mask& choice, const lanes& one, const lanes& other) noexcept {
+        return chosen(choice, one, other);
+    }
+
+    /// Applies `f` to the registers of the arguments: for functions that xsimd and std have under one name.
+    template <class F, class... More> static lanes map(F f, const lanes& a, const More&... more) noexcept {
+        return each_piece<lanes>(f, std::make_index_sequence<pieces>(), a, more...);
+    }
+    /// Applies `f`, a function of doubles, lane by lane.
+    template <class F, class... More>
+    static lanes one_by_one(F f, const lanes& a, const More&... more) noexcept {
+        std::array<double, W> out;
+        for (std::size_t i = 0; i < W; ++i) out[i] = f(a[i], more[i]...);
+        return lanes(out);
+    }
+
+private:
+    static lanes chosen(const mask& choice, const lanes& one, const lanes& other) noexcept {
+        lanes out;
+        for (std::size_t i = 0; i < pieces; ++i)
+            out.piece_[i] = detail::choose(choice.piece_[i], one.piece_[i], other.piece_[i]);
+        return out;
+    }
+    template <class F, class... More> static mask test(F f, const lanes& a, const More&... more) noexcept {
+        return each_piece<mask>(f, std::make_index_sequence<pieces>(), a, more...);
+    }
+    template <class Out, class F, std::size_t... I>
+    static Out each_piece(F f, std::index_sequence<I...>, const lanes& a) noexcept {
+        return Out(std::array{f(a.piece_[I])...}, nullptr);
+    }
+    template <class Out, class F, std::size_t... I>
+    static Out each_piece(F f, std::index_sequence<I...>, const lanes& a, const lanes& b) noexcept {
+        return Out(std::array{f(a.piece_[I], b.piece_[I])...}, nullptr);
+    }
+    lanes(const std::array<piece, pieces>& from, std::nullptr_t) noexcept : piece_(from) {}
+
+    std::array<piece, pieces> piece_;
+};
+
+template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lanes<W, Isa>> = W;
+template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lane_mask<W, Isa>> = W;
+/// The number in lane i.
+template <std::size_t W, class Isa> double lane(const lanes<W, Isa>& x, std::size_t i) noexcept { return x[i]; }
+template <std::size_t W, class Isa> bool lane(const lane_mask<W, Isa>& x, std::size_t i) noexcept {
+    return x[i];
+}
+/// Replaces the number in lane i.
+template <std::size_t W, class Isa> void set_lane(lanes<W, Isa>& x, std::size_t i, double value) noexcept {
+    x.set(i, value);
+}
+
+/// A quantity of lanes times a plain number: Boost.Units scales by the quantity's own number type only.
+template <class Unit, std::size_t W, class Isa, class Number>
+requires std::is_arithmetic_v<Number> quantity<Unit, lanes<W, Isa>>
+operator*(const quantity<Unit, lanes<W, Isa>>& q, Number n) noexcept {
+    return quantity<Unit, lanes<W, Isa>>::from_value(q.value() * n);
+}
+template <class Unit, std::size_t W, class Isa, class Number>
+requires std::is_arithmetic_v<Number> quantity<Unit, lanes<W, Isa>>
+operator*(Number n, const quantity<Unit, lanes<W, Isa>>& q) noexcept {
+    return quantity<Unit, lanes<W, Isa>>::from_value(n * q.value());
+}
+template <class Unit, std::size_t W, class Isa, class Number>
+requires std::is_arithmetic_v<Number> quantity<Unit, lanes<W, Isa>>
+operator/(const quantity<Unit, lanes<W, Isa>>& q, Number n) noexcept {
+    return quantity<Unit, lanes<W, Isa>>::from_value(q.value() / n);
+}
+
+} // namespace quadrant

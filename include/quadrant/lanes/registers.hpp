@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../finite.hpp"
+#include "instruction_set.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#if defined(__SSE2__) && __has_include(<xsimd/xsimd.hpp>)
+#    include <xsimd/xsimd.hpp>
+#endif
+
+#ifdef XSIMD_HPP
+namespace quadrant::detail {
+/// One of xsimd's sets with all extensions of the translation unit in its name: xsimd's own functions on it are then
+/// told apart by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also of exp and sin.
+template <class Set, unsigned Extensions> struct lane_set : Set {};
+} // namespace quadrant::detail
+
+// How xsimd declares a set that has the registers of another (XSIMD_DECLARE_SIMD_REGISTER_ALIAS).
+namespace xsimd::types {
+template <class T, class Set, unsigned Extensions>
+struct simd_register<T, quadrant::detail::lane_set<Set, Extensions>> : simd_register<T, Set> {
+    using register_type = typename simd_register<T, Set>::register_type;
+    simd_register() = default;
+    simd_register(register_type reg) noexcept : simd_register<T, Set>{reg} {}
+};
+template <class T, class Set, unsigned Extensions>
+struct has_simd_register<T, quadrant::detail::lane_set<Set, Extensions>> : has_simd_register<T, Set> {};
+#    if XSIMD_WITH_AVX512F
+template <class T, unsigned Extensions>
+struct get_bool_simd_register<T, quadrant::detail::lane_set<avx512f, Extensions>>
+    : get_bool_simd_register<T, avx512f> {};
+#    endif
+} // namespace xsimd::types
+#endif
+
+/// What the W numbers of a `lanes` are kept in: the widest registers that W fills, else doubles one by one.
+namespace quadrant::detail {
+
+/// Doubles one by one: without xsimd, on another processor, or when W is odd.
+template <std::size_t W, class Isa> struct lane_registers {
+    static constexpr std::size_t width = 1;
+    using number = double;
+    using truth = bool;
+};
+
+#ifdef XSIMD_HPP
+template <std::size_t W, unsigned Extensions> constexpr auto set_for() noexcept {
+    if constexpr (W % 8 == 0 && (Extensions & isa::avx512f) != 0)
+        return xsimd::avx512f();
+    else if constexpr (W % 4 == 0 && (Extensions & isa::avx2) != 0)
+        return xsimd::avx2();
+    else if constexpr (W % 4 == 0 && (Extensions & isa::avx) != 0)
+        return xsimd::avx();
+    else if constexpr ((Extensions & isa::sse4_1) != 0)
+        return xsimd::sse4_1();
+    else
+        return xsimd::sse2();
+}
+
+template <std::size_t W, unsigned Extensions>
+requires(W % 2 == 0 && (Extensions & isa::xsimd) != 0) struct lane_registers<W, isa::x86<Extensions>> {
+    using set = lane_set<decltype(set_for<W, Extensions>()), Extensions>;
+    using number = xsimd::batch<double, set>;
+    using truth = xsimd::batch_bool<double, set>;
+    static constexpr std::size_t width = number::size;
+};
+
+template <class Set> xsimd::batch_bool<double, Set> is_finite(const xsimd::batch<double, Set>& x) noexcept {
+    return xsimd::abs(x) <= xsimd::batch<double, Set>(std::numeric_limits<double>::max());
+}
+template <class Set>
+xsimd::batch<double, Set> choose(const xsimd::batch_bool<double, Set>& c, const xsimd::batch<double, Set>& a,
+                                 const xsimd::batch<double, Set>& b) noexcept {
+    return xsimd::select(c, a, b);
+}
+template <class Set>
+xsimd::batch_bool<double, Set> meet(const xsimd::batch_bool<double, Set>& a,
+                                    const xsimd::batch_bool<double, Set>& b) noexcept {
+    return a & b;
+}
+template <class Set>
+xsimd::batch_bool<double, Set> join(const xsimd::batch_bool<double, Set>& a,
+                                    const xsimd::batch_bool<double, Set>& b) noexcept {
+    return a | b;
+}
+template <class Set> bool any_of(const xsimd::batch_bool<double, Set>& m) noexcept { return xsimd::any(m); }
+template <class Set> bool all_of(const xsimd::batch_bool<double, Set>& m) noexcept { return xsimd::all(m); }
+template <class Set> void put(const xsimd::batch<double, Set>& x, double* out) noexcept {
+    x.store_unaligned(out);
+}
+template <class Set> void put(const xsimd::batch_bool<double, Set>& m, bool* out) noexcept {
+    m.store_unaligned(out);
+}
+template <class Set> void get(xsimd::batch<double, Set>& x, const double* in) noexcept {
+    x = xsimd::batch<double, Set>::load_unaligned(in);
+}
+template <class Set> void get(xsimd::batch_bool<double, Set>& m, const bool* in) noexcept {
+    m = xsimd::batch_bool<double, Set>::load_unaligned(in);
+}
+#endif
+
+constexpr double choose(bool c, double a, double b) noexcept { return c ? a : b; }
+constexpr bool meet(bool a, bool b) noexcept { return a && b; }
+constexpr bool join(bool a, bool b) noexcept { return a || b; }
+constexpr bool any_of(bool m) noexcept { return m; }
+constexpr bool all_of(bool m) noexcept { return m; }
+template <class Plain> constexpr void put(Plain x, Plain* out) noexcept { *out = x; }
+template <class Plain> constexpr void get(Plain& x, const Plain* in) noexcept { x = *in; }
+
+} // namespace quadrant::detail

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "units.hpp"
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+/// Comparison and choice for every number type. `a < b` has one answer; a number of lanes (lanes.hpp) has one answer
+/// per lane, a mask. A block that is to run in lanes writes `select(less(x, low), low, x)` where a block in double
+/// may write `x < low ? low : x`. For double, float and dual both compile to the same code.
+namespace quadrant {
+
+/// How many instances a number holds: 1, or W for lanes<W>.
+template <class Number> inline constexpr std::size_t lane_count = 1;
+template <class Unit, class Real>
+inline constexpr std::size_t lane_count<quantity<Unit, Real>> = lane_count<Real>;
+
+/// A number with more than one instance in it.
+template <class Number>
+concept multi_lane = requires {
+    typename Number::mask;
+};
+
+namespace detail {
+template <class Number> struct mask_of { using type = bool; };
+template <multi_lane Number> struct mask_of<Number> { using type = typename Number::mask; };
+template <class Unit, class Real> struct mask_of<quantity<Unit, Real>> : mask_of<Real> {};
+template <class A, class B>
+concept single = std::is_same_v < typename mask_of<A>::type,
+bool > &&std::is_same_v<typename mask_of<B>::type, bool>;
+} // namespace detail
+
+/// What a comparison of two such numbers returns: bool, or lane_mask for lanes.
+template <class Number> using mask_of = typename detail::mask_of<Number>::type;
+
+/// a < b, lane by lane. A NaN is not less than anything; the same holds for the other comparisons.
+template <class A, class B>
+requires detail::single<A, B>
+constexpr bool less(const A& a, const B& b) noexcept { return a < b; }
+template <class Unit, class A, class B>
+requires(!detail::single<A, B>) constexpr auto less(const quantity<Unit, A>& a,
+                                                    const quantity<Unit, B>& b) noexcept {
+    return less(a.value(), b.value());
+}
+/// a <= b, lane by lane.
+template <class A, class B>
+requires detail::single<A, B>
+constexpr bool less_equal(const A& a, const B& b) noexcept { return a <= b; }
+template <class Unit, class A, class B>
+requires(!detail::single<A, B>) constexpr auto less_equal(const quantity<Unit, A>& a,
+                                                          const quantity<Unit, B>& b) noexcept {
+    return less_equal(a.value(), b.value());
+}
+/// a == b, lane by lane.
+template <class A, class B>
+requires detail::single<A, B>
+constexpr bool equal(const A& a, const B& b) noexcept { return a == b; }
+template <class Unit, class A, class B>
+requires(!detail::single<A, B>) constexpr auto equal(const quantity<Unit, A>& a,
+                                                     const quantity<Unit, B>& b) noexcept {
+    return equal(a.value(), b.value());
+}
+/// a > b, lane by lane.
+template <class A, class B> constexpr auto greater(const A& a, const B& b) noexcept { return less(b, a); }
+/// a >= b, lane by lane.
+template <class A, class B> constexpr auto greater_equal(const A& a, const B& b) noexcept {
+    return less_equal(b, a);
+}
+
+/// True when some lane is; for a bool: itself. A mask has the same three functions.
+constexpr bool any(bool one) noexcept { return one; }
+/// True when every lane is.
+constexpr bool all(bool one) noexcept { return one; }
+/// True when no lane is.
+constexpr bool none(bool one) noexcept { return !one; }
+/// Both hold, lane by lane. (A bool has && for that, a mask has &.)
+constexpr bool both(bool a, bool b) noexcept { return a && b; }
+/// One of them holds, lane by lane.
+constexpr bool either(bool a, bool b) noexcept { return a || b; }
+
+/// The one where `choice` is true, the other elsewhere. Both are computed.
+template <class Value>
+constexpr Value select(bool choice, const Value& one, const std::type_identity_t<Value>& other) noexcept {
+    return choice ? one : other;
+}
+template <class Unit, multi_lane Real>
+constexpr quantity<Unit, Real> select(const typename Real::mask& choice, const quantity<Unit, Real>& one,
+                                      const std::type_identity_t<quantity<Unit, Real>>& other) noexcept {
+    return quantity<Unit, Real>::from_value(select(choice, one.value(), other.value()));
+}
+
+/// Stores `from` in the lanes where `where` is true and leaves the others as they are.
+template <class Value>
+constexpr void set_where(bool where, Value& to, const std::type_identity_t<Value>& from) noexcept {
+    if (where) to = from;
+}
+template <class Mask, class Value>
+requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
+    const Mask& where, Value& to, const std::type_identity_t<Value>& from) noexcept {
+    to = select(where, from, to);
+}
+template <class Mask, class Value, std::size_t N>
+requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
+    const Mask& where, std::array<Value, N>& to,
+    const std::type_identity_t<std::array<Value, N>>& from) noexcept {
+    for (std::size_t i = 0; i < N; ++i) set_where(where, to[i], from[i]);
+}
+
+/// The smaller of two, with std::min's answer for NaN: `a`.
+template <class Value> constexpr Value smaller(const Value& a, const std::type_identity_t<Value>& b) noexcept {
+    return select(less(b, a), b, a);
+}
+/// The larger of two, with std::max's answer for NaN: `a`.
+template <class Value> constexpr Value larger(const Value& a, const std::type_identity_t<Value>& b) noexcept {
+    return select(less(a, b), b, a);
+}
+/// The value without its sign.
+template <class Value> constexpr Value absolute(const Value& x) noexcept {
+    return select(less(x, Value()), -x, x);
+}
+
+/// One instance: the number itself, or one lane of it.
+template <class Number>
+requires(lane_count<Number> == 1) constexpr const Number& lane(const Number& x, std::size_t) noexcept {
+    return x;
+}
+template <class Unit, multi_lane Real>
+constexpr auto lane(const quantity<Unit, Real>& x, std::size_t i) noexcept {
+    return quantity<Unit, double>::from_value(x.value()[i]);
+}
+/// Replaces one instance: the number itself, or one lane of it.
+template <class Number>
+requires(lane_count<Number> == 1) constexpr void set_lane(Number& x, std::size_t,
+                                                          const std::type_identity_t<Number>& value) noexcept {
+    x = value;
+}
+template <class Unit, multi_lane Real>
+constexpr void set_lane(quantity<Unit, Real>& x, std::size_t i, const quantity<Unit>& value) noexcept {
+    Real lanes = x.value();
+    lanes.set(i, value.value());
+    x = quantity<Unit, Real>::from_value(lanes);
+}
+
+} // namespace quadrant
