@@ -31,19 +31,21 @@ const std::map<std::string, neutral_place>& places() {
         {"plant.viscous_N_s_per_m", {0, 250e-9}},
         {"plant.delay_s", {0, 1e-12}},
         {"plant.coulomb_N", {0, 60e-9}},
-        {"plant.static_N",
-         {60, 60 + 60e-9, {{"plant.coulomb_N", 60}, {"plant.stribeck_velocity_m_per_s", 0.004}}}},
+        {"plant.static_N", {60, 60 + 60e-9, {{"plant.stribeck_velocity_m_per_s", 0.004}}}},
         {"plant.viscous_asymmetry", {0, 1e-10}},
         {"plant.coulomb_asymmetry", {0, 1e-10}},
         {"plant.constant_force_N", {0, 20e-9}},
         {"plant.cogging_N", {{0}, {15e-9}, {{"plant.cogging_period_m", 0.03}}}},
         {"plant.cogging_phase_rad",
          {{0}, {1e-9}, {{"plant.cogging_N", {15}}, {"plant.cogging_period_m", 0.03}}, false}},
-        {"plant.presliding_length_m", {nullptr, 1e-14}},
+        {"plant.presliding_length_m", {nullptr, 1e-12}},
         {"plant.presliding_damping_s", {0, 1e-12, {{"plant.presliding_length_m", 1e-5}}, false}},
-        {"plant.gms_stiffness_N_per_m", {nullptr, {1e16}, {{"plant.gms_weights", {1}}}}},
+        {"plant.gms_stiffness_N_per_m", {nullptr, {1e12}, {{"plant.gms_weights", {1}}}}},
         {"plant.gms_weights", // a second element without a share
          {nullptr, {1 - 1e-9, 1e-9}, {{"plant.gms_stiffness_N_per_m", {3e8, 0.3}}}}},
+        {"plant.gms_attraction_N_per_s",
+         {nullptr, 1e12, {{"plant.gms_weights", {1}}, {"plant.gms_stiffness_N_per_m", {1e7}}}, false}},
+        {"plant.quadratic_N_s2_per_m2", {0, 500e-9}},
         {"plant.friction_position_amplitude", {0, 1e-10, {{"plant.friction_position_period_m", 0.07}}}},
         {"plant.friction_position_phase_rad",
          {0,
@@ -52,20 +54,19 @@ const std::map<std::string, neutral_place>& places() {
           false}},
         {"plant.friction_drift", {0, 1e-10, {{"plant.friction_drift_time_s", 3}}}},
         {"plant.mode_mass_kg", {nullptr, 20e-9, {{"plant.mode_frequency_Hz", 70}}}},
-        {"plant.backlash_m", {0, 1e-14}},
+        {"plant.backlash_m", {0, 1e-12}},
         {"plant.spring_N_per_m", {0, 800e-9}},
         {"plant.coupling", {0, 1e-10}},
         {"plant.ripple", {0, 1e-11, {{"plant.ripple_period_m", 0.024}}}},
         {"plant.ripple_phase_rad",
          {0, 1e-9, {{"plant.ripple", 0.02}, {"plant.ripple_period_m", 0.024}}, false}},
-        {"actuator.limit_V", {nullptr, 1e10}},
-        {"actuator.dac_bits", {nullptr, 48, {{"actuator.dac_range_V", 20}}}},
+        {"actuator.limit_V", {nullptr, 1e12}},
         {"actuator.lag_s", {0, 2e-12}},
-        {"actuator.drive_limit_V", {nullptr, 1e10}},
+        {"actuator.drive_limit_V", {nullptr, 1e12}},
         {"actuator.dead_zone_V", {0, 5e-11}},
         {"actuator.loss_probability", {0, 1e-11}},
-        {"encoder.resolution_m", {0, 1e-15}},
-        {"encoder.cyclic_m", {0, 1e-15, {{"encoder.cyclic_period_m", 4e-4}}}},
+        {"encoder.resolution_m", {0, 1e-12}},
+        {"encoder.cyclic_m", {0, 1e-12, {{"encoder.cyclic_period_m", 4e-4}}}},
         {"encoder.cyclic_phase_rad",
          {0, 1e-9, {{"encoder.cyclic_m", 1e-6}, {"encoder.cyclic_period_m", 4e-4}}, false}},
         {"process.force_N", {{0}, {20e-9}, {{"process.fundamental_Hz", 23.3}}}},
@@ -90,6 +91,7 @@ const std::set<std::string> without_neutral{"plant.mass_kg",
                                             "plant.mode_frequency_Hz",
                                             "plant.mode_damping",
                                             "plant.ripple_period_m",
+                                            "actuator.dac_bits", // rounding is a jump by nature
                                             "actuator.dac_range_V",
                                             "encoder.cyclic_period_m",
                                             "process.fundamental_Hz",
@@ -97,7 +99,10 @@ const std::set<std::string> without_neutral{"plant.mass_kg",
                                             "controller.velocity_gain_V_s_per_m",
                                             "controller.velocity_filter_Hz"};
 /// What jumps today, with the jump's cause. One that no longer jumps fails the test, so that its line goes.
-const std::map<std::string, std::string> not_yet{};
+const std::map<std::string, std::string> not_yet{
+    {"plant.presliding_length_m", "without the key the contact is no rigid one: it gives way by 0.2 um"},
+    {"plant.gms_stiffness_N_per_m", "likewise"},
+    {"actuator.loss_probability", "lost commands are looked for in the log as soon as any may be lost"}};
 
 struct gaps {
     double force, position, command;
@@ -117,20 +122,29 @@ json& at(json& file, const std::string& key) {
 }
 void erase(json& file, const std::string& key) {
     const auto dot = key.find('.');
-    auto& box = file["axes"]["x"][key.substr(0, dot)];
-    box.erase(key.substr(dot + 1));
-    if (box.empty()) file["axes"]["x"].erase(key.substr(0, dot));
+    json& axis = file["axes"]["x"];
+    const std::string box = key.substr(0, dot);
+    if (!axis.contains(box)) return;
+    axis[box].erase(key.substr(dot + 1));
+    if (axis[box].empty()) axis.erase(box);
+}
+
+/// Every key that the reader knows in the boxes of an axis, as box.key.
+std::vector<std::string> keys_of_reader() {
+    std::vector<std::string> out;
+    for (const char* box : {"plant", "actuator", "encoder", "process", "controller"})
+        for (const std::string_view key : quadrant::diagnosis::detail::keys_of_box(box))
+            out.push_back(std::string(box) + "." + std::string(key));
+    return out;
 }
 
 } // namespace
 
 TEST_CASE("neutral: every key of the reader has a neutral value here, or says that it has none") {
-    for (const char* box : {"plant", "actuator", "encoder", "process", "controller"})
-        for (const std::string_view key : quadrant::diagnosis::detail::keys_of_box(box)) {
-            const std::string name = std::string(box) + "." + std::string(key);
-            CAPTURE(name);
-            CHECK(places().contains(name) != without_neutral.contains(name));
-        }
+    for (const std::string& key : keys_of_reader()) {
+        CAPTURE(key);
+        CHECK(places().contains(key) != without_neutral.contains(key));
+    }
 }
 
 TEST_CASE(
@@ -141,9 +155,17 @@ TEST_CASE(
     other.name = "y";
     log.axes.push_back(other);
     auto described = workshop::described(real);
-    described.axes[0].plant.mass_kg *= 1.03; // a gap of all kinds to begin with
+    auto& axis = described.axes[0];
+    axis.plant.mass_kg *= 1.03; // a gap of all kinds to begin with
+    axis.plant.coulomb_N = 60;
+    // Rounding is a jump by nature: in a closed loop the smallest change may move a count.
+    axis.encoder.resolution_m = 0;
+    axis.actuator.dac_bits.reset();
+    axis.actuator.dac_range_V.reset();
     const json file = to_json(described);
-    for (const auto& [key, place] : places()) {
+    for (const std::string& key : keys_of_reader()) {
+        if (!places().contains(key)) continue;
+        const neutral_place& place = places().at(key);
         json without = file;
         if (!place.together)
             for (const auto& [companion, value] : place.with.items()) at(without, companion) = value;
@@ -155,9 +177,7 @@ TEST_CASE(
             json with = without;
             for (const auto& [companion, size] : place.with.items()) at(with, companion) = size;
             at(with, key) = value;
-            const double jump = apart(gap_of(with, log), expected);
-            MESSAGE(key << " = " << value.dump() << ": " << jump);
-            worst = std::max(worst, jump);
+            worst = std::max(worst, apart(gap_of(with, log), expected));
         }
         CAPTURE(key);
         if (const auto known = not_yet.find(key); known != not_yet.end()) {
