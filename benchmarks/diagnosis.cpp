@@ -17,7 +17,8 @@ const std::filesystem::path data = std::filesystem::path(QUADRANT_SOURCE_DIR) / 
 machine_log rows(std::size_t n) {
     machine_log log = read_log(data / "log.csv");
     for (auto& a : log.axes)
-        for (auto* column : {&a.reference, &a.position, &a.command}) column->resize(std::min(n, column->size()));
+        for (auto* column : {&a.reference, &a.position, &a.command})
+            column->resize(std::min(n, column->size()));
     log.samples = std::min(n, log.samples);
     return log;
 }
@@ -29,8 +30,11 @@ void read(benchmark::State& state) {
 void one_pass(benchmark::State& state) {
     const auto log = rows(static_cast<std::size_t>(state.range(0)));
     const auto machine = read_machine(data / "machine.json");
-    const predictor p{.period = machine.sample_period_s, .position = log.axes[0].position, .command = log.axes[0].command};
-    const plant_model plant(machine.axes[0].plant);
+    const predictor p{.period = machine.sample_period_s,
+                      .corner_Hz = 60,
+                      .position = log.axes[0].position,
+                      .command = log.axes[0].command};
+    const plant_model plant(machine.axes[0].plant, 2e-7);
     std::vector<double> e;
     for (auto _ : state) {
         p.run(plant, e);
@@ -44,14 +48,28 @@ void whole(benchmark::State& state, rules r) {
     const auto log = rows(static_cast<std::size_t>(state.range(0)));
     const auto machine = read_machine(data / "machine.json");
     for (auto _ : state)
-        benchmark::DoNotOptimize(diagnose(machine, log, nullptr, [](const std::string&) {}, r).causes.size());
+        benchmark::DoNotOptimize(diagnose(
+                                     machine, log, nullptr, [](const std::string&) {}, r)
+                                     .causes.size());
     state.SetComplexityN(state.range(0));
 }
 
 } // namespace
 
 BENCHMARK(read)->Unit(benchmark::kMillisecond);
-BENCHMARK(one_pass)->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMicrosecond)->Complexity(benchmark::oN);
-BENCHMARK_CAPTURE(whole, in_full, rules{})->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
-BENCHMARK_CAPTURE(whole, fast, fast_rules())->RangeMultiplier(2)->Range(7000, 28000)->Unit(benchmark::kMillisecond)->Complexity(benchmark::oN);
+BENCHMARK(one_pass)
+    ->RangeMultiplier(2)
+    ->Range(7000, 28000)
+    ->Unit(benchmark::kMicrosecond)
+    ->Complexity(benchmark::oN);
+BENCHMARK_CAPTURE(whole, in_full, rules{})
+    ->RangeMultiplier(2)
+    ->Range(7000, 28000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oN);
+BENCHMARK_CAPTURE(whole, fast, fast_rules())
+    ->RangeMultiplier(2)
+    ->Range(7000, 28000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oN);
 BENCHMARK_MAIN();

@@ -104,7 +104,7 @@ int main() {
     const diagnosis::compensation& both = forecast.compensations.back();
     std::printf("built: %s\n", both.block.c_str());
 
-    const diagnosis::plant_model fitted(diagnosis::apply(machine_file(), found).axes[0]);
+    const diagnosis::plant_model fitted(diagnosis::apply(machine_file(), found).axes[0], 2e-7);
     const auto again = run(diagnosis::level_block{level_parameters(fitted), period},
                            diagnosis::travel_block{cogging_parameters(fitted), period});
     const auto achieved = diagnosis::compensate(machine_file(), found, again).axes[0].measured;

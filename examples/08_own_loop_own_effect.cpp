@@ -2,7 +2,7 @@
 // The diagnosis as a library, with what it cannot know: a controller of your own and an effect of your own.
 //
 // The machine here is simulated by the code below. Its controller is a PID with a lead, no cascade. Somebody has turned its
-// lead from 25 ms to 30 ms, and a way cover drags on it with the square of the speed: no list has either.
+// lead from 25 ms to 30 ms, and a way cover pulls on it with the square of its stretch: no list has either.
 // You should see: the controller found by replay, with the number that mends it; without the cover in the list no name is
 // claimed for what is behind the command; with it the cover is named and its number found.
 #include <quadrant/diagnosis/apply.hpp>
@@ -38,13 +38,14 @@ struct lead_pid {
     }
 };
 
-/// The effect: its numbers, and the force that it makes of them.
-constexpr own_force way_cover{.name = "way_cover",
-                              .exciting_motion = "the same stroke at several speeds",
-                              .numbers = {{{.key = "way_cover_N_s2_per_m2", .low = 0, .high = 50000}}},
-                              .law = [](const auto& now, const auto& number, auto&) {
-                                  return -number[0] * now.velocity * std::abs(now.velocity);
-                              }};
+/// The effect: its numbers, and the force that it makes of them. Force is where a law acts when it names no
+/// other joint.
+constexpr own_law way_cover{.name = "way_cover",
+                            .exciting_motion = "strokes over the whole travel, slow and fast",
+                            .numbers = {{{.key = "way_cover_N_per_m2", .low = 0, .high = 500000}}},
+                            .law = [](const auto& now, const auto& number, auto&) {
+                                return -number[0] * now.position * std::abs(now.position);
+                            }};
 
 double motion(double t) { // strokes that get faster, and three tones that shake the mass
     double x = 0.05 * (1 - std::cos(2 * M_PI * (0.3 * t + 0.12 * t * t)));
@@ -67,7 +68,7 @@ machine_log record(double seconds) {
             const double h = period / 20, before = bristle;
             bristle = std::clamp(bristle + velocity * h, -5e-7, 5e-7);
             const double friction = 300 * velocity + 40 * bristle / 5e-7 + 8e4 * (bristle - before) / h;
-            const double cover = 3000 * velocity * std::abs(velocity);
+            const double cover = 30000 * position * std::abs(position);
             velocity += h * (1000 * x.command.back() - friction - cover) / 200;
             position += h * velocity;
         }

@@ -77,7 +77,7 @@ inline std::string summary(const compensation_result& r, bool verbose) {
             if (!c.settings.empty() && verbose) text += wrapped(c.block + ": " + settings(c.settings), 4);
         }
         for (const advice& o : a.others)
-            text += wrapped(fmt::format("{}: no feedforward. {}.", words_of(o.effect).name, o.text), 2);
+            text += wrapped(fmt::format("{}: no feedforward. {}.", name_of_effect(o.effect), o.text), 2);
         text += "\n";
     }
     if (!r.axes.empty())

@@ -90,6 +90,8 @@ inline std::string summary_of(const diagnosis_result& d, const cause& c) {
             fmt::format("as {}: {}", voice(name_of_effect(r.effect)), listed(lines_of(r.parameters, voice))),
             6);
     if (!c.exciting_motion.empty()) text += wrapped("shown by: " + c.exciting_motion, 4);
+    if (const effect* known = effect_named(c.effect))
+        text += wrapped(fmt::format("what to do: {}", voice(known->remedy)), 4);
     return text;
 }
 

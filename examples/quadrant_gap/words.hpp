@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "quadrant/diagnosis/effect_list.hpp"
 #include "quadrant/diagnosis/result.hpp"
 #include "quadrant/diagnosis/rules.hpp"
 
@@ -128,47 +129,10 @@ inline std::string spaced(std::string_view name) {
     return text;
 }
 
-struct effect_words {
-    std::string_view key, name, box;
-};
-
-/// An effect that is not in the table keeps its key as its name.
-inline effect_words words_of(std::string_view effect) {
-    static constexpr effect_words all[] = {
-        {"coulomb_friction", "Coulomb friction", "mechanics"},
-        {"viscous_friction", "viscous friction", "mechanics"},
-        {"stribeck_friction", "Stribeck friction", "mechanics"},
-        {"presliding_friction", "presliding friction", "mechanics"},
-        {"asymmetric_friction", "friction that differs by direction", "mechanics"},
-        {"position_dependent_friction", "friction that varies along the travel", "mechanics"},
-        {"friction_drift", "friction that drifts with time", "mechanics"},
-        {"mass", "moving mass", "mechanics"},
-        {"structural_resonance", "structural resonance", "mechanics"},
-        {"backlash", "backlash", "mechanics"},
-        {"constant_force", "constant force", "mechanics"},
-        {"position_spring", "spring force", "mechanics"},
-        {"cross_coupling", "coupling from the other axis", "mechanics"},
-        {"cogging", "cogging", "mechanics"},
-        {"force_ripple", "force ripple", "actuator"},
-        {"force_constant", "force constant", "actuator"},
-        {"time_delay", "time delay", "actuator"},
-        {"actuator_lag", "current-loop lag", "actuator"},
-        {"actuator_saturation", "drive limit below the controller's", "actuator"},
-        {"actuator_dead_zone", "actuator dead zone", "actuator"},
-        {"sample_loss", "loss of command samples", "actuator"},
-        {"encoder_quantization", "encoder quantization", "sensor"},
-        {"encoder_cyclic_error", "cyclic encoder error", "sensor"},
-        {"cutting_force", "cutting force", "process"},
-        {"controller_mismatch", "controller", "controller"},
-    };
-    for (const effect_words& e : all)
-        if (e.key == effect) return e;
-    return {effect, effect, ""};
-}
-
-inline std::string name_of_effect(std::string_view effect) {
-    const effect_words w = words_of(effect);
-    return w.box.empty() ? spaced(w.name) : std::string(w.name);
+/// An effect in words; one that is not of the list keeps its name.
+inline std::string name_of_effect(std::string_view name) {
+    const effect* e = effect_named(name);
+    return e ? std::string(e->label) : spaced(name);
 }
 
 inline std::string capital(std::string text) {
@@ -191,46 +155,13 @@ inline std::string named(const std::vector<std::string>& effects, std::string_vi
 }
 
 /// A machine key as label and SI unit: "stribeck_velocity_m_per_s" is {"stribeck velocity", "m/s"}.
-inline std::pair<std::string, std::string_view> label_of(std::string_view key) {
-    struct suffix {
-        std::string_view text, unit;
-    };
-    static constexpr suffix suffixes[] = {
-        {"_V_s2_per_rad", "V s²/rad"},
-        {"_Nm_s_per_rad", "N m s/rad"},
-        {"_V_s_per_rad", "V s/rad"},
-        {"_V_per_rad", "V/rad"},
-        {"_Nm_per_rad", "N m/rad"},
-        {"_Nm_per_V", "N m/V"},
-        {"_Nm_per_A", "N m/A"},
-        {"_rad_per_s", "rad/s"},
-        {"_kg_m2", "kg m²"},
-        {"_V_s2_per_m", "V s²/m"},
-        {"_N_s_per_m", "N s/m"},
-        {"_V_s_per_m", "V s/m"},
-        {"_V_per_m", "V/m"},
-        {"_N_per_m", "N/m"},
-        {"_N_per_V", "N/V"},
-        {"_N_per_A", "N/A"},
-        {"_m_per_s", "m/s"},
-        {"_per_s", "1/s"},
-        {"_Hz", "Hz"},
-        {"_kg", "kg"},
-        {"_rad", "rad"},
-        {"_Nm", "N m"},
-        {"_N", "N"},
-        {"_V", "V"},
-        {"_A", "A"},
-        {"_m", "m"},
-        {"_s", "s"},
-    };
-    for (const suffix& s : suffixes)
-        if (key.ends_with(s.text))
-            return {spaced(key.substr(0, key.size() - s.text.size())),
-                    key.ends_with("phase_rad") ? "phase" : s.unit};
-    const bool relative = key.ends_with("asymmetry") || key.ends_with("amplitude") || key.ends_with("drift") ||
-                          key.ends_with("ripple") || key.ends_with("probability");
-    return {spaced(key), relative ? "%" : ""};
+inline std::pair<std::string, std::string> label_of(std::string_view key) {
+    const auto [stem, unit] = parts_of(key);
+    const machine_key* known = key_named(key);
+    const std::string shown = known && known->percent   ? "%"
+                              : stem.ends_with("phase") ? "phase"
+                                                        : unit_text(unit);
+    return {spaced(stem), shown};
 }
 
 /// How a result speaks of one axis: in its own words, and in the unit of its command.

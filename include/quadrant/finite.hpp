@@ -68,12 +68,13 @@ public:
     }
     /// Keeps the lanes of y that are good; the others hold their last output and raise their fault.
     constexpr Quantity keep(const mask& good, Quantity y) noexcept {
-        if constexpr (!std::is_same_v<mask, bool>)
+        if constexpr (std::is_same_v<mask, bool>) {
+            return good ? keep(y) : hold();
+        } else {
             fault_ |= !good;
-        else if (!good)
-            return hold();
-        set_where(good, last_, y);
-        return last_;
+            set_where(good, last_, y);
+            return last_;
+        }
     }
     constexpr Quantity hold() noexcept {
         fault_ = mask(true);

@@ -15,6 +15,8 @@ namespace quadrant {
 template <class Number> inline constexpr std::size_t lane_count = 1;
 template <class Unit, class Real>
 inline constexpr std::size_t lane_count<quantity<Unit, Real>> = lane_count<Real>;
+template <class Number, std::size_t N>
+inline constexpr std::size_t lane_count<std::array<Number, N>> = lane_count<Number>;
 
 /// A number with more than one instance in it.
 template <class Number>
@@ -115,6 +117,32 @@ template <class Value> constexpr Value smaller(const Value& a, const std::type_i
 template <class Value> constexpr Value larger(const Value& a, const std::type_identity_t<Value>& b) noexcept {
     return select(less(a, b), b, a);
 }
+/// x within its bounds: high above high, low below low, else x, a NaN too.
+template <class Value>
+constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& low,
+                        const std::type_identity_t<Value>& high) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > high ? high : x < low ? low : x; // no bound is read that is not needed
+    else
+        return select(greater(x, high), high, select(less(x, low), low, x));
+}
+/// x within -most ... most.
+template <class Value>
+constexpr Value clamped(const Value& x, const std::type_identity_t<Value>& most) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > most ? most : x < -most ? -most : x;
+    else
+        return clamped(x, -most, most);
+}
+/// True where x lies above high or below low.
+template <class Value>
+constexpr mask_of<Value> outside(const Value& x, const std::type_identity_t<Value>& low,
+                                 const std::type_identity_t<Value>& high) noexcept {
+    if constexpr (detail::single<Value, Value>)
+        return x > high || x < low;
+    else
+        return greater(x, high) | less(x, low);
+}
 /// The value without its sign.
 template <class Value> constexpr Value absolute(const Value& x) noexcept {
     return select(less(x, Value()), -x, x);
@@ -128,6 +156,12 @@ requires(lane_count<Number> == 1) constexpr const Number& lane(const Number& x, 
 template <class Unit, multi_lane Real>
 constexpr auto lane(const quantity<Unit, Real>& x, std::size_t i) noexcept {
     return quantity<Unit, double>::from_value(x.value()[i]);
+}
+template <class Number, std::size_t N>
+requires(lane_count<Number> > 1) constexpr auto lane(const std::array<Number, N>& x, std::size_t i) noexcept {
+    std::array<std::remove_cvref_t<decltype(lane(x[0], i))>, N> out;
+    for (std::size_t k = 0; k < N; ++k) out[k] = lane(x[k], i);
+    return out;
 }
 /// Replaces one instance: the number itself, or one lane of it.
 template <class Number>

@@ -15,10 +15,10 @@ struct wires {
     quantity<si::force> force;
     quantity<si::force> friction;
 };
-constexpr std::array all{tap<signal::position, &wires::error>("error"),
+constexpr std::array every{tap<signal::position, &wires::error>("error"),
                          tap<signal::force, &wires::force>("force"),
                          tap<signal::force, &wires::friction>("friction")};
-static_assert(every_wire_has_a_tap(all));
+static_assert(every_wire_has_a_tap(every));
 constexpr std::array forgotten{tap<signal::position, &wires::error>("error"),
                                tap<signal::force, &wires::force>("force")};
 static_assert(!every_wire_has_a_tap(forgotten));
@@ -31,7 +31,7 @@ static_assert(!every_wire_has_a_tap(twice));
 TEST_CASE("taps: make a header with units and a row of values, in the order of the list") {
     const wires w{3_um, 4_N, -5_N};
     std::string header, row;
-    for_each_tap(w, all, [&](const char* name, const char* unit, double value) {
+    for_each_tap(w, every, [&](const char* name, const char* unit, double value) {
         header += std::string(name) + " [" + unit + "],";
         row += std::to_string(value) + ",";
     });
@@ -42,8 +42,8 @@ TEST_CASE("taps: read the struct they are given, not the one they were made besi
     wires a{}, b{};
     b.force = 2_N;
     double sum = 0;
-    for_each_tap(a, all, [&](auto, auto, double value) { sum += value; });
+    for_each_tap(a, every, [&](auto, auto, double value) { sum += value; });
     CHECK(sum == 0);
-    for_each_tap(b, all, [&](auto, auto, double value) { sum += value; });
+    for_each_tap(b, every, [&](auto, auto, double value) { sum += value; });
     CHECK(sum == 2);
 }

@@ -142,7 +142,8 @@ TEST_CASE("apply: the excess of static friction stays when the Coulomb level mov
     CHECK(out.changes[1].reason == "moves with the friction");
     const auto m = apply(read_machine(std::string_view(machine_text), "m.json"),
                          of({named("x", "coulomb_friction", {value("coulomb_N", {190})}, true)}));
-    const plant_model before(read_machine(std::string_view(machine_text), "m.json").axes[0]), after(m.axes[0]);
+    const plant_model before(read_machine(std::string_view(machine_text), "m.json").axes[0], 2e-7),
+        after(m.axes[0], 2e-7);
     CHECK(after.friction.coulomb == 190);
     CHECK(after.friction.excess == doctest::Approx(before.friction.excess));
 }
@@ -154,7 +155,7 @@ TEST_CASE("apply: the way in which friction gives way stays when its level moves
     const auto d = of({named("x", "coulomb_friction", {value("coulomb_N", {190})}, true)});
     const auto before = read_machine(json.dump(), "m.json");
     const auto lengths = [](const machine_description& m) {
-        return plant_model(m.axes[0]).friction.contact.lengths_as_described;
+        return plant_model(m.axes[0], 2e-7).friction.contact.lengths_as_described;
     };
     const auto a = lengths(before), b = lengths(apply(before, d));
     for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(b[i] / a[i] - 1) < 1e-12);
@@ -223,24 +224,22 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     nlohmann::json all = nlohmann::json::parse(machine_text);
     auto& x = all["axes"]["x"];
     double next = 0.11;
-    const auto fill = [&](nlohmann::json& box, const auto& keys) {
-        for (const auto& key : keys)
-            if (!box.contains(key.name)) box[key.name] = next += 0.001;
+    const auto fill = [&](nlohmann::json& box, const std::string& key, auto value) {
+        if (!box.contains(key)) box[key] = value;
     };
-    fill(x["plant"], detail::plant_keys);
-    fill(x["encoder"], detail::encoder_keys);
-    fill(x["actuator"], detail::actuator_keys);
-    fill(x["process"], detail::process_keys);
-    fill(x["controller"], detail::controller_keys_of_file);
-    for (const auto& key : detail::tolerance_keys) x["tolerance"][std::string(key.name)] = next += 0.001;
-    x["plant"].erase("presliding_length_m"); // the elements say it more exactly
-    x["plant"]["cogging_N"] = {1, 2};
-    x["plant"]["cogging_phase_rad"] = {0.5, 0.6};
-    x["plant"]["gms_weights"] = {0.25, 0.75};
-    x["plant"]["gms_stiffness_N_per_m"] = {1e7, 2e7};
+    for (const effect* e : every_effect())
+        for (const machine_key& key : e->keys) {
+            auto& box = x[std::string(key.box())];
+            if (key.unit_of_command) continue;
+            if (key.shape == key_shape::number)
+                fill(box, std::string(key.key()), next += 0.001);
+            else
+                fill(box, std::string(key.key()), std::vector<double>{0.25, 0.75});
+        }
+    for (const auto& key : detail::actuator_keys) fill(x["actuator"], key.name, next += 0.001);
+    for (const auto& key : detail::controller_keys_of_file) fill(x["controller"], key.name, next += 0.001);
+    for (const auto& t : detail::tolerance_names()) x["tolerance"][std::string(t.name)] = next += 0.001;
     x["actuator"]["dac_bits"] = 16;
-    x["process"]["force_N"] = {3};
-    x["process"]["phase_rad"] = {0.3};
     x["controller"]["velocity_estimator"] = "two_sample_mean";
     const auto machine = read_machine(all.dump(), "m.json");
     nlohmann::json written = to_json(machine);
@@ -260,7 +259,7 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     for (auto& axis : turning.axes) axis.kind = axis_kind::rotary;
     const auto rotary = to_json(turning);
     CHECK(to_json(read_machine(rotary.dump(), "c.json")) == rotary);
-    CHECK(rotary["axes"]["x"]["plant"]["gms_stiffness_Nm_per_rad"].dump() == "[10000000.0,20000000.0]");
+    CHECK(rotary["axes"]["x"]["plant"]["gms_stiffness_Nm_per_rad"].dump() == "[0.25,0.75]");
     CHECK(rotary["axes"]["x"]["controller"].contains("acceleration_feedforward_V_s2_per_rad"));
 }
 

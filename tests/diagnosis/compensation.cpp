@@ -2,7 +2,7 @@
 #include "quadrant/diagnosis/advice.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/compensate.hpp"
-#include "quadrant/diagnosis/effect_names.hpp"
+#include "quadrant/diagnosis/effect_list.hpp"
 #include "quadrant/diagnosis/write_compensation.hpp"
 #include "workshop.hpp"
 
@@ -66,7 +66,7 @@ axis_log with(workshop::machine m, const machine_description& file, const diagno
         if (k.key == "coulomb_feedforward_V") m.control.coulomb_feedforward = scale * k.values[0];
         if (k.key == "viscous_feedforward_V_s_per_m") m.control.viscous_feedforward = scale * k.values[0];
     }
-    const plant_model fitted(apply(file, d).axes[0]);
+    const plant_model fitted(apply(file, d).axes[0], 2e-7);
     std::vector<double> reference;
     for (double t = 0; t < seconds; t += workshop::period) reference.push_back(workshop::motion(t));
     const auto u = compensator(fitted, c.forces, workshop::period)(reference);
@@ -167,11 +167,13 @@ TEST_CASE("compensate: an effect without a feedforward gets advice and no gain, 
     CHECK(a.others[1].text.find("behind the play") != std::string::npos);
     REQUIRE(a.compensations.size() == 1);
     CHECK(a.compensations[0].name == "constant command");
-    CHECK(!a.compensations[0].claimed);       // the integral pays it already
-    for (const effect_name& e : effect_names) // either a feedforward or advice, for every name
-        CHECK((advice_on(e.name, plant_model(file.axes[0]), 1e-7, "V").empty() ==
-               (e.name.ends_with("friction") || e.name == "mass" || e.name == "force_constant" ||
-                e.name == "cogging" || e.name == "constant_force" || e.name == "position_spring")));
+    CHECK(!a.compensations[0].claimed);      // the integral pays it already
+    for (const effect* e : every_effect()) { // either a feedforward or advice, for every name
+        CAPTURE(e->name);
+        CHECK((advice_on(e->name, plant_model(file.axes[0], 2e-7), 1e-7, "V").empty() ==
+               !e->compensation.empty()));
+        CHECK(!e->remedy.empty());
+    }
 }
 
 TEST_CASE(

@@ -133,8 +133,8 @@ void erase(json& file, const std::string& key) {
 std::vector<std::string> keys_of_reader() {
     std::vector<std::string> out;
     for (const char* box : {"plant", "actuator", "encoder", "process", "controller"})
-        for (const std::string_view key : quadrant::diagnosis::detail::keys_of_box(box))
-            out.push_back(std::string(box) + "." + std::string(key));
+        for (const std::string& key : quadrant::diagnosis::detail::keys_of_box(box, axis_kind::linear))
+            out.push_back(std::string(box) + "." + key);
     return out;
 }
 

@@ -12,8 +12,8 @@ constexpr double rough = 0.001; ///< sample period where only models meet models
 /// A model of the described axis under one name: its own numbers free, the value of the effect as told.
 confusable under(const effect& name, const axis_description& axis, const std::vector<parameter>& own) {
     confusable out{.name = &name, .model = {.effects = {&name}}};
-    out.model.fit.plant = plant_model(axis);
-    for (const auto& p : calibration(axis.plant, axis.tolerance))
+    out.model.fit.plant = plant_model(axis, usual.give());
+    for (const auto& p : calibration(axis, usual.give()))
         if (std::none_of(own.begin(), own.end(), [&](const auto& q) { return q.key == p.key; }))
             out.model.fit.parameters.push_back(p);
     out.model.fit.parameters.insert(out.model.fit.parameters.end(), own.begin(), own.end());
@@ -66,7 +66,7 @@ TEST_CASE(
     for (const auto& [shown, sample] :
          {machine_tool{{0.02, 0, 0.12, 0.17, 2.2}, 0.0005}, machine_tool{{0, -0.4, 0.1, 1.2, 15}, 0.00025},
           machine_tool{{1e-5, 0, 1e-4, 1e-3, 0.5}, 0.001}, machine_tool{{0.3, 0, 0.3, 0.1, 0.05}, 0.002}}) {
-        const auto motions = standard_motions(shown, sample, 2.5e-8);
+        const auto motions = standard_motions(shown, sample, usual);
         CHECK(motions.size() >= 8);
         for (const auto& m : motions) {
             CAPTURE(m.words);
@@ -88,14 +88,14 @@ TEST_CASE(
             CHECK(std::abs(r.back() - r[r.size() - 2]) <= shown.acceleration * sample * sample); // ends at rest
         }
     }
-    CHECK(standard_motions({}, 0.001, 1e-7).empty()); // a log that stands still
+    CHECK(standard_motions({}, 0.001, usual).empty()); // a log that stands still
 }
 
 TEST_CASE("next experiment: what a log showed is its travel and its peaks, whatever the digits of its column") {
     std::vector<double> reference;
     for (int k = 0; k < 8000; ++k)
         reference.push_back(std::round((0.1 + 0.05 * std::sin(2 * std::numbers::pi * k * 0.0005)) * 1e7) / 1e7);
-    const auto shown = shown_by(reference, 0.0005);
+    const auto shown = shown_by(reference, 0.0005, usual.corner_Hz);
     CHECK(near(shown.low, 0.05, 1e-4));
     CHECK(near(shown.high, 0.15, 1e-4));
     CHECK(near(shown.velocity, 0.05 * 2 * std::numbers::pi, 0.02));
@@ -105,14 +105,14 @@ TEST_CASE("next experiment: what a log showed is its travel and its peaks, whate
 // Mass against force constant: in opposite ratio they are one model but for the friction, which the owner knows to 5 %.
 TEST_CASE("next experiment: friction that is known tells mass from force constant in motion, not at rest") {
     auto axis = described(machine{}).axes[0];
-    const proving_ground ground(axis, rough, workshop::count, 1e-7);
-    auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, workshop::count);
+    const proving_ground ground(axis, rough, workshop::count, 1e-7, usual);
+    auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, usual);
     const auto names = mass_or_force_constant(axis);
     CHECK(separated(ground, named_motion(motions, "strong accelerations"), names) > 50);
     CHECK(separated(ground, {"rest", std::vector<double>(5000, 0.05)}, names) < 5);
     // The same two where nobody knows the friction: one model under two names, on any motion that slips.
     axis.tolerance.given = {{"mass", 0.02}, {"force_constant", 0.02}, {"viscous", 0.6}, {"coulomb", 0.6}};
-    const proving_ground free(axis, rough, workshop::count, 1e-7);
+    const proving_ground free(axis, rough, workshop::count, 1e-7, usual);
     const auto best =
         best_motion(free, detail::motions_for(names, std::move(motions)), mass_or_force_constant(axis));
     CHECK(best.tried == 7);
@@ -134,8 +134,8 @@ TEST_CASE("next experiment: the multi-sine is found for a lag or a delay, and sl
                 .low = 0,
                 .high = 0.01,
                 .step = 1e-5}})};
-    const proving_ground ground(axis, workshop::period, workshop::count, 1e-7);
-    const auto motions = standard_motions({0, 0, 0.12, 0.17, 2.2}, workshop::period, workshop::count);
+    const proving_ground ground(axis, workshop::period, workshop::count, 1e-7, usual);
+    const auto motions = standard_motions({0, 0, 0.12, 0.17, 2.2}, workshop::period, usual);
     const double slow = separated(ground, named_motion(motions, "slow strokes in"), names);
     const auto best = best_motion(ground, motions, names);
     CAPTURE(slow);
@@ -165,8 +165,8 @@ TEST_CASE("next experiment: where one name is a special case of the other, a mot
                 .low = -0.95,
                 .high = 0.95,
                 .step = 1e-3}})};
-    const proving_ground ground(axis, rough, workshop::count, 1e-7);
-    const auto motions = standard_motions({0, 0, 0.12, 0.17, 2.2}, rough, workshop::count);
+    const proving_ground ground(axis, rough, workshop::count, 1e-7, usual);
+    const auto motions = standard_motions({0, 0, 0.12, 0.17, 2.2}, rough, usual);
     const auto best = best_motion(ground, {named_motion(motions, "slow strokes of")}, names);
     CHECK(best.gain < 1);
     CHECK(best.one_way_gain > 100);
@@ -175,17 +175,17 @@ TEST_CASE("next experiment: where one name is a special case of the other, a mot
 
 TEST_CASE("next experiment: a model against itself is worth nothing") {
     const auto axis = described(machine{}).axes[0];
-    const proving_ground ground(axis, rough, workshop::count, 1e-7);
+    const proving_ground ground(axis, rough, workshop::count, 1e-7, usual);
     auto names = mass_or_force_constant(axis);
     names[1] = names[0];
-    const auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, workshop::count);
+    const auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, usual);
     CHECK(std::abs(separated(ground, named_motion(motions, "strong accelerations"), names)) < 0.5);
 }
 
 TEST_CASE("next experiment: the other name is fitted again, else the separation is overstated") {
     const auto axis = described(machine{}).axes[0];
-    const proving_ground ground(axis, rough, workshop::count, 1e-7);
-    const auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, workshop::count);
+    const proving_ground ground(axis, rough, workshop::count, 1e-7, usual);
+    const auto motions = standard_motions({0, 0, 0.1, 0.2, 2}, rough, usual);
     const auto names = mass_or_force_constant(axis);
     auto wrong = names[0]; // the truth's own name with a value that no machine has
     wrong.model.fit.x[static_cast<Eigen::Index>(wrong.model.fit.x.size() - 1)] += std::log(1.3);
@@ -196,9 +196,9 @@ TEST_CASE("next experiment: a record is a log of the machine: noise, steps of th
           "controller's command") {
     const auto axis = described(machine{}).axes[0];
     const double noise = 3e-7; // what the loop makes of it stays below the friction
-    const proving_ground ground(axis, workshop::period, workshop::count, noise);
+    const proving_ground ground(axis, workshop::period, workshop::count, noise, usual);
     const planned_motion m{"rest", std::vector<double>(4000, 0.05)};
-    const auto log = ground.record(plant_model(axis), m);
+    const auto log = ground.record(plant_model(axis, usual.give()), m);
     REQUIRE(log.position.size() == 4000);
     double mean = 0, square = 0; // from 0.5 s on
     for (std::size_t k = 1000; k < 4000; ++k) {
@@ -255,7 +255,8 @@ TEST_CASE(
     const auto after = diagnose(file, as_log(log));
     named(after, "actuator_lag", "actuator.lag_s", 0.001, 0.1);
     CHECK(after.causes[0].confusable_with.empty());
-    const auto record = prepare(log, workshop::period, workshop::count);
+    const auto record = prepare(log, workshop::period, workshop::count,
+                                scales_of(file.axes[0].plant, log, workshop::period, workshop::count));
     const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
     const double kept = models.with({&suspect::actuator_lag}).total - models.with({&suspect::time_delay}).total;
     CAPTURE(next.expected_gain);

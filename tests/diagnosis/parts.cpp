@@ -84,8 +84,8 @@ TEST_CASE("residual force floor: white noise on the position leaves what is fore
     plant_description d;
     d.mass_kg = mass;
     d.force_constant_N_per_V = 1;
-    const auto force =
-        residual_force(plant_model(d), position, std::vector<double>(position.size(), 0.0), period, 100);
+    const auto force = residual_force(plant_model(d, workshop::usual.give()), position,
+                                      std::vector<double>(position.size(), 0.0), period, 100);
     CHECK(rms(force) == doctest::Approx(residual_force_floor(mass, sigma, period, 100)).epsilon(0.03));
 }
 
@@ -100,7 +100,8 @@ TEST_CASE("residual force: a force that the model lacks is seen with its size an
     plant_description d;
     d.mass_kg = mass;
     d.force_constant_N_per_V = 1;
-    const auto force = residual_force(plant_model(d), position, std::vector<double>(4000, 0.0), period, 100);
+    const auto force = residual_force(plant_model(d, workshop::usual.give()), position,
+                                      std::vector<double>(4000, 0.0), period, 100);
     CHECK(force[2000] == doctest::Approx(-10).epsilon(1e-4));
 }
 
@@ -111,7 +112,7 @@ TEST_CASE("predictor: a right model leaves nothing, a missing force leaves d T^2
     d.force_constant_N_per_V = 100;
     d.delay_s = 0.0003;
     d.viscous_N_s_per_m = 40;
-    plant_model real(d);
+    plant_model real(d, workshop::usual.give());
     real.constant_force = force;
     std::vector<double> position, command;
     const auto boxes = axis_parameters(real);
@@ -123,11 +124,11 @@ TEST_CASE("predictor: a right model leaves nothing, a missing force leaves d T^2
         older.advance(s, command[k > 0 ? k - 1 : 0], {});
         newer.advance(s, command[k], {});
     }
-    const predictor observer{.period = period, .position = position, .command = command};
+    const predictor observer{.period = period, .corner_Hz = 60, .position = position, .command = command};
     std::vector<double> e;
     observer.run(real, e);
     CHECK(rms(std::span(e).subspan(1000)) < 1e-12);
-    observer.run(plant_model(d), e);
+    observer.run(plant_model(d, workshop::usual.give()), e);
     const double w = two_pi * observer.corner_Hz;
     const double z = std::exp(-w * period); // at rest L2 e makes up for d T / M in each period
     CHECK(workshop::near(e[5000], force / mass * std::pow(period / (1 - z), 2), 0.005));
@@ -142,7 +143,7 @@ TEST_CASE("plant model: moves as the library's linear motor does, and sticks") {
     d.coulomb_N = 60;
     d.static_N = 90;
     d.stribeck_velocity_m_per_s = 0.003;
-    const plant_model model(d);
+    const plant_model model(d, workshop::usual.give());
     q::linear_motor<q::stribeck<>> motor{
         {.mass = q::quantity<q::si::mass>::from_value(200),
          .force_constant = q::gain_of<q::signal::force, q::signal::voltage>::from_value(1000),
@@ -168,12 +169,12 @@ TEST_CASE("plant model: moves as the library's linear motor does, and sticks") {
     CHECK(s.x < 3e-7);
 }
 
-TEST_CASE("motion segments: cut where the motion changes, none shorter than a quarter second") {
+TEST_CASE("motion segments: cut where the motion changes, none shorter than five blocks") {
     const double period = 0.001;
     std::vector<double> x;
     for (int k = 0; k < 6000; ++k)
         x.push_back(0.05 * std::sin(two_pi * 0.5 * period * k)); // a reversal a second
-    const auto segment = motion_segments(x, period);
+    const auto segment = motion_segments(x, period, workshop::usual);
     CHECK(segment.back() + 1 == 7); // half a second up to the first reversal, then each second
     std::size_t begun = 0;
     for (std::size_t k = 1; k < segment.size(); ++k)
@@ -259,7 +260,9 @@ controller_description keyed(const lead_pid& described) {
 
 controller_finding judged(const controller_description& c, const axis_log& log) {
     const auto file = workshop::described({});
-    return judge_controller(c, file.axes[0].actuator, log, prepare(log, workshop::period, workshop::count));
+    return judge_controller(c, file.axes[0].actuator, log,
+                            prepare(log, workshop::period, workshop::count,
+                                    scales_of(file.axes[0].plant, log, workshop::period, workshop::count)));
 }
 
 } // namespace
@@ -279,7 +282,7 @@ TEST_CASE("own controller: the stock cascade behind it is replayed and simulated
                                      std::span(log.command).subspan(1000));
         };
         CHECK(replay(own) == replay(stock));
-        const plant_model plant(axis);
+        const plant_model plant(axis, workshop::usual.give());
         const auto a = simulate_closed_loop(own, axis, plant, workshop::period, log),
                    b = simulate_closed_loop(stock, axis, plant, workshop::period, log);
         CHECK(a.position == b.position);
@@ -341,8 +344,8 @@ TEST_CASE("closed loop: the simulation of the right machine follows its log with
     plant.force_constant_N_per_V = real.force_constant;
     plant.viscous_N_s_per_m = real.viscous;
     plant.coulomb_N = real.coulomb;
-    const auto out =
-        simulate_closed_loop(*file.axes[0].controller, file.axes[0], plant_model(plant), workshop::period, log);
+    const auto out = simulate_closed_loop(*file.axes[0].controller, file.axes[0],
+                                          plant_model(plant, workshop::usual.give()), workshop::period, log);
     double sum = 0;
     for (std::size_t k = 0; k < out.position.size(); ++k) sum += std::pow(out.position[k] - log.position[k], 2);
     CHECK(std::sqrt(sum / static_cast<double>(out.position.size())) < 3 * workshop::count);
@@ -357,7 +360,7 @@ TEST_CASE("regimes: Coulomb friction lies in velocity, cogging in position, each
         log.reference.push_back(log.position.back());
         log.command.push_back(0);
     }
-    const auto record = prepare(log, period, 1e-7);
+    const auto record = prepare(log, period, 1e-7, workshop::usual);
     std::vector<double> coulomb, cogging;
     for (std::size_t k = 0; k < log.position.size(); ++k) {
         coulomb.push_back(record.velocity[k] > 0 ? 20.0 : -20.0);
@@ -384,9 +387,11 @@ TEST_CASE(
     d.mass_kg = 200;
     d.coulomb_N = 60;
     const auto calibrated = [&] { // the machine file as calibration begins with it
-        plant_model plant(d);
+        plant_model plant(d, workshop::usual.give());
         bool moves = false;
-        for (const parameter& p : calibration(d, {})) {
+        axis_description axis;
+        axis.plant = d;
+        for (const parameter& p : calibration(axis, workshop::usual.give())) {
             p.of(plant) = p.start;
             moves |= p.key == "presliding_length_m";
         }
@@ -419,7 +424,8 @@ TEST_CASE("fit: bounds hold, and a value beyond them is found once it is free") 
     const auto file = workshop::described(real);
     real.mass = 225;
     const auto log = workshop::run(real);
-    const auto record = prepare(log, workshop::period, workshop::count);
+    const auto record = prepare(log, workshop::period, workshop::count,
+                                scales_of(file.axes[0].plant, log, workshop::period, workshop::count));
     const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
     CHECK(models.calibrated().fit.plant.mass <= 180 * 1.012 * 1.02 * (1 + 1e-9));
     CHECK(models.with({&suspect::mass}).fit.plant.mass == doctest::Approx(225).epsilon(0.02));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/read_machine.hpp"
-#include "quadrant/diagnosis/effect_names.hpp"
 #include "quadrant/diagnosis/match.hpp"
 #include "quadrant/diagnosis/plant_model.hpp"
 #include "quadrant/diagnosis/read/machine_keys.hpp"
@@ -341,8 +340,8 @@ TEST_CASE("read_machine: an absent tolerance is noted with what is assumed") {
     const auto machine = read_machine(without("/axes/x", "tolerance"), "m");
     REQUIRE(machine.notes.size() == 1);
     CHECK(machine.notes[0] ==
-          "axis x: no tolerance is given for mass, force_constant, viscous, delay, coulomb, static, "
-          "stribeck_velocity: 0.05 is assumed.");
+          "axis x: no tolerance is given for coulomb, viscous, static, stribeck_velocity, mass, "
+          "force_constant, delay: 0.05 is assumed.");
 }
 
 TEST_CASE("read_machine: keys that belong together come together") {
@@ -423,7 +422,7 @@ TEST_CASE("read_machine: what belongs together is given together") {
 
 TEST_CASE("read_machine: every effect that a file describes is in the plant that is simulated") {
     const auto simulated = [](const std::string& path, const char* value) {
-        return plant_model(read_machine(with(path, value), "m").axes[0]);
+        return plant_model(read_machine(with(path, value), "m").axes[0], 2e-7);
     };
     CHECK(simulated(plant + "/backlash_m", "1e-5").backlash == 1e-5);
     CHECK(simulated(plant + "/spring_N_per_m", "300").spring == 300);
@@ -459,6 +458,33 @@ TEST_CASE("read_machine: a missing file is refused by its name") {
                          "/nowhere/machine.json: no such file", bad_input);
 }
 
+TEST_CASE("read_machine: a key is read under its former name, with a note; both names at once are refused") {
+    constexpr machine_key key{.name = "gliding_N_s_per_m", .former = {"slip_N_s_per_m"}};
+    const auto read = [&](const nlohmann::json& box, axis_kind kind) {
+        nlohmann::json content = box;
+        std::string noted;
+        detail::rename_former(key, {&box, "axes.x.plant", "m.json", kind}, content,
+                              [&](const std::string& text) { noted += text; });
+        return std::pair(content, noted);
+    };
+    const auto [linear, noted] = read({{"slip_N_s_per_m", 3}, {"mass_kg", 1}}, axis_kind::linear);
+    CHECK(linear == nlohmann::json{{"gliding_N_s_per_m", 3}, {"mass_kg", 1}});
+    CHECK(noted == "axes.x.plant.slip_N_s_per_m is now called gliding_N_s_per_m");
+    const auto [rotary, told] = read({{"slip_Nm_s_per_rad", 3}}, axis_kind::rotary);
+    CHECK(rotary == nlohmann::json{{"gliding_Nm_s_per_rad", 3}});
+    CHECK(told == "axes.x.plant.slip_Nm_s_per_rad is now called gliding_Nm_s_per_rad");
+    CHECK(read({{"gliding_N_s_per_m", 3}}, axis_kind::linear).second.empty());
+    CHECK_THROWS_WITH_AS(
+        read({{"slip_N_s_per_m", 3}, {"gliding_N_s_per_m", 4}}, axis_kind::linear),
+        "m.json: axes.x.plant.slip_N_s_per_m: is the former name of gliding_N_s_per_m: give one of them",
+        bad_input);
+}
+
+TEST_CASE("read_machine: an attraction of the contact needs its elements") {
+    constexpr const char* key = "/axes/x/plant/gms_attraction_N_per_s";
+    CHECK(refused_value(key, "1000") == "machine.json: axes.x.plant.gms_attraction_N_per_s: needs gms_weights");
+}
+
 TEST_CASE("read_machine: the schema in docs names the keys that the reader knows, and no others") {
     const auto schema = nlohmann::json::parse(
         detail::read_whole(std::filesystem::path(QUADRANT_SOURCE_DIR "/docs/schema/machine.schema.json")));
@@ -468,24 +494,19 @@ TEST_CASE("read_machine: the schema in docs names the keys that the reader knows
         for (const auto& [key, value] : object["properties"].items()) out.insert(key);
         return out;
     };
-    const auto in_reader = [](const auto& numbers, detail::key_names others) {
+    const auto in_reader = [](const auto& numbers, const auto& others) {
         std::set<std::string> out(others.begin(), others.end());
         for (const auto& key : numbers) out.insert(std::string(key.name));
         return out;
     };
-    const std::span<const detail::tolerance_key> none;
+    const std::array<detail::tolerance_name, 0> none{};
+    std::vector<std::string_view> boxes = detail::boxes_of_effects();
+    boxes.insert(boxes.end(), detail::axis_other_keys.begin(), detail::axis_other_keys.end());
     CHECK(in_schema("") == in_reader(none, detail::machine_file_keys));
-    CHECK(in_schema("axis") == in_reader(none, detail::axis_keys));
-    CHECK(in_schema("plant") == in_reader(detail::plant_keys, detail::plant_other_keys));
-    CHECK(in_schema("tolerance") == in_reader(detail::tolerance_keys, {}));
-    CHECK(in_schema("encoder") == in_reader(detail::encoder_keys, {}));
-    CHECK(in_schema("actuator") == in_reader(detail::actuator_keys, detail::actuator_other_keys));
+    CHECK(in_schema("axis") == in_reader(none, boxes));
     CHECK(in_schema("cascade_p_pi") ==
           in_reader(detail::controller_keys_of_file, detail::controller_other_keys));
-    CHECK(in_schema("notch") == in_reader(detail::notch_keys, {}));
-    std::vector<std::string> effects;
-    for (const auto& effect : effect_names) effects.emplace_back(effect.name);
-    CHECK(schema["$defs"]["effect"]["enum"] == effects);
+    CHECK(in_schema("notch") == in_reader(detail::notch_keys, detail::key_names()));
 }
 
 TEST_CASE("check_match: a log of another machine is refused") {

@@ -34,11 +34,9 @@ def validator(name):
 
 
 def keys_of_the_reader():
-    """Box of the machine file -> keys that read/machine_keys.hpp knows."""
+    """Box of the machine file -> keys of the controller that read/machine_keys.hpp knows. Those of effects are generated (docs.effects)."""
     text = (root / "include/quadrant/diagnosis/read/machine_keys.hpp").read_text(encoding="utf-8")
-    tables = {"plant": ("plant_keys", "plant_other_keys"), "encoder": ("encoder_keys",), "process": ("process_keys", "process_other_keys"),
-              "actuator": ("actuator_keys", "actuator_other_keys"), "notch": ("notch_keys",), "axis": ("axis_keys",),
-              "cascade_p_pi": ("controller_keys_of_file", "controller_other_keys"), "tolerance": ("tolerance_keys",)}
+    tables = {"notch": ("notch_keys",), "cascade_p_pi": ("controller_keys_of_file", "controller_other_keys")}
     return {box: {key for table in names for key in re.findall(r'"(\w+)"', re.search(rf"\b{table}\{{(.*?)\n?\}};", text, re.S)[1])}
             for box, names in tables.items()}
 
@@ -156,7 +154,7 @@ for path, to in [
 
 every_effect = copy.deepcopy(good_machine)
 every_effect["axes"]["x"]["plant"] |= {
-    "coulomb_N": 1, "gms_weights": [0.25, 0.75], "gms_stiffness_N_per_m": [1e6, 1e7], "presliding_damping_s": 0.001,
+    "coulomb_N": 1, "gms_weights": [0.25, 0.75], "gms_stiffness_N_per_m": [1e6, 1e7], "gms_attraction_N_per_s": 1e5, "presliding_damping_s": 0.001,
     "friction_position_amplitude": -0.2, "friction_position_period_m": 0.1, "friction_position_phase_rad": 1,
     "friction_drift": 1.5, "friction_drift_time_s": 3, "mode_mass_kg": 0.1, "mode_frequency_Hz": 70, "mode_damping": 0.02,
     "backlash_m": 1e-6, "spring_N_per_m": -5, "coupling": -0.1, "ripple": 0.02, "ripple_period_m": 0.024, "ripple_phase_rad": 0}
@@ -173,7 +171,7 @@ for path, to in [
     refuse(machine, changed(every_effect, x + path, to), f"machine with {'.'.join(path)} = {to}")
 
 # A rotary axis has the same keys, word by word in its own units.
-words = {"m": "rad", "N": "Nm", "kg": "kg_m2", "mass": "inertia", "force": "torque", "length": "angle"}
+words = {"m": "rad", "m2": "rad2", "N": "Nm", "kg": "kg_m2", "mass": "inertia", "force": "torque", "length": "angle"}
 
 
 def rotary(value):
@@ -187,7 +185,7 @@ accept(machine, of_an_angle, "a rotary machine with every effect")
 refuse(machine, changed(of_an_angle, x + ["plant", "coulomb_N"], 1), "a rotary plant with newtons")
 refuse(machine, changed(of_an_angle, x + ["encoder", "resolution_m"], 1), "a rotary encoder with metres")
 refuse(machine, changed(every_effect, x + ["plant", "coulomb_Nm"], 1), "a linear plant with newton metres")
-for box in ("plant", "tolerance", "encoder", "process", "cascade_p_pi", "axis"):
+for box in ("plant", "tolerance", "encoder", "actuator", "process", "cascade_p_pi", "axis"):
     checked += 1
     of_line = machine.schema["$defs"][box]["properties"]
     if rotary(dict.fromkeys(of_line)).keys() != machine.schema["$defs"]["rotary_" + box]["properties"].keys():

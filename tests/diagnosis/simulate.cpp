@@ -134,14 +134,14 @@ TEST_CASE("simulate: its JSON holds the numbers of each axis") {
 
 namespace {
 
-constexpr own_force drag{.name = "air_drag",
-                         .exciting_motion = "fast strokes",
-                         .numbers = {{{.key = "air_drag_N_s2_per_m2", .low = 0, .high = 50000}}},
-                         .law = [](const auto& now, const auto& number, auto&) {
-                             return -number[0] * now.velocity * std::abs(now.velocity);
-                         }};
+constexpr own_law bellows{.name = "bellows",
+                          .exciting_motion = "strokes over the whole travel",
+                          .numbers = {{{.key = "bellows_N_per_m2", .low = 0, .high = 500000}}},
+                          .law = [](const auto& now, const auto& number, auto&) {
+                              return -number[0] * now.position * std::abs(now.position);
+                          }};
 /// A cable chain: follows the axis by a length, then drags; its numbers are no straight line.
-constexpr own_force chain{
+constexpr own_law chain{
     .name = "cable_chain",
     .numbers = {{{.key = "chain_N", .start = 20, .low = 0, .high = 500},
                  {.key = "chain_m", .start = 0.003, .low = 1e-4, .high = 0.1, .logarithmic = true}}},
@@ -149,8 +149,8 @@ constexpr own_force chain{
         bent[0] = std::clamp(bent[0] + now.step * now.velocity, -number[1], number[1]);
         return -number[0] * bent[0] / number[1];
     }};
-constexpr own_force of_the_list = [] {
-    own_force f = drag;
+constexpr own_law of_the_list = [] {
+    own_law f = bellows;
     f.name = "mass";
     return f;
 }();
@@ -160,21 +160,21 @@ constexpr own_force of_the_list = [] {
 TEST_CASE("own effect: it is named with its number, is written and read, and the mended machine predicts "
           "another log") {
     workshop::machine real;
-    real.stranger = [](double, double v, double) { return -3000 * v * std::abs(v); };
+    real.stranger = [](double x, double, double) { return -9000 * x * std::abs(x); };
     auto file = exact(real);
-    file.axes[0].own_effects = {own_effect<drag>, own_effect<chain>};
+    file.axes[0].own_effects = {own_effect<bellows>, own_effect<chain>};
     const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
     CHECK(d.verdict == verdict::explained);
     REQUIRE(d.causes.size() == 1);
     const cause& c = d.causes[0];
-    CHECK(c.effect == "air_drag");
+    CHECK(c.effect == "bellows");
     CHECK(c.probability > 0.5);
     CHECK_FALSE(c.described);
     const estimate& found = c.parameters.at(0).values.at(0);
-    CHECK(workshop::near(found.value, 3000, 0.03));
+    CHECK(workshop::near(found.value, 9000, 0.03));
     CHECK(found.low < found.value);
     CHECK(found.high > found.value);
-    CHECK(d.own_effects == std::vector<std::string>{"air_drag", "cable_chain"});
+    CHECK(d.own_effects == std::vector<std::string>{"bellows", "cable_chain"});
     const nlohmann::json written = to_json(d), again = to_json(read_diagnosis(written.dump(), "d.json"));
     CHECK(again == written);
 
@@ -217,7 +217,7 @@ TEST_CASE("own effect: one that remembers and is no straight line in its numbers
 TEST_CASE("own effect: a machine without it is not blamed for it, nor one with an effect of the list") {
     workshop::machine real;
     auto file = exact(real);
-    file.axes[0].own_effects = {own_effect<drag>, own_effect<chain>};
+    file.axes[0].own_effects = {own_effect<bellows>, own_effect<chain>};
     CHECK(diagnose(file, workshop::as_log(workshop::run(real, workshop::three_strokes))).causes.empty());
     real.viscous = 600;
     const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)));
@@ -231,7 +231,7 @@ TEST_CASE("own effect: with a name of the list, or twice the same, it is refused
     file.axes[0].own_effects = {own_effect<of_the_list>};
     CHECK_THROWS_WITH_AS(diagnose(file, log), "own_effects of axis x: mass is a name of the list",
                          std::invalid_argument);
-    file.axes[0].own_effects = {own_effect<drag>, own_effect<drag>};
-    CHECK_THROWS_WITH_AS(diagnose(file, log), "own_effects of axis x: air_drag is there twice",
+    file.axes[0].own_effects = {own_effect<bellows>, own_effect<bellows>};
+    CHECK_THROWS_WITH_AS(diagnose(file, log), "own_effects of axis x: bellows is there twice",
                          std::invalid_argument);
 }

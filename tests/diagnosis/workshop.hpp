@@ -2,6 +2,7 @@
 #pragma once
 #include <quadrant/diagnosis/log.hpp>
 #include <quadrant/diagnosis/machine.hpp>
+#include <quadrant/diagnosis/scales.hpp>
 
 #include <cmath>
 #include <functional>
@@ -44,6 +45,9 @@ struct machine {
 };
 
 inline constexpr double period = 0.0005, count = 2.5e-7, limit = 10, dac = 20.0 / 65536;
+/// Scales of a usual machine tool, where no record measures them.
+inline constexpr quadrant::diagnosis::record_scales usual{
+    .travel = 0.2, .speed = 0.25, .command = 10, .count = count, .corner_Hz = 60};
 
 /// Strokes in both directions at three speeds, reversals from 20 mm down to 0.3 mm, rest, and a multi-sine of 15 to 140 Hz.
 inline double motion(double t) {

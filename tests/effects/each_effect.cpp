@@ -134,7 +134,8 @@ TEST_CASE(
     const auto file = described(real);
     real.loss = 0.1;
     const auto log = run(real);
-    const auto record = prepare(log, workshop::period, workshop::count);
+    const auto record = prepare(log, workshop::period, workshop::count,
+                                scales_of(file.axes[0].plant, log, workshop::period, workshop::count));
     const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
     const double before = rms(models.held_out_residual(models.calibrated()));
     candidate losing = models.calibrated();
@@ -183,7 +184,8 @@ TEST_CASE("diagnose: no command is lost under strong noise of the encoder or a c
         real.noise = 1e-6;
         real.delay = delay;
         const auto log = run(real, 4, 5, shaken(4));
-        const auto record = prepare(log, workshop::period, workshop::count);
+        const auto record = prepare(log, workshop::period, workshop::count,
+                                    scales_of(file.axes[0].plant, log, workshop::period, workshop::count));
         const search models(record, file.axes[0], {}, {}, [](const std::string&) {});
         std::vector<double> innovation;
         record.observer.run(models.calibrated().fit.plant, innovation);

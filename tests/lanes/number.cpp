@@ -160,7 +160,7 @@ TEST_CASE_TEMPLATE("lanes: finite tells the lanes apart, and one fault stays in 
         CHECK(out.faulted());
         CHECK_FALSE(out.faulted_lanes()[0]);
         CHECK(out.faulted_lanes()[1]);
-        out.reset(finite(L(1)), L(1));
+        out.settle(finite(L(1)), L(1));
         CHECK_FALSE(out.faulted());
     }
 }

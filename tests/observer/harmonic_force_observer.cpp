@@ -72,7 +72,7 @@ double last_peak(const std::vector<double>& e, std::size_t samples = 400) {
         most = std::max(most, std::abs(e[k]));
     return most;
 }
-struct none { // an observer that is not there
+struct no_observer { // an observer that is not there
     quantity_of<s::voltage> operator()(quantity_of<s::position>, quantity_of<s::voltage>) { return 0_V; }
 };
 bool stable(const std::vector<double>& e) {
@@ -132,7 +132,7 @@ TEST_CASE("harmonic_force_observer: in the loop nothing but rounding is left of 
     observer<2> ob{{y, two, placed<2>::equal(200.0 / 1_s)}, T};
     // In time: a peak of some micrometres goes to rounding.
     const auto push = forces({46, 69}, 8000);
-    const double without = last_peak(errors(none{}, 0, 0, push)), with = last_peak(errors(ob, 0, 0, push));
+    const double without = last_peak(errors(no_observer{}, 0, 0, push)), with = last_peak(errors(ob, 0, 0, push));
     CHECK(without > 5e-6);
     CHECK(with < 1e-10 * without);
     // In frequency: u = wanted - Hz z - Hu u z^-1, so a force is multiplied by 1 + Hu z^-1 and what remains of the loop.
@@ -165,7 +165,7 @@ TEST_CASE("harmonic_force_observer: 15 harmonics on a delayed axis need the lead
     const observer<15> ahead{{y, all, design, T}, T};
     CHECK(stable(errors(ahead, 1, 1, knock())));
     const auto push = forces(hertz, 8000);
-    CHECK(last_peak(errors(ahead, 1, 1, push)) < 1e-9 * last_peak(errors(none{}, 1, 1, push)));
+    CHECK(last_peak(errors(ahead, 1, 1, push)) < 1e-9 * last_peak(errors(no_observer{}, 1, 1, push)));
 }
 TEST_CASE("harmonic_force_observer: a bad sample holds the sum and changes no state") {
     observer<2> ob{{y, two, placed<2>::equal(200.0 / 1_s)}, T};

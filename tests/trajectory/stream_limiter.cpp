@@ -15,7 +15,7 @@ using namespace quadrant::literals;
 namespace {
 const duration Ts = 1_ms;
 using limiter_400 = trajectory::stream_limiter<400>;
-constexpr double none = trajectory::unlimited;
+constexpr double no_bound = trajectory::unlimited;
 limiter_400::parameters limits(double v, double a, double j) {
     const trajectory::motion_limits all{v * 1_mps, a * 1_mps2, trajectory::jerk::from_value(j)};
     return {all.velocity, all.acceleration, all.jerk};
@@ -70,7 +70,7 @@ TEST_CASE("stream_limiter: a stream within velocity and acceleration passes bit 
     std::vector<double> x(2000);
     for (std::size_t k = 0; k < x.size(); ++k) // 0.094 m/s, 0.30 m/s^2
         x[k] = 0.03 * (1 - std::cos(3.14 * 1e-3 * double(k)));
-    limiter_400 free{limits(0.2, 1, none), Ts};
+    limiter_400 free{limits(0.2, 1, no_bound), Ts};
     CHECK(through(free, x) == x);
     CHECK_FALSE(free.limited());
     limiter_400 smooth{limits(0.2, 1, 40.0), Ts}; // a mean of 50
@@ -111,7 +111,7 @@ TEST_CASE("stream_limiter: catches up with a moving stream without overshoot; on
     std::mt19937 random(9);
     for (int trial = 0; trial < 100; ++trial) {
         const double a = 1 + 0.01 * double(random() % 900), v = 0.1, speed = 1e-4 * double(random() % 900);
-        limiter_400 limit{limits(v, a, none), Ts};
+        limiter_400 limit{limits(v, a, no_bound), Ts};
         const double ahead = 1e-4 * double(random() % 500);
         double beyond = 0, x = ahead, y = 0;
         for (int k = 0; k < 12000; ++k, x += speed * 1e-3)
@@ -143,5 +143,5 @@ TEST_CASE("stream_limiter: refuses a jerk that needs a longer mean than it has")
                          "stream_limiter.jerk = 10: needs a mean of 2000 samples, and the capacity is 400",
                          invalid_parameter);
     CHECK_THROWS_AS((limiter_400{limits(0, 1, 100), Ts}), invalid_parameter);
-    CHECK_THROWS_AS((limiter_400{limits(1, none, 100), Ts}), invalid_parameter);
+    CHECK_THROWS_AS((limiter_400{limits(1, no_bound, 100), Ts}), invalid_parameter);
 }

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <complex>
 
 using namespace quadrant_gap::trial;
@@ -303,4 +304,42 @@ TEST_CASE("trial's controller: the notch is deepest where it is put, and leaves 
     const double w = 2 * pi * 120, s = w * std::tan(pi * 150 * 0.0005) / std::tan(pi * 120 * 0.0005);
     const std::complex<double> wanted = (w * w - s * s) / std::complex<double>(w * w - s * s, 0.2 * w * s);
     CHECK(near(gain(150), std::abs(wanted), 1e-3));
+}
+
+namespace {
+
+using quadrant::diagnosis::joint;
+using quadrant::diagnosis::own_law;
+
+/// A constant at a joint.
+constexpr own_law constant_at(joint where) {
+    return {.name = "constant",
+            .joins = where,
+            .numbers = {{{.key = "size"}}},
+            .law = [](const auto&, const auto& number, auto&) { return number[0]; }};
+}
+constexpr std::array constants{constant_at(joint::command),      constant_at(joint::motor_gain),
+                               constant_at(joint::force),        constant_at(joint::friction),
+                               constant_at(joint::transmission), constant_at(joint::reading)};
+
+/// Last reading of a mass of 50 kg without a controller, 100 N/V, after 0.1 s with these constants at these joints.
+double reading_with(const std::vector<std::pair<joint, double>>& added, double coulomb = 0) {
+    axis_truth a = free_mass();
+    a.friction.coulomb = coulomb;
+    for (const auto& [where, size] : added)
+        a.laws.push_back({&constants[static_cast<std::size_t>(where)], {size}});
+    return run({a}, {std::vector<double>(201, 0.0)}, 0.0005, 1)[0].position.back();
+}
+
+} // namespace
+
+TEST_CASE("trial's plant: the law of an effect acts at its joint") {
+    const double way = 0.5 * 0.1 * 0.1; // of 1 m/s^2
+    CHECK(near(reading_with({{joint::force, 50}}), way, 1e-3));
+    CHECK(near(reading_with({{joint::command, 0.5}}), way, 1e-3));
+    CHECK(near(reading_with({{joint::command, 0.5}, {joint::motor_gain, 1}}), 2 * way, 1e-3));
+    CHECK(near(reading_with({{joint::reading, 1e-3}}), 1e-3, 1e-9));
+    CHECK(near(reading_with({{joint::transmission, 1e-3}}), 1e-3, 1e-9));
+    CHECK(reading_with({{joint::force, 50}}, 40) > 0.1 * way);
+    CHECK(reading_with({{joint::force, 50}, {joint::friction, 1}}, 40) < 0.01 * way); // 80 N hold 50 N
 }

@@ -63,7 +63,8 @@ inline std::string causes(const diagnosis_result& d) {
         if (c.gap_before_command_rms_V.value > 0)
             gap.push_back("command " + change(c.gap_before_command_rms_V.value, c.gap_after_command_rms_V.value,
                                               voice.in_command_unit("V")));
-        const std::string_view box = words_of(c.effect).box;
+        const effect* known = effect_named(c.effect);
+        const std::string_view box = known ? known->box : "";
         rows += fmt::format(
             "<tr data-effect=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span><small>axis "
             "{}{}{}{}</small></th>"
@@ -82,6 +83,8 @@ inline std::string causes(const diagnosis_result& d) {
                                 escape(listed(lines_of(r.parameters, voice))));
         if (!c.exciting_motion.empty())
             more += fmt::format("{}Shown by: {}.", more.empty() ? "" : "<br>", escape(c.exciting_motion));
+        if (known)
+            more += fmt::format("{}What to do: {}", more.empty() ? "" : "<br>", escape(voice(known->remedy)));
         if (!more.empty())
             rows += fmt::format("<tr class=\"more\"><td colspan=\"5\"><small>{}</small></td></tr>\n", more);
     }

@@ -114,17 +114,9 @@ inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
 }
 
 /// The true values of an effect, after calibration has moved them too.
-inline void read_again(nlohmann::ordered_json& parameters, const axis_truth& a) {
-    const auto put = [&](const char* key, double value) {
-        if (parameters.contains(key)) parameters[key] = value;
-    };
-    put("mass_kg", a.mechanics.mass);
-    put("force_constant_N_per_V", a.actuator.force_constant);
-    put("delay_s", a.actuator.delay);
-    put("viscous_N_s_per_m", a.friction.viscous);
-    put("coulomb_N", a.friction.coulomb);
-    put("static_N", a.friction.level_at_rest);
-    put("stribeck_velocity_m_per_s", a.friction.stribeck_velocity);
+inline void read_again(nlohmann::ordered_json& parameters, axis_truth a) {
+    for (auto& [key, value] : parameters.items())
+        if (const double* place = number_in(a, key)) value = *place;
 }
 
 inline motion_limits limits(const axis_truth& a, double seconds, double period, dice& random) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "quadrant/diagnosis/effect_list.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -44,14 +46,9 @@ inline bool same_model(const std::string& said, const std::string& true_name) {
     return pair("mass", "force_constant") || pair("constant_force", "asymmetric_friction");
 }
 
-inline std::string box_of(const std::string& effect) {
-    if (effect == "controller_mismatch") return "controller";
-    if (effect == "cutting_force") return "process";
-    if (effect.starts_with("encoder_")) return "sensor";
-    if (effect.starts_with("actuator_") || effect == "force_constant" || effect == "time_delay" ||
-        effect == "force_ripple" || effect == "sample_loss")
-        return "actuator";
-    return "mechanics";
+inline std::string_view box_of(const std::string& effect) {
+    const auto* e = quadrant::diagnosis::effect_named(effect);
+    return e ? e->box : std::string_view("mechanics");
 }
 
 namespace detail {

@@ -74,6 +74,24 @@ private:
     double colour_ = 0;
 };
 
+/// The laws of effects that this simulator has no law of its own for, each at its joint.
+class laws_of_effects {
+public:
+    using joint = quadrant::diagnosis::joint;
+    explicit laws_of_effects(const std::vector<law_truth>& all) {
+        for (const law_truth& l : all) laws_.of(*l.law) = l.values;
+    }
+    double operator()(joint where, const mechanics& body, double acting, double t, double h) {
+        if (laws_.empty()) return 0;
+        const double x = body.position() + h / 2 * body.velocity();
+        return laws_.sum(where, {x, body.velocity(), acting, t + h / 2, h}, remembered_);
+    }
+
+private:
+    quadrant::diagnosis::own_laws laws_;
+    quadrant::diagnosis::own_laws::memories remembered_{};
+};
+
 struct axis_record {
     std::vector<double> reference, position, command;
 };
@@ -90,6 +108,7 @@ inline axis_truth ideal(axis_truth a) {
 inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                                     const std::vector<std::vector<double>>& references, double period,
                                     std::uint64_t seed) {
+    using quadrant::diagnosis::joint;
     constexpr double coarsest = 2.5e-5, farthest = 5;
     const auto fine = static_cast<std::size_t>(std::max(20.0, std::ceil(period / coarsest)));
     const double h = period / static_cast<double>(fine);
@@ -99,6 +118,8 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
         actuator drive;
         mechanics body;
         encoder scale;
+        laws_of_effects laws;
+        double displaced = 0; ///< of the reading, by laws of the transmission and of the reading
     };
     std::deque<one> all;
     std::vector<axis_record> out(axes.size());
@@ -106,12 +127,12 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
         all.push_back({cascade(axes[i].controller, period),
                        actuator(axes[i].actuator, period, dice(seed, 2 * i)),
                        mechanics(axes[i], static_cast<double>(samples) * period),
-                       encoder(axes[i].encoder, dice(seed, 2 * i + 1))});
+                       encoder(axes[i].encoder, dice(seed, 2 * i + 1)), laws_of_effects(axes[i].laws)});
         out[i].reference = references[i];
     }
     for (std::size_t k = 0; k < samples; ++k) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
-            const double y = all[i].scale(all[i].body.seen());
+            const double y = all[i].scale(all[i].body.seen() + all[i].displaced);
             const double u = all[i].control(references[i][k], y);
             all[i].drive.command(u);
             out[i].position.push_back(y);
@@ -125,8 +146,15 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
             const double t = (static_cast<double>(k * fine + f)) * h;
             for (std::size_t i = 0; i < axes.size(); ++i) {
                 const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
-                const double motor = all[i].drive.force(all[i].drive.acting(t, h), all[i].body.position());
-                all[i].body.step(motor, t, h, other);
+                one& a = all[i];
+                double acting = a.drive.acting(t, h);
+                const auto law = [&](joint where) { return a.laws(where, a.body, acting, t, h); };
+                acting += law(joint::command);
+                const double motor =
+                    a.drive.force(acting, a.body.position()) * (1 + law(joint::motor_gain)) + law(joint::force);
+                const double more_friction = law(joint::friction);
+                a.displaced = law(joint::transmission) + law(joint::reading);
+                a.body.step(motor, t, h, other, more_friction);
             }
         }
     }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "quadrant/diagnosis/own_law.hpp"
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
-/// The machines of the trial as they are, not as they are described. All values SI. Nothing here comes from the diagnosis.
+/// The machines of the trial as they are, not as they are described. All values SI. Nothing here comes from the
+/// diagnosis but the laws of effects that this simulator has no law of its own for.
 namespace quadrant_gap::trial {
 
 /// A force, a gain or an error that repeats along the travel: sum of size[i] sin(2 pi (i + 1) x / period + phase[i]).
@@ -57,7 +60,7 @@ struct process_truth {
 
 /// What no diagnosis has a name for.
 struct stranger {
-    enum class kind { none, drag, ramp, bump, quadratic_spring, step, bursts, wander } what = kind::none;
+    enum class kind { none, ramp, bump, quadratic_spring, step, bursts, wander } what = kind::none;
     double size = 0;  ///< [N] at its scale
     double scale = 1; ///< [m/s], [m] or [s]
     double begin = 0; ///< [s] or [m]
@@ -74,6 +77,12 @@ struct controller_truth {
     int dac_bits = 16; ///< 0: no rounding
 };
 
+/// The law of an effect of the list, with its true numbers.
+struct law_truth {
+    const quadrant::diagnosis::own_law* law = nullptr;
+    quadrant::diagnosis::own_law::values values{};
+};
+
 struct axis_truth {
     std::string name = "x";
     mechanics_truth mechanics{};
@@ -83,6 +92,7 @@ struct axis_truth {
     process_truth process{};
     stranger unknown{};
     controller_truth controller{};
+    std::vector<law_truth> laws{};
 };
 
 } // namespace quadrant_gap::trial

@@ -61,8 +61,8 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
     std::vector<std::string> turn, slow_turn, removed_turn;
     const auto next = [&](std::vector<std::string>& bag, auto&& may) {
         if (bag.empty()) {
-            for (const withheld& e : effects)
-                if (may(e)) bag.emplace_back(e.name);
+            for (const auto* e : withheld_effects())
+                if (may(*e)) bag.emplace_back(e->name);
             random.shuffle(bag);
         }
         std::string out = bag.back();
@@ -78,13 +78,13 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
         for (const kind k : twenty) {
             planned p{k, {}, random.chance(0.1), k == poor};
             if (k == none && slow_none) slow_none = false, p.slow_only = true;
-            if (k == single) p.effects = {next(turn, [](const withheld&) { return true; })};
-            if (k == poor) p.effects = {next(slow_turn, [](const withheld& e) { return e.slow_shows_it; })};
+            if (k == single) p.effects = {next(turn, [](const auto&) { return true; })};
+            if (k == poor) p.effects = {next(slow_turn, [](const auto& e) { return e.trial.slow_shows_it; })};
             if (k == removed)
-                p.effects = {next(removed_turn, [](const withheld& e) { return !has_a_twin(e.name); })};
+                p.effects = {next(removed_turn, [](const auto& e) { return !has_a_twin(e.name); })};
             if (k == pair) {
                 std::vector<std::string> all;
-                for (const withheld& e : effects) all.emplace_back(e.name);
+                for (const auto* e : withheld_effects()) all.emplace_back(e->name);
                 p.effects = {random.one_of(all)};
                 while (p.effects.size() < 2)
                     if (const std::string& other = random.one_of(all); !near_relatives(other, p.effects[0]))

@@ -68,11 +68,9 @@ public:
                 wander_.push_back(level = level * 0.96 + 0.28 * random.normal());
         }
     }
-    double operator()(double x, double v, double t) const {
+    double operator()(double x, double t) const {
         using enum stranger::kind;
         switch (s_.what) {
-        case drag:
-            return -s_.size * v * std::abs(v) / (s_.scale * s_.scale);
         case ramp:
             return s_.size * t / s_.scale;
         case bump: { // a detent: pulls into one place of the travel
@@ -112,15 +110,16 @@ class mechanics {
 public:
     mechanics(const axis_truth& a, double seconds)
         : a_(a), friction_(a.friction, a.mechanics.mass), unknown_(a.unknown, seconds) {}
-    /// One fine step under a motor force; the other axis' acceleration couples in.
-    void step(double motor, double t, double h, double other_acceleration) {
+    /// One fine step under a motor force; the other axis' acceleration couples in. Laws of effects may change
+    /// the friction level, relatively.
+    void step(double motor, double t, double h, double other_acceleration, double more_friction = 0) {
         const auto& m = a_.mechanics;
         const double carrier = m.mass - m.mode_mass;
         x_ += h / 2 * v_;
         second_ += h / 2 * second_v_;
-        double force = motor + m.constant_force - m.spring * x_ + at(m.cogging, x_) + unknown_(x_, v_, t) +
+        double force = motor + m.constant_force - m.spring * x_ + at(m.cogging, x_) + unknown_(x_, t) +
                        carrier * m.coupling * other_acceleration - viscous_force(a_.friction, v_) -
-                       friction_(v_, h, slip_level(a_.friction, x_, v_, t));
+                       friction_(v_, h, (1 + more_friction) * slip_level(a_.friction, x_, v_, t));
         if (a_.process.fundamental > 0) {
             force += a_.process.mean;
             for (std::size_t i = 0; i < a_.process.size.size(); ++i)

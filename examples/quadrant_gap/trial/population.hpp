@@ -64,7 +64,8 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         for (int n = 0; n < (p.two_axes ? 2 : 1); ++n)
             m.described.push_back(detail::drawn_axis(m.period, n == 0 ? "x" : "y", random));
         bool needs_coulomb = false;
-        for (const std::string& e : p.effects) needs_coulomb = needs_coulomb || effect_named(e).needs_coulomb;
+        for (const std::string& e : p.effects)
+            needs_coulomb = needs_coulomb || effect_named(e)->trial.needs_coulomb;
         if (needs_coulomb && m.described[0].friction.coulomb == 0) continue;
         const auto has = [&](const char* e) {
             return std::find(p.effects.begin(), p.effects.end(), e) != p.effects.end();
@@ -103,9 +104,12 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
                 m, "unknown", 1e-3, 1, [](insertion& i) { put_stranger(i); }, random.log_uniform(4, 15), own);
         std::uint64_t stream = own;
         for (const std::string& e : p.effects) {
-            const withheld& w = effect_named(e);
-            detail::put_in(
-                m, e, w.low, w.high, [&](insertion& i) { w.into(i); }, target(), stream++);
+            const auto& w = effect_named(e)->trial;
+            const auto into = [&](insertion& i) {
+                w.into(i);
+                i.vary(e);
+            };
+            detail::put_in(m, e, w.low, w.high, into, target(), stream++);
         }
         const double least =
             p.what == kind::single || attempt > 5 ? 0 : 1.2; // a single one may hide in the cloud

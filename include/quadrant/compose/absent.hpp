@@ -27,15 +27,14 @@ public:
 
     absent(const parameters& p, duration period) : given_(p) { require_positive("absent.period", period); }
 
-    value operator()(argument x) noexcept { return finite(x) ? out_.keep(value()) : out_.hold(); }
+    value operator()(argument x) noexcept { return out_.keep(finite(x), value()); }
     void reset() noexcept { out_.reset(); }
-    void settle(argument x) noexcept { finite(x) ? out_.reset() : out_.raise(); }
-    void shift(argument by) noexcept {
-        if (!finite(by)) out_.raise();
-    }
+    void settle(argument x) noexcept { out_.settle(finite(x), value()); }
+    void shift(argument by) noexcept { out_.raise(!finite(by)); }
 
     std::complex<double> response(frequency) const { return 0; }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 
@@ -64,13 +63,14 @@ public:
 
     through(const parameters& p, duration period) : given_(p) { require_positive("through.period", period); }
 
-    value operator()(value x) noexcept { return finite(x) ? out_.keep(x) : out_.hold(); }
+    value operator()(value x) noexcept { return out_.keep(finite(x), x); }
     void reset() noexcept { out_.reset(); }
-    void settle(value x) noexcept { finite(x) ? out_.reset(x) : out_.raise(); }
-    void shift(value by) noexcept { finite(by) ? void(out_.keep(out_.last() + by)) : out_.raise(); }
+    void settle(value x) noexcept { out_.settle(finite(x), x); }
+    void shift(value by) noexcept { out_.keep(finite(by), out_.last() + by); }
 
     std::complex<double> response(frequency) const { return 1; }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 

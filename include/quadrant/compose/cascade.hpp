@@ -77,28 +77,33 @@ template <axis_boxes Boxes> struct cascade {
     using acceleration = quantity_of<signal::acceleration, real>;
     using command = quantity_of<command_of<Boxes>, real>;
     using wires = cascade_wires<command_of<Boxes>, real>;
-    static_assert(every_wire_has_a_tap(wires::taps()));
+    using mask = mask_of<real>; ///< bool, but for lanes
+    static_assert(every_wire_has_a_tap(
+        cascade_wires<command_of<Boxes>, std::conditional_t<multi_lane<real>, double, real>>::taps()));
 
     Boxes box;
     wires wire{};
-    bool fault = false; ///< a sample was not finite; cleared by reset and settle
+    mask fault{}; ///< a sample was not finite; cleared by reset and settle
 
     command operator()(position reference, position measured) noexcept {
-        if (!finite(reference, measured)) {
-            fault = true;
-            return wire.command;
+        const auto good = finite(reference, measured);
+        if (!all(good)) {
+            fault = either(fault, !good);
+            if (none(good)) return wire.command;
         }
-        look(reference, measured);
-        wire.feedback = box.velocity_loop(wire.velocity_error);
-        wire.damped = box.resonance(wire.feedback);
-        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
-        wire.friction = box.friction(wire.reference_velocity);
+        const auto before = wires_before();
+        look(good, reference, measured);
+        wire.feedback = box.velocity_loop(only_where(good, wire.velocity_error));
+        wire.damped = box.resonance(only_where(good, wire.feedback));
+        wire.inertia = box.acceleration_feedforward(only_where(good, wire.reference_acceleration));
+        wire.friction = box.friction(only_where(good, wire.reference_velocity));
         wire.wanted = wire.damped + wire.inertia + wire.friction;
-        wire.limited = box.amplifier(wire.wanted);
-        wire.command = box.dac(wire.limited);
+        wire.limited = box.amplifier(only_where(good, wire.wanted));
+        wire.command = box.dac(only_where(good, wire.limited));
         // What was cut off is charged to the PI: it may wind up no further, whoever asked for too much.
         if constexpr (requires { box.velocity_loop.applied(wire.feedback); })
             box.velocity_loop.applied(wire.feedback + (wire.limited - wire.wanted));
+        restore(good, before);
         return wire.command;
     }
 
@@ -109,12 +114,18 @@ template <axis_boxes Boxes> struct cascade {
         acceleration reference_acceleration{};
         cascade::command command{};
     };
-    void settle(const start& s) noexcept {
-        if (!finite(s.reference, s.measured, s.reference_velocity, s.measured_velocity,
-                    s.reference_acceleration, s.command)) {
-            fault = true;
-            return;
-        }
+    void settle(start s) noexcept {
+        const auto good = finite(s.reference, s.measured, s.reference_velocity, s.measured_velocity,
+                                 s.reference_acceleration, s.command);
+        fault = !good;
+        if (none(good)) return;
+        const auto before = wires_before();
+        s = {only_where(good, s.reference),
+             only_where(good, s.measured),
+             only_where(good, s.reference_velocity),
+             only_where(good, s.measured_velocity),
+             only_where(good, s.reference_acceleration),
+             only_where(good, s.command)};
         wire.reference = s.reference;
         wire.measured = s.measured;
         wire.reference_velocity = s.reference_velocity;
@@ -129,20 +140,23 @@ template <axis_boxes Boxes> struct cascade {
         wire.velocity_error = wire.demand - s.measured_velocity;
         wire.inertia = detail::settled(box.acceleration_feedforward, s.reference_acceleration);
         wire.friction = detail::settled(box.friction, s.reference_velocity);
-        carry(s.command);
-        fault = false;
+        carry(good, s.command);
+        restore(good, before);
     }
     /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis: the
     /// estimators go on, the integral is what makes the next step give `applied` if no wire changes till then.
     void track(position reference, position measured, command applied) noexcept {
-        if (!finite(reference, measured, applied)) {
-            fault = true;
-            return;
+        const auto good = finite(reference, measured, applied);
+        if (!all(good)) {
+            fault = either(fault, !good);
+            if (none(good)) return;
         }
-        look(reference, measured);
-        wire.inertia = box.acceleration_feedforward(wire.reference_acceleration);
-        wire.friction = box.friction(wire.reference_velocity);
-        carry(applied);
+        const auto before = wires_before();
+        look(good, reference, measured);
+        wire.inertia = box.acceleration_feedforward(only_where(good, wire.reference_acceleration));
+        wire.friction = box.friction(only_where(good, wire.reference_velocity));
+        carry(good, applied);
+        restore(good, before);
     }
     /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward change goes into
     /// the integral: the last step, done once more, would give the same command.
@@ -179,36 +193,55 @@ template <axis_boxes Boxes> struct cascade {
     void reset() noexcept {
         std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));
         wire = {};
-        fault = false;
+        fault = mask();
     }
 
-    bool limited() const noexcept { return wire.limited != wire.wanted; }
+    bool limited() const noexcept { return any(!equal(wire.limited, wire.wanted)); }
     bool faulted() const noexcept {
-        return fault ||
+        return any(fault) ||
                std::apply([](const auto&... each) { return (detail::is_faulted(each) || ...); }, boxes(box));
+    }
+
+    /// Which lanes have a fault; a bool for a loop without lanes.
+    mask faulted_lanes() const noexcept {
+        mask out = fault;
+        std::apply([&](const auto&... each) { ((out = either(out, each.faulted_lanes())), ...); }, boxes(box));
+        return out;
     }
 
     static constexpr auto taps() { return wires::taps(); }
 
 private:
-    [[gnu::always_inline]] inline void look(position reference, position measured) noexcept {
+    /// For lanes only: the wires as they were, and back to them in the lanes that are not good.
+    auto wires_before() const noexcept {
+        if constexpr (multi_lane<real>)
+            return wire;
+        else
+            return 0;
+    }
+    template <class Before> void restore(const mask& good, [[maybe_unused]] const Before& before) noexcept {
+        if constexpr (multi_lane<real>)
+            for (const auto& each : wires::taps())
+                each.write(wire, select(good, each.read(wire), each.read(before)));
+    }
+    [[gnu::always_inline]] inline void look(const mask& good, position reference, position measured) noexcept {
         wire.reference = reference;
         wire.measured = measured;
-        wire.reference_velocity = box.reference_velocity(reference);
-        wire.reference_acceleration = box.reference_acceleration(wire.reference_velocity);
-        wire.measured_velocity = box.measured_velocity(measured);
+        wire.reference_velocity = box.reference_velocity(only_where(good, reference));
+        wire.reference_acceleration = box.reference_acceleration(only_where(good, wire.reference_velocity));
+        wire.measured_velocity = box.measured_velocity(only_where(good, measured));
         wire.position_error = reference - measured;
-        wire.demand =
-            box.position_loop(wire.position_error) + box.velocity_feedforward(wire.reference_velocity);
+        wire.demand = box.position_loop(only_where(good, wire.position_error)) +
+                      box.velocity_feedforward(only_where(good, wire.reference_velocity));
         wire.velocity_error = wire.demand - wire.measured_velocity;
     }
-    void carry(command u) noexcept {
+    void carry(const mask& good, command u) noexcept {
         wire.feedback = u - wire.inertia - wire.friction; // the notch has gain one at standstill
-        box.velocity_loop.settle(wire.velocity_error, wire.feedback);
-        wire.damped = detail::settled(box.resonance, wire.feedback);
+        box.velocity_loop.settle(wire.velocity_error, only_where(good, wire.feedback));
+        wire.damped = detail::settled(box.resonance, only_where(good, wire.feedback));
         wire.wanted = wire.damped + wire.inertia + wire.friction;
-        wire.limited = detail::settled(box.amplifier, wire.wanted);
-        wire.command = detail::settled(box.dac, wire.limited);
+        wire.limited = detail::settled(box.amplifier, only_where(good, wire.wanted));
+        wire.command = detail::settled(box.dac, only_where(good, wire.limited));
     }
     static constexpr auto boxes(auto& b) noexcept {
         return std::tie(b.reference_velocity, b.reference_acceleration, b.measured_velocity, b.position_loop,

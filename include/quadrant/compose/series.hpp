@@ -37,24 +37,27 @@ public:
         : series(p, period, std::index_sequence_for<First, Rest...>()) {}
 
     value operator()(value x) noexcept {
-        if (!finite(x)) return out_.hold();
-        std::apply([&](auto&... block) { ((x = block(x)), ...); }, blocks_);
-        return out_.keep(x);
+        const auto good = finite(x);
+        if (none(good)) return out_.hold();
+        std::apply([&](auto&... block) { ((x = block(only_where(good, x))), ...); }, blocks_);
+        return out_.keep(good, x);
     }
     void reset() noexcept {
         out_.reset();
         std::apply([](auto&... block) { (block.reset(), ...); }, blocks_);
     }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
-        std::apply([&](auto&... block) { ((x = detail::settled(block, x)), ...); }, blocks_);
-        out_.reset(x);
+        const auto good = finite(x);
+        if (none(good)) return out_.raise();
+        std::apply([&](auto&... block) { ((x = detail::settled(block, only_where(good, x))), ...); }, blocks_);
+        out_.settle(good, x);
     }
     void retune(const series& next) noexcept { retune_each(next, std::index_sequence_for<First, Rest...>()); }
     void shift(value by) noexcept { ///< where each block has gain one at standstill
-        if (!finite(by)) return out_.raise();
+        const auto good = finite(by);
+        if (none(good)) return out_.raise();
         std::apply([&](auto&... block) { (block.shift(by), ...); }, blocks_);
-        out_.keep(out_.last() + by);
+        out_.keep(good, out_.last() + by);
     }
 
     /// Of all blocks together, where each has one.
@@ -65,6 +68,11 @@ public:
     bool faulted() const noexcept {
         return out_.faulted() ||
                std::apply([](const auto&... block) { return (detail::is_faulted(block) || ...); }, blocks_);
+    }
+    mask_of<real_of<First>> faulted_lanes() const noexcept {
+        auto out = out_.faulted_lanes();
+        std::apply([&](const auto&... block) { ((out = either(out, block.faulted_lanes())), ...); }, blocks_);
+        return out;
     }
     parameters given() const noexcept {
         return std::apply([](const auto&... block) { return parameters(block.given()...); }, blocks_);

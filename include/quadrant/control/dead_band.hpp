@@ -35,17 +35,19 @@ public:
         require_not_negative("dead_band.half_width", p.half_width);
     }
 
-    value operator()(value x) noexcept { return finite(x) ? out_.keep(shifted(x)) : out_.hold(); }
+    value operator()(value x) noexcept { return out_.keep(finite(x), shifted(x)); }
     void reset() noexcept { out_.reset(); }
-    void settle(value x) noexcept { finite(x) ? out_.reset(shifted(x)) : out_.raise(); }
+    void settle(value x) noexcept { out_.settle(finite(x), shifted(x)); }
 
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 
 private:
     value shifted(value x) const noexcept {
-        return x > half_width_ ? x - half_width_ : x < -half_width_ ? x + half_width_ : value();
+        return select(greater(x, half_width_), x - half_width_,
+                      select(less(x, -half_width_), x + half_width_, value()));
     }
 
     parameters given_;

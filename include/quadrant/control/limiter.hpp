@@ -33,24 +33,28 @@ public:
     limiter(const parameters& p, duration period)
         : given_(p), low_(in_real<Real>(p.low)), high_(in_real<Real>(p.high)) {
         require_positive("limiter.period", period);
-        const double low = detail::plain(p.low), high = detail::plain(p.high);
-        require(low == low, "limiter.low", p.low, "must be a number");
-        require(low <= high, "limiter.high", p.high, "must not lie below low (" + detail::shortest(low) + ")");
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) {
+            const double low = detail::plain(lane(p.low, i)), high = detail::plain(lane(p.high, i));
+            require(low == low, "limiter.low", low, "must be a number");
+            require(low <= high, "limiter.high", high,
+                    "must not lie below low (" + detail::shortest(low) + ")");
+        }
     }
 
     value operator()(value x) noexcept {
-        if (!finite(x)) return out_.hold();
-        limited_ = x > high_ || x < low_;
-        return out_.keep(clipped(x));
+        const auto good = finite(x);
+        if (none(good)) return out_.hold();
+        set_where(good, limited_, outside(x, low_, high_));
+        return out_.keep(good, clipped(x));
     }
     void reset() noexcept {
-        limited_ = false;
+        limited_ = mask_of<Real>();
         out_.reset();
     }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
-        limited_ = x > high_ || x < low_;
-        out_.reset(clipped(x));
+        const auto good = finite(x);
+        set_where(good, limited_, outside(x, low_, high_));
+        out_.settle(good, clipped(x));
     }
     void retune(const limiter& next) noexcept {
         low_ = next.low_;
@@ -58,17 +62,19 @@ public:
         given_ = next.given_;
     }
 
-    bool limited() const noexcept { return limited_; }
+    bool limited() const noexcept { return any(limited_); } ///< some lane was
+    mask_of<Real> limited_lanes() const noexcept { return limited_; }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 
 private:
-    value clipped(value x) const noexcept { return x > high_ ? high_ : x < low_ ? low_ : x; }
+    value clipped(value x) const noexcept { return clamped(x, low_, high_); }
 
     parameters given_;
     value low_, high_;
-    bool limited_ = false;
+    mask_of<Real> limited_{};
     held_output<value> out_;
 };
 

@@ -65,12 +65,15 @@ public:
         const position off = reference.position - measured;
         const velocity ahead = weight_ * reference.velocity - tachometer;
         const value inertia = acceleration_gain_ * reference.acceleration;
-        if (!finite(off, ahead, inertia, position_gain() * off)) return out_.hold();
-        const velocity error = position_loop_(off) + ahead;
-        const value loop = velocity_loop_(error);
-        if (!finite(error, loop + inertia)) return out_.hold();
-        state_ = {error, loop};
-        return out_.keep(loop + inertia);
+        const auto good = finite(off, ahead, inertia, position_gain() * off);
+        if (none(good)) return out_.hold();
+        const velocity error = position_loop_(only_where(good, off)) + ahead;
+        const value loop = velocity_loop_(only_where(good, error));
+        const auto sound = both(good, finite(error, loop + inertia));
+        if (none(sound)) return out_.hold();
+        set_where(sound, state_.error, error);
+        set_where(sound, state_.loop, loop);
+        return out_.keep(sound, loop + inertia);
     }
     /// What was applied of the last command.
     void applied(value u) noexcept { velocity_loop_.applied(state_.loop + (u - out_.last())); }
@@ -81,11 +84,13 @@ public:
         out_.reset();
     }
     void settle(position x, value u) noexcept {
-        if (!finite(x, u)) return out_.raise();
-        position_loop_.settle(position());
-        velocity_loop_.settle(velocity(), u);
-        state_ = {velocity(), u};
-        out_.reset(u);
+        const auto good = finite(x, u);
+        if (none(good)) return out_.raise();
+        position_loop_.settle(only_where(good, position()));
+        velocity_loop_.settle(velocity(), only_where(good, u));
+        set_where(good, state_.error, velocity());
+        set_where(good, state_.loop, u);
+        out_.settle(good, u);
     }
 
     /// Of the unlimited law.
@@ -100,6 +105,10 @@ public:
     bool limited() const noexcept { return velocity_loop_.limited(); } ///< the integral was restrained
     bool faulted() const noexcept {
         return out_.faulted() || position_loop_.faulted() || velocity_loop_.faulted();
+    }
+    mask_of<Real> faulted_lanes() const noexcept {
+        return either(out_.faulted_lanes(),
+                      either(position_loop_.faulted_lanes(), velocity_loop_.faulted_lanes()));
     }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }

@@ -82,11 +82,15 @@ public:
                                    : velocity((past - state_.past) / time());
         const velocity q = state_.q + Real(share_) * (error - state_.q);
         const value rest = set_aside_ * reference.position + derivative_gain_ * q;
-        if (!finite(reference.acceleration, reference.velocity, tachometer, past, rest)) return out_.hold();
-        const value loop = loop_(reference.position - measured);
-        if (!finite(loop + rest)) return out_.hold();
-        state_ = {q, past, loop};
-        return out_.keep(loop + rest);
+        const auto good = finite(reference.acceleration, reference.velocity, tachometer, past, rest);
+        if (none(good)) return out_.hold();
+        const value loop = loop_(only_where(good, position(reference.position - measured)));
+        const auto sound = both(good, finite(loop + rest));
+        if (none(sound)) return out_.hold();
+        set_where(sound, state_.q, q);
+        set_where(sound, state_.past, past);
+        set_where(sound, state_.loop, loop);
+        return out_.keep(sound, loop + rest);
     }
     /// What was applied of the last command.
     void applied(value u) noexcept { loop_.applied(state_.loop + (u - out_.last())); }
@@ -98,10 +102,13 @@ public:
     void settle(position x, value u) noexcept {
         const position past = weight_ * x - x;
         const value loop = u - set_aside_ * x;
-        if (!finite(past, loop)) return out_.raise();
-        loop_.settle(position(), loop);
-        state_ = {velocity(), past, loop};
-        out_.reset(u);
+        const auto good = finite(past, loop);
+        if (none(good)) return out_.raise();
+        loop_.settle(position(), only_where(good, loop));
+        set_where(good, state_.q, velocity());
+        set_where(good, state_.past, past);
+        set_where(good, state_.loop, loop);
+        out_.settle(good, u);
     }
 
     /// Of the unlimited law.
@@ -125,6 +132,7 @@ public:
     }
     bool limited() const noexcept { return loop_.limited(); } ///< the integral was restrained
     bool faulted() const noexcept { return out_.faulted() || loop_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return either(out_.faulted_lanes(), loop_.faulted_lanes()); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

@@ -38,12 +38,12 @@ public:
 
     value operator()(argument x) noexcept {
         const value y = gain_ * x;
-        return finite(y) ? out_.keep(y) : out_.hold();
+        return out_.keep(finite(y), y);
     }
     void reset() noexcept { out_.reset(); }
     void settle(argument x) noexcept {
         const value y = gain_ * x;
-        finite(y) ? out_.reset(y) : out_.raise();
+        out_.settle(finite(y), y);
     }
     void retune(const proportional& next) noexcept {
         gain_ = next.gain_;
@@ -52,6 +52,7 @@ public:
 
     std::complex<double> response(frequency) const { return detail::plain(gain_); }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 

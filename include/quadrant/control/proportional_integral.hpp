@@ -64,8 +64,8 @@ public:
         require_positive("proportional_integral.period", period);
         require_not_negative("proportional_integral.gain", p.gain);
         require_not_negative("proportional_integral.integral_gain", p.integral_gain);
-        require(detail::plain(p.limit) > 0, "proportional_integral.limit", p.limit,
-                "must be above 0 (infinite: no limit)");
+        require_lanes([&](std::size_t i) { return detail::plain(lane(p.limit, i)) > 0; },
+                      "proportional_integral.limit", p.limit, "must be above 0 (infinite: no limit)");
         per_sample_ =
             gain_of<Out, In, Real>::from_value(Real(p.integral_gain.value() * number(period.value())));
         if constexpr (std::same_as<AntiWindup, back_calculation>) {
@@ -81,54 +81,62 @@ public:
     value operator()(argument e) noexcept {
         const value proportion = gain_ * e, more = per_sample_ * e, free = state_.integral + more;
         const value integral = restrained(free, more, proportion), u = proportion + integral;
-        if (!finite(u, integral)) return out_.hold();
-        limited_ = integral != free;
-        state_.integral = integral;
+        const auto good = finite(u, integral);
+        if (none(good)) return out_.hold();
+        set_where(good, limited_, !equal(integral, free));
+        set_where(good, state_.integral, integral);
         if constexpr (std::same_as<AntiWindup, back_calculation>)
-            state_.excess = u - clamped(u);
+            set_where(good, state_.excess, u - bounded(u));
         else if constexpr (std::same_as<AntiWindup, conditional_integration>)
-            state_.excess = value();
-        return out_.keep(u);
+            set_where(good, state_.excess, value());
+        return out_.keep(good, u);
     }
     /// What the amplifier applied of the last output, in its unit and before anything that was added to it.
     void applied(value u) noexcept {
         if constexpr (!std::same_as<AntiWindup, integral_clamp>) {
             const value excess = out_.last() - u;
-            if (!finite(excess)) return out_.raise();
-            state_.excess = excess;
+            const auto good = finite(excess);
+            set_where(good, state_.excess, excess);
+            out_.raise(!good);
         }
     }
     void reset() noexcept {
         state_ = {};
-        limited_ = false;
+        limited_ = mask_of<Real>();
         out_.reset();
     }
     void settle(argument e, value u) noexcept {
         const value proportion = gain_ * e, more = per_sample_ * e;
         value integral = u - proportion; // after the coming step
-        if (!finite(u, integral, more)) return out_.raise();
+        const auto good = finite(u, integral, more);
         if constexpr (std::same_as<AntiWindup, integral_clamp>)
-            integral = clamped(clamped(integral) - more);
-        else if (!(std::same_as<AntiWindup, conditional_integration> && drives_out(u, more)))
+            integral = bounded(bounded(integral) - more);
+        else if constexpr (std::same_as<AntiWindup, conditional_integration>)
+            integral = select(drives_out(u, more), integral, integral - more);
+        else
             integral -= more;
-        state_ = {integral, value()};
-        limited_ = false;
-        out_.reset(u);
+        set_where(good, state_.integral, integral);
+        set_where(good, state_.excess, value());
+        set_where(good, limited_, mask_of<Real>());
+        out_.settle(good, u);
     }
     /// The last step once more, with the new gains: as if it had been given e and had put out u (of one argument: u).
     void retune(const proportional_integral& next, argument e) noexcept { retune(next, e, out_.last()); }
     void retune(const proportional_integral& next, argument e, value u) noexcept {
         const value integral = u - next.gain_ * e;
-        if (next.period_ != period_ || !finite(integral)) return out_.raise();
-        const held_output<value> out = out_;
-        const state before = state_;
-        *this = next;
-        out_ = out;
-        state_ = before;
+        const auto good = finite(integral);
+        if (next.period_ != period_ || none(good)) return out_.raise();
+        given_ = next.given_;
+        set_where(good, gain_, next.gain_);
+        set_where(good, per_sample_, next.per_sample_);
+        set_where(good, limit_, next.limit_);
+        set_where(good, tracking_, next.tracking_);
+        set_where(good, limited_, next.limited_);
         if constexpr (std::same_as<AntiWindup, integral_clamp>)
-            state_.integral = clamped(integral);
+            set_where(good, state_.integral, bounded(integral));
         else
-            state_.integral = integral;
+            set_where(good, state_.integral, integral);
+        out_.raise(!good);
     }
 
     /// Of the unrestrained loop.
@@ -136,23 +144,26 @@ public:
         const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
         return detail::plain(gain_) + detail::plain(per_sample_) / (1.0 - back);
     }
-    bool limited() const noexcept { return limited_; }
+    bool limited() const noexcept { return any(limited_); } ///< some lane was
+    mask_of<Real> limited_lanes() const noexcept { return limited_; }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
 private:
-    value clamped(value u) const noexcept { return u > limit_ ? limit_ : u < -limit_ ? -limit_ : u; }
-    bool drives_out(value u, value more) const noexcept {
-        return (more > value() && u > limit_) || (more < value() && u < -limit_);
+    value bounded(value u) const noexcept { return clamped(u, limit_); }
+    mask_of<Real> drives_out(value u, value more) const noexcept {
+        return either(both(greater(more, value()), greater(u, limit_)),
+                      both(less(more, value()), less(u, -limit_)));
     }
     value restrained(value free, value more, value proportion) const noexcept {
         if constexpr (std::same_as<AntiWindup, integral_clamp>) {
-            return clamped(free);
+            return bounded(free);
         } else if constexpr (std::same_as<AntiWindup, conditional_integration>) {
-            const bool short_of_it =
-                (more > value() && state_.excess > value()) || (more < value() && state_.excess < value());
-            return short_of_it || drives_out(proportion + free, more) ? state_.integral : free;
+            const auto short_of_it = either(both(greater(more, value()), greater(state_.excess, value())),
+                                            both(less(more, value()), less(state_.excess, value())));
+            return select(either(short_of_it, drives_out(proportion + free, more)), state_.integral, free);
         } else {
             return free - tracking_ * state_.excess;
         }
@@ -164,7 +175,7 @@ private:
     value limit_;
     Real tracking_{0};
     state state_;
-    bool limited_ = false;
+    mask_of<Real> limited_{};
     held_output<value> out_;
 };
 

@@ -37,12 +37,12 @@ public:
 
     value operator()(value x) noexcept {
         const value y = rounded(x);
-        return finite(x, y) ? out_.keep(y) : out_.hold();
+        return out_.keep(finite(x, y), y);
     }
     void reset() noexcept { out_.reset(); }
     void settle(value x) noexcept {
         const value y = rounded(x);
-        finite(x, y) ? out_.reset(y) : out_.raise();
+        out_.settle(finite(x, y), y);
     }
     void retune(const quantizer& next) noexcept { ///< J <= half of both steps
         step_ = next.step_;
@@ -50,14 +50,16 @@ public:
     }
 
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 
 private:
     value rounded(value x) const noexcept {
         using std::round;
-        if (!(step_ > value())) return x;
-        return Real(round(Real(x / step_))) * step_;
+        const auto rounds = greater(step_, value());
+        if (none(rounds)) return x;
+        return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
     }
 
     parameters given_;

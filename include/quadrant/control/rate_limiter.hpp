@@ -33,28 +33,32 @@ public:
 
     rate_limiter(const parameters& p, duration period) : given_(p) {
         require_positive("rate_limiter.period", period);
-        require(detail::plain(p.rate) > 0, "rate_limiter.rate", p.rate, "must be above 0 (infinite: no bound)");
+        require_lanes([&](std::size_t i) { return detail::plain(lane(p.rate, i)) > 0; }, "rate_limiter.rate",
+                      p.rate, "must be above 0 (infinite: no bound)");
         most_ = value::from_value(Real(p.rate.value() * number(period.value())));
     }
 
     value operator()(value x) noexcept {
         const value low = state_.y - most_, high = state_.y + most_;
-        const value y = x > high ? high : x < low ? low : x;
-        if (!finite(x, y)) return out_.hold();
-        limited_ = x > high || x < low;
-        state_.y = y;
-        return out_.keep(y);
+        const value y = clamped(x, low, high);
+        const auto good = finite(x, y);
+        if (none(good)) return out_.hold();
+        set_where(good, limited_, outside(x, low, high));
+        set_where(good, state_.y, y);
+        return out_.keep(good, y);
     }
     void reset() noexcept { settle(value()); }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
-        state_.y = x;
-        limited_ = false;
-        out_.reset(x);
+        const auto good = finite(x);
+        set_where(good, state_.y, x);
+        set_where(good, limited_, mask_of<Real>());
+        out_.settle(good, x);
     }
 
-    bool limited() const noexcept { return limited_; }
+    bool limited() const noexcept { return any(limited_); } ///< some lane was
+    mask_of<Real> limited_lanes() const noexcept { return limited_; }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
@@ -62,7 +66,7 @@ private:
     parameters given_;
     value most_;
     state state_;
-    bool limited_ = false;
+    mask_of<Real> limited_{};
     held_output<value> out_;
 };
 

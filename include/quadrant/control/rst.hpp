@@ -59,20 +59,24 @@ public:
 
     rst(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("rst.period", period);
-        require(detail::plain(p.r[0]) == 1, "rst.r[0]", p.r[0], "must be 1");
+        require_lanes([&](std::size_t i) { return detail::plain(lane(p.r[0], i)) == 1; }, "rst.r[0]", p.r[0],
+                      "must be 1");
         require(p.recovery[0] == 1, "rst.recovery[0]", p.recovery[0], "must be 1");
-        double size = 0, difference = 0;
-        const auto take = [&](auto& own, const auto& from, const detail::field_name& name, double sign) {
+        number size{}, difference{};
+        const auto take = [&](auto& own, const auto& from, const detail::field_name& name, number sign) {
             for (std::size_t i = 0; i < from.size(); ++i) {
                 require_finite(name, from[i]);
                 own[i] = in_real<Real>(from[i]);
-                size += std::abs(detail::plain(from[i])), difference += sign * detail::plain(from[i]);
+                size += absolute(detail::bare(from[i])), difference += sign * detail::bare(from[i]);
             }
         };
         take(t_, p.reference, "rst.reference", 1);
         take(s_, p.feedback, "rst.feedback", -1);
-        require(std::abs(difference) <= 1e-9 * size, "rst.reference", difference,
-                "must have the sum of feedback (difference)");
+        require_lanes(
+            [&](std::size_t i) {
+                return std::abs(detail::plain(lane(difference, i))) <= 1e-9 * detail::plain(lane(size, i));
+            },
+            "rst.reference", difference, "must have the sum of feedback (difference)");
         for (std::size_t i = 0; i <= R; ++i) {
             require_finite("rst.r", p.r[i]);
             require_finite("rst.recovery", p.recovery[i]);
@@ -87,25 +91,30 @@ public:
         for (std::size_t i = 1; i <= T; ++i) u += t_[i] * (state_.reference[i - 1] - measured);
         for (std::size_t i = 1; i <= S; ++i) u -= s_[i] * (state_.measured[i - 1] - measured);
         for (std::size_t i = 1; i <= R; ++i) u -= r_[i] * state_.applied[i - 1] + w_[i] * state_.excess[i - 1];
-        if (!finite(reference.velocity, reference.acceleration, tachometer, measured, u)) return out_.hold();
-        push(state_.reference, reference.position);
-        push(state_.measured, measured);
-        push(state_.applied, u);
-        push(state_.excess, value());
-        return out_.keep(u);
+        const auto good = finite(reference.velocity, reference.acceleration, tachometer, measured, u);
+        if (none(good)) return out_.hold();
+        push(good, state_.reference, reference.position);
+        push(good, state_.measured, measured);
+        push(good, state_.applied, u);
+        push(good, state_.excess, value());
+        return out_.keep(good, u);
     }
     /// What was applied of the last command.
     void applied(value u) noexcept {
         const value excess = out_.last() - u;
-        if (!finite(excess)) return out_.raise();
-        state_.applied[0] = u, state_.excess[0] = excess;
+        const auto good = finite(excess);
+        set_where(good, state_.applied[0], u);
+        set_where(good, state_.excess[0], excess);
+        out_.raise(!good);
     }
     void reset() noexcept { settle(position(), value()); }
     void settle(position x, value u) noexcept {
-        if (!finite(x, u)) return out_.raise();
-        state_.reference.fill(x), state_.measured.fill(x);
-        state_.applied.fill(u), state_.excess.fill(value());
-        out_.reset(u);
+        const auto good = finite(x, u);
+        for (position& each : state_.reference) set_where(good, each, x);
+        for (position& each : state_.measured) set_where(good, each, x);
+        for (value& each : state_.applied) set_where(good, each, u);
+        for (value& each : state_.excess) set_where(good, each, value());
+        out_.settle(good, u);
     }
 
     /// Of the unlimited law; `to` of the reference as it is given, ahead by lead().
@@ -124,13 +133,15 @@ public:
         return y;
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
 private:
-    template <class Value, std::size_t N> static void push(std::array<Value, N>& past, Value x) noexcept {
-        for (std::size_t i = N - 1; i > 0; --i) past[i] = past[i - 1];
-        past[0] = x;
+    template <class Value, std::size_t N>
+    static void push(const mask_of<Real>& where, std::array<Value, N>& past, Value x) noexcept {
+        for (std::size_t i = N - 1; i > 0; --i) set_where(where, past[i], past[i - 1]);
+        set_where(where, past[0], x);
     }
 
     parameters given_;

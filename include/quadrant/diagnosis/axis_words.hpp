@@ -61,9 +61,12 @@ inline std::string key_of(std::string_view linear, axis_kind kind) {
     return detail::by_word(
         linear, [](char c) { return c == '_' || c == '.'; },
         [](std::string_view word) {
+            const bool power = word.size() > 1 && word.back() >= '2' && word.back() <= '9'; // m2 is rad2
+            const std::string_view base = power ? word.substr(0, word.size() - 1) : word;
             for (const axis_word& w : axis_words)
-                if (w.linear == word && !w.in_key.empty()) return w.in_key;
-            return word;
+                if (w.linear == base && !w.in_key.empty())
+                    return std::string(w.in_key) + (power ? std::string(1, word.back()) : "");
+            return std::string(word);
         });
 }
 

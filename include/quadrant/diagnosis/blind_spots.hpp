@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "effect_names.hpp"
+#include "effect_list.hpp"
 #include "result.hpp"
 
 #include <algorithm>
@@ -31,9 +31,9 @@ inline constexpr std::array blind_spots_of_an_angle{
 /// Where it bears on what was said of an axis: a claim that machine and simulation agree holds as far as the encoder sees, and a
 /// suspected sensor is judged by its own reading. Else nothing: the log shows enough that is unexplained.
 inline std::vector<unseen> unseen_by(const axis_result& a, const std::vector<cause>& causes) {
-    const auto of_the_sensor = [](std::string_view effect) {
-        return std::any_of(effect_names.begin(), effect_names.end(),
-                           [&](const effect_name& e) { return e.name == effect && e.box == "sensor"; });
+    const auto of_the_sensor = [](std::string_view name) {
+        const effect* e = effect_named(name);
+        return e && e->box == "sensor";
     };
     const bool sensor = std::any_of(causes.begin(), causes.end(), [&](const cause& c) {
         return c.axis == a.name &&

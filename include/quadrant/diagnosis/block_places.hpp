@@ -38,8 +38,9 @@ inline std::vector<place> block_places(const axis_case& c) {
     auto before = e_residual;
     for (std::size_t i = 0; i < c.best().effects.size(); ++i) {
         const auto after = energy(c.models.held_out_residual(c.path[i + 1]));
-        out.push_back({"block", std::string(c.best().effects[i]->box),
-                       std::string(c.best().effects[i]->name) + " takes this share off",
+        const effect& e = *c.best().effects[i];
+        out.push_back({"block", std::string(e.box),
+                       std::string(e.label.empty() ? e.name : e.label) + " takes this share off",
                        share([&](const auto& w) { return square(before.rms(w)) - square(after.rms(w)); }),
                        "causes"});
         before = after;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "described_numbers.hpp"
 #include "effect/effect.hpp"
 
 namespace quadrant::diagnosis {
@@ -7,13 +8,16 @@ namespace quadrant::diagnosis {
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
 /// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which also
 /// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis alike.
-inline std::vector<parameter> calibration(const plant_description& d, const tolerance_description& tolerance) {
+/// `give`: of every contact, record_scales::give().
+inline std::vector<parameter> calibration(const axis_description& axis, double give) {
+    const plant_description& d = axis.plant;
+    const tolerance_description& tolerance = axis.tolerance;
     std::vector<parameter> out;
-    const auto within = [&](const char* key, double& (*of)(plant_model&), double value, double relative) {
+    const auto within = [&](std::string_view key, double& (*of)(plant_model&), double value, double relative) {
         if (!(value > 0) || !(relative > 0)) return;
         const double ratio = std::min(relative, 0.9);
         out.push_back(
-            {.key = key,
+            {.key = std::string(key),
              .of = of,
              .start = value,
              .low = value * (1 - ratio),
@@ -51,15 +55,20 @@ inline std::vector<parameter> calibration(const plant_description& d, const tole
     within(
         "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
-    // Every contact gives way by some tenths of a micrometre before it slips; up to 2 um it is no cause. One that is
-    // described as giving way further, or element by element, stays as described.
-    constexpr double most = 2e-6;
-    const friction_contact contact = plant_model(d).friction.contact;
+    for (const effect* e : every_effect())
+        for (const machine_key& key : e->keys)
+            if (key.of && key.tolerance)
+                for (double value : numbers_of(axis, key, *e))
+                    within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
+    // Every contact gives way a little before it slips; up to ten times that it is no cause. One that is described as giving
+    // way further, or element by element, stays as described.
+    const double most = 10 * give;
+    const friction_contact contact = plant_model(d, give).friction.contact;
     if (contact.elements == 1 && contact.length <= most)
         out.push_back({.key = "presliding_length_m",
                        .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
                        .start = contact.length,
-                       .low = std::min(1e-8, contact.length),
+                       .low = std::min(0.05 * give, contact.length),
                        .high = most,
                        .logarithmic = true,
                        .step = 1e-2,

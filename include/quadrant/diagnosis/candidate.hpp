@@ -78,7 +78,7 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
     for (std::size_t f = 0; f < folds; ++f) {
         Eigen::MatrixXd a = all.a - sums[f].a;
         a.diagonal() *= 1 + 1e-9;
-        step[f] = n > 0 ? Eigen::VectorXd(a.ldlt().solve(sums[f].g)) : Eigen::VectorXd(0);
+        step[f] = n > 0 ? solved(a, sums[f].g) : Eigen::VectorXd(0);
         for (Eigen::Index i = 0; i < n; ++i) {
             const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
             const double x = c.fit.x[i], low = p.to_fit(p.low) - x, high = p.to_fit(p.high) - x;
@@ -106,39 +106,48 @@ inline std::vector<parameter> resumed(const fit_result& f) {
 }
 
 /// A first look at `from` with one more effect: a step or two from every start that the effect offers, the slopes of the
-/// parameters that `from` has taken from there; the best kept, less what its parameters cost. No score yet. An effect that offers no start leaves an
-/// infinite objective.
-inline candidate sketch(const axis_record& record, const candidate& from, const effect& added,
-                        const screening& look, const std::vector<std::vector<double>>& slopes, int steps) {
-    const fitter fit(record.observer, record.score);
-    candidate best{.effects = from.effects};
-    best.effects.push_back(&added);
-    best.total = -std::numeric_limits<double>::infinity();
-    const auto resumed_from = resumed(from.fit);
-    double least = std::numeric_limits<double>::infinity(); // a start that frees more must earn it
-    for (const auto& start : added.starts(look)) {
-        plant_model plant = from.fit.plant;
-        added.join(plant, look);
-        std::vector<parameter> ps;
-        std::vector<const std::vector<double>*> known;
-        for (std::size_t i = 0; i < resumed_from.size();
-             ++i) { // the effect's own parameters replace the described ones
-            const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
-                return &q.of(plant) == &resumed_from[i].of(plant);
-            });
-            if (replaced) continue;
-            ps.push_back(resumed_from[i]);
-            known.push_back(&slopes[i]);
-        }
-        ps.insert(ps.end(), start.begin(), start.end());
-        auto trial = fit.fit(plant, ps, steps, known, 0);
-        if (const double cost = trial.objective + detail::flexibility(trial); cost < least) {
-            least = cost;
-            best.fit = std::move(trial);
+/// parameters that `from` has taken from there; the best kept, less what its parameters cost. No score yet. An effect that offers
+/// no start leaves an infinite objective.
+class first_look {
+public:
+    first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,
+               const std::vector<std::vector<double>>& slopes, int steps) {
+        const auto resumed_from = resumed(from.fit);
+        for (const auto& start : added.starts(look)) {
+            plant_model plant = from.fit.plant;
+            added.join(plant, look);
+            std::vector<parameter> ps;
+            std::vector<const std::vector<double>*> known;
+            for (std::size_t i = 0; i < resumed_from.size(); ++i) {
+                // The effect's own parameters replace the described ones.
+                const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
+                    return &q.of(plant) == &resumed_from[i].of(plant);
+                });
+                if (replaced) continue;
+                ps.push_back(resumed_from[i]);
+                known.push_back(&slopes[i]);
+            }
+            ps.insert(ps.end(), start.begin(), start.end());
+            courses_.emplace_back(fit, plant, ps, steps, std::move(known), 0);
         }
     }
-    return best;
-}
+    /// One from each start, to be run by the fitter.
+    std::vector<fit_course>& courses() { return courses_; }
+    /// The best of what they came to.
+    fit_result best() {
+        fit_result best;
+        double least = std::numeric_limits<double>::infinity(); // a start that frees more must earn it
+        for (fit_course& c : courses_)
+            if (const double cost = c.result().objective + detail::flexibility(c.result()); cost < least) {
+                least = cost;
+                best = std::move(c.result());
+            }
+        return best;
+    }
+
+private:
+    std::vector<fit_course> courses_;
+};
 
 /// Scores a fitted model on motion that was not fitted, and keeps of its rows and blocks only what is asked for later: a
 /// diagnosis remembers hundreds of models.
@@ -154,11 +163,25 @@ inline void judge(const axis_record& record, candidate& c) {
     c.fit.quadratic = c.fit.quadratic_mean = {};
 }
 
-/// Fits a sketch to the end and scores it.
+/// Fits sketches to the end, side by side, and scores them.
+inline void finish(const axis_record& record, std::span<candidate* const> sketches) {
+    const fitter fit(record.observer, record.score);
+    std::vector<fit_course> courses;
+    std::vector<candidate*> fitted;
+    for (candidate* c : sketches) {
+        if (!std::isfinite(c->fit.objective)) continue;
+        courses.emplace_back(fit, c->fit.plant, resumed(c->fit), 30);
+        fitted.push_back(c);
+    }
+    fit.run(std::span(courses));
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        fitted[i]->fit = std::move(courses[i].result());
+        judge(record, *fitted[i]);
+    }
+}
 inline void finish(const axis_record& record, candidate& c) {
-    if (!std::isfinite(c.fit.objective)) return;
-    c.fit = fitter(record.observer, record.score).fit(c.fit.plant, resumed(c.fit), 30);
-    judge(record, c);
+    candidate* const one = &c;
+    finish(record, std::span(&one, 1));
 }
 
 } // namespace quadrant::diagnosis

@@ -43,8 +43,23 @@ inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     }
 }
 
+/// Whether a model frees all that the effect `e` freed in another: it holds that effect and more.
+inline bool contains(const candidate& model, const candidate& other, const effect& e) {
+    const auto frees = [](const candidate& m, const std::string& key) {
+        return std::any_of(m.fit.parameters.begin(), m.fit.parameters.end(),
+                           [&](const parameter& p) { return p.key == key && !(p.spread > 0); });
+    };
+    bool all = false;
+    for (const key_value& k : e.read(other.fit.plant))
+        if (frees(other, k.key)) {
+            if (!frees(model, k.key)) return false;
+            all = true;
+        }
+    return all;
+}
+
 /// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each other
-/// suspect, the others kept. The first entry is the cause itself.
+/// suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no other name for it.
 inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
     std::vector<const effect*> others = c.best().effects;
@@ -53,7 +68,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     std::vector<rival> out{{.model = c.best(), .name = own}};
     for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
         for (const effect* e : model.effects)
-            if (!search::has(without, e) && e != own) {
+            if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met.
                 if (e->name == own->equivalent) finish(c.record, out.back().model);
@@ -93,7 +108,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 
 /// Force that takes `before` to `after`, in energy.
 inline double between(double before, double after) {
-    return std::sqrt(std::max(1e-30, square(before) - square(after)));
+    return std::sqrt(std::max(std::numeric_limits<double>::min(), square(before) - square(after)));
 }
 /// What the cause number `which` explains, in force on held-out motion.
 inline double explained_by(const axis_case& c, std::size_t which) {

@@ -81,8 +81,9 @@ public:
                      settings_of(cogging_parameters(p_)));
         by_block("constant command", "constant_force", "constant", {.constant = true},
                  {{"constant", {-p_.constant_force * volts_}}});
-        by_block("command along the travel", "position_spring", "proportional", {.spring = true},
-                 {{"per_position_per_m", {p_.spring * volts_}}});
+        by_block("command along the travel", "position_spring", "proportional",
+                 {.constant = true, .spring = true},
+                 {{"per_position_per_m", {p_.spring * volts_}}, {"constant", {-p_.constant_force * volts_}}});
         together();
         return std::move(out_);
     }

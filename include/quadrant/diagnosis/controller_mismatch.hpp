@@ -32,8 +32,8 @@ struct controller_key {
     double scale; ///< a sensible size when the described value is zero
 };
 
-/// `volt`: of the record.
-inline std::vector<controller_key> controller_keys(const controller_description& c, double volt = 1) {
+inline std::vector<controller_key> controller_keys(const controller_description& c,
+                                                   const record_scales& scale = {}) {
     using d = controller_description;
     if (c.own) {
         std::vector<controller_key> own;
@@ -42,21 +42,26 @@ inline std::vector<controller_key> controller_keys(const controller_description&
                            c.own->keys[i].scale});
         return own;
     }
+    const double seconds = scale.response(), rate = 0.003 / seconds; // a slow loop's
+    const double per_speed = 0.003 * scale.command / scale.speed; // a hundredth of it and less is a small gain
     std::vector<controller_key> keys{
-        {"position_gain_per_s", [](d& x) -> double& { return x.position_gain_per_s; }, 1},
-        {"velocity_gain_V_s_per_m", [](d& x) -> double& { return x.velocity_gain_V_s_per_m; }, 1},
+        {"position_gain_per_s", [](d& x) -> double& { return x.position_gain_per_s; }, rate},
+        {"velocity_gain_V_s_per_m", [](d& x) -> double& { return x.velocity_gain_V_s_per_m; }, 10 * per_speed},
         {"velocity_integral_V_per_m", [](d& x) -> double& { return x.velocity_integral_V_per_m; },
-         c.velocity_gain_V_s_per_m},
+         c.velocity_gain_V_s_per_m* rate},
         {"velocity_feedforward", [](d& x) -> double& { return x.velocity_feedforward; }, 0.1},
         {"acceleration_feedforward_V_s2_per_m",
-         [](d& x) -> double& { return x.acceleration_feedforward_V_s2_per_m; }, 0.01 * volt},
+         [](d& x) -> double& { return x.acceleration_feedforward_V_s2_per_m; }, 30 * per_speed* seconds},
         {"viscous_feedforward_V_s_per_m", [](d& x) -> double& { return x.viscous_feedforward_V_s_per_m; },
-         0.1 * volt},
-        {"coulomb_feedforward_V", [](d& x) -> double& { return x.coulomb_feedforward_V; }, 0.01 * volt}};
+         per_speed},
+        {"coulomb_feedforward_V", [](d& x) -> double& { return x.coulomb_feedforward_V; },
+         0.001 * scale.command}};
     if (c.velocity_estimator == d::estimator::filtered_derivative)
-        keys.push_back({"velocity_filter_Hz", [](d& x) -> double& { return x.velocity_filter_Hz; }, 100});
+        keys.push_back(
+            {"velocity_filter_Hz", [](d& x) -> double& { return x.velocity_filter_Hz; }, scale.bandwidth_Hz()});
     if (c.notch) {
-        keys.push_back({"notch.frequency_Hz", [](d& x) -> double& { return x.notch->frequency_Hz; }, 100});
+        keys.push_back({"notch.frequency_Hz", [](d& x) -> double& { return x.notch->frequency_Hz; },
+                        scale.bandwidth_Hz()});
         keys.push_back({"notch.damping", [](d& x) -> double& { return x.notch->damping; }, 0.1});
     }
     return keys;
@@ -151,7 +156,7 @@ inline controller_finding judge_controller(const controller_description& describ
 
     constexpr double none = std::numeric_limits<double>::infinity();
     double best = score(d0), width = 0;
-    for (const auto& key : controller_keys(described, record.volt)) {
+    for (const auto& key : controller_keys(described, record.scale)) {
         controller_description trial = described;
         double& value = key.of(trial);
         const double given = value, scale = given != 0 ? std::abs(given) : key.scale;

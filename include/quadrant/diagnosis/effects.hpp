@@ -7,10 +7,12 @@
 #include "effect/backlash.hpp"
 #include "effect/cogging.hpp"
 #include "effect/constant_force.hpp"
+#include "effect/controller_mismatch.hpp"
 #include "effect/coulomb_friction.hpp"
 #include "effect/cross_coupling.hpp"
 #include "effect/cutting_force.hpp"
 #include "effect/encoder_cyclic_error.hpp"
+#include "effect/encoder_quantization.hpp"
 #include "effect/force_constant.hpp"
 #include "effect/force_ripple.hpp"
 #include "effect/friction_drift.hpp"
@@ -18,6 +20,7 @@
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
 #include "effect/presliding_friction.hpp"
+#include "effect/quadratic_drag.hpp"
 #include "effect/sample_loss.hpp"
 #include "effect/stribeck_friction.hpp"
 #include "effect/structural_resonance.hpp"
@@ -27,19 +30,48 @@
 
 namespace quadrant::diagnosis {
 
-/// Every suspect behind the command wire, in the order of gap/FORMAT.md. The controller is judged apart, by replay, and the
-/// encoder's count by what the positions are multiples of.
-inline constexpr std::array plant_effects{&suspect::coulomb_friction,     &suspect::viscous_friction,
-                                          &suspect::stribeck_friction,    &suspect::presliding_friction,
-                                          &suspect::asymmetric_friction,  &suspect::position_dependent_friction,
-                                          &suspect::friction_drift,       &suspect::mass,
-                                          &suspect::structural_resonance, &suspect::backlash,
-                                          &suspect::constant_force,       &suspect::position_spring,
-                                          &suspect::cross_coupling,       &suspect::cogging,
-                                          &suspect::force_ripple,         &suspect::force_constant,
-                                          &suspect::time_delay,           &suspect::actuator_lag,
-                                          &suspect::actuator_saturation,  &suspect::actuator_dead_zone,
-                                          &suspect::sample_loss,          &suspect::encoder_cyclic_error,
-                                          &suspect::cutting_force};
+// clang-format off
+/// The list: one include above and one line here for each effect, in the order in which files and pages name
+/// them.
+inline constexpr std::array listed_effects{
+    &suspect::coulomb_friction,
+    &suspect::viscous_friction,
+    &suspect::stribeck_friction,
+    &suspect::presliding_friction,
+    &suspect::asymmetric_friction,
+    &suspect::position_dependent_friction,
+    &suspect::friction_drift,
+    &suspect::mass,
+    &suspect::structural_resonance,
+    &suspect::backlash,
+    &suspect::constant_force,
+    &suspect::position_spring,
+    &suspect::quadratic_drag,
+    &suspect::cross_coupling,
+    &suspect::cogging,
+    &suspect::force_ripple,
+    &suspect::force_constant,
+    &suspect::time_delay,
+    &suspect::actuator_lag,
+    &suspect::actuator_saturation,
+    &suspect::actuator_dead_zone,
+    &suspect::sample_loss,
+    &suspect::encoder_quantization,
+    &suspect::encoder_cyclic_error,
+    &suspect::cutting_force,
+    &suspect::controller_mismatch,
+};
+// clang-format on
+
+/// Those of them that are found by a fit of the plant, in the same order. The controller is judged apart, by
+/// replay, and the encoder's count by what the positions are multiples of.
+inline constexpr auto plant_effects = [] {
+    constexpr auto fitted = [](const effect* e) { return e->starts != nullptr; };
+    std::array<const effect*,
+               static_cast<std::size_t>(std::count_if(listed_effects.begin(), listed_effects.end(), fitted))>
+        out{};
+    std::copy_if(listed_effects.begin(), listed_effects.end(), out.begin(), fitted);
+    return out;
+}();
 
 } // namespace quadrant::diagnosis

@@ -10,6 +10,15 @@
 
 namespace quadrant::diagnosis {
 
+/// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so that no pivot
+/// depends on them.
+template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
+    const Eigen::VectorXd size =
+        a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
+    const Eigen::MatrixXd even = size.asDiagonal() * a * size.asDiagonal();
+    return size.asDiagonal() * even.ldlt().solve(size.asDiagonal() * b);
+}
+
 /// One number of the plant model that a fit may move.
 struct parameter {
     std::string key;                       ///< the machine file's key
@@ -61,60 +70,43 @@ public:
     }
 
     /// How the innovation moves with each parameter.
-    std::vector<std::vector<double>> slopes(const fit_result& r) const { return slopes(r, {}); }
+    std::vector<std::vector<double>> slopes(const fit_result& r) const {
+        std::vector<std::size_t> which;
+        std::vector<double> step;
+        const auto plants = moved(r, {}, which, step);
+        std::vector<std::vector<double>> e(plants.size()), out(r.parameters.size());
+        predictor_.run(plants, e);
+        for (std::size_t j = 0; j < which.size(); ++j) out[which[j]] = slope(std::move(e[j]), r, step[j]);
+        return out;
+    }
 
-    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
-    /// at one more effect: the others' slopes are those of the model without it.
-    /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again. Slopes cost a pass
-    /// for each parameter, a step costs one; the last steps are taken with new slopes in any case.
-    fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations,
-                   const std::vector<const std::vector<double>*>& known = {}, int chords = 4) const {
-        const auto n = static_cast<Eigen::Index>(ps.size());
-        fit_result best{.plant = start, .parameters = ps, .x = Eigen::VectorXd(n)};
-        for (Eigen::Index i = 0; i < n; ++i) best.x[i] = p(ps, i).to_fit(p(ps, i).start);
-        evaluate(best);
-        double damping = 1e-3, since = 0; // what was gained with these slopes
-        int old = 0;
-        std::vector<std::vector<double>> d = slopes(best, known);
-        linearize(best, d, known);
-        for (int iteration = 0; iteration < iterations && n > 0; ++iteration) {
-            bool better = false;
-            double gain = 0;
-            const double damping_before = damping;
-            for (int attempt = 0; attempt < 6 && !better; ++attempt, damping *= 8) {
-                fit_result trial{.plant = best.plant, .parameters = ps, .x = step(best, damping)};
-                evaluate(trial);
-                if (trial.objective < best.objective) {
-                    gain = best.objective - trial.objective;
-                    trial.quadratic = std::move(best.quadratic);
-                    trial.quadratic_mean = std::move(best.quadratic_mean);
-                    best = std::move(trial);
-                    better = true;
-                    damping = std::max(1e-6, damping / 24);
-                }
-            }
-            since += gain;
-            const bool settled = gain < 0.1; // a hair beside the margins of the selection
-            if ((settled && since < 1) || iteration + 1 == iterations) {
-                if (better) follow(best, d, known);
-                break;
-            }
-            if (settled || ++old > chords) {
-                d = slopes(best, known);
-                linearize(best, d, known);
-                since = 0;
-                old = 0;
-                if (!better) damping = damping_before;
-            } else {
-                follow(best, d, known);
-            }
+    /// One fit from its start to its end; see fit_course.
+    fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const;
+    /// Several fits side by side: what their next steps need is found in one pass.
+    template <class Course> void run(std::span<Course> courses) const {
+        std::vector<plant_model> plants;
+        std::vector<std::vector<double>> innovation;
+        std::vector<double> choices;
+        for (;;) {
+            plants.clear();
+            for (Course& c : courses) c.ask(plants);
+            if (plants.empty()) return;
+            innovation.resize(plants.size());
+            choices.assign(plants.size(), 0.0);
+            predictor_.run(plants, innovation, {}, choices);
+            std::size_t next = 0;
+            for (Course& c : courses)
+                next += c.take(std::span(innovation).subspan(next), std::span(choices).subspan(next));
         }
-        return best;
     }
 
     void evaluate(fit_result& r) const {
         put(r.plant, r.parameters, r.x);
         const double choices = predictor_.run(r.plant, r.innovation);
+        judge(r, choices);
+    }
+    /// What the innovations of a model say of it.
+    void judge(fit_result& r, double choices) const {
         // As many of a block's rows are independent as its score says.
         r.choices = choices * (scoring_.nu + scoring_.nu_mean) / static_cast<double>(scoring_.block);
         r.ms = detail::block_ms(r.innovation, scoring_.skip, scoring_.block);
@@ -138,12 +130,16 @@ private:
         return ps[static_cast<std::size_t>(i)];
     }
 
-    /// Empty where `known` has them.
-    std::vector<std::vector<double>> slopes(const fit_result& r,
-                                            const std::vector<const std::vector<double>*>& known) const {
+    friend class fit_course;
+
+    using columns = std::vector<const std::vector<double>*>;
+
+    /// The model with each parameter moved by a step, but those whose slope is known.
+    static std::vector<plant_model> moved(const fit_result& r, const columns& known,
+                                          std::vector<std::size_t>& which, std::vector<double>& step) {
         std::vector<plant_model> plants;
-        std::vector<std::size_t> which;
-        std::vector<double> step;
+        which.clear();
+        step.clear();
         for (std::size_t i = 0; i < r.parameters.size(); ++i) {
             if (i < known.size() && known[i]) continue;
             const auto& q = r.parameters[i];
@@ -153,17 +149,14 @@ private:
             plants.push_back(r.plant);
             q.of(plants.back()) = q.from_fit(x + step.back());
         }
-        std::vector<std::vector<double>> moved(plants.size()), out(r.parameters.size());
-        predictor_.run(plants, moved);
-        for (std::size_t j = 0; j < which.size(); ++j) {
-            for (std::size_t k = 0; k < moved[j].size(); ++k)
-                moved[j][k] = (moved[j][k] - r.innovation[k]) / step[j];
-            out[which[j]] = std::move(moved[j]);
-        }
-        return out;
+        return plants;
+    }
+    static std::vector<double> slope(std::vector<double> moved, const fit_result& r, double step) {
+        const double inverse = 1 / step;
+        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation[k]) * inverse;
+        return moved;
     }
 
-    using columns = std::vector<const std::vector<double>*>;
     static columns pointers(const std::vector<std::vector<double>>& d, const columns& known = {}) {
         columns out;
         for (std::size_t i = 0; i < d.size(); ++i)
@@ -231,13 +224,13 @@ private:
             if (open.empty()) break;
             Eigen::VectorXd rhs = -(g + a * (d - masked(d, open)));
             const Eigen::MatrixXd sub = a(open, open);
-            const Eigen::VectorXd solved = sub.ldlt().solve(rhs(open).eval());
+            const Eigen::VectorXd free = solved(sub, Eigen::VectorXd(rhs(open)));
             bool clipped = false;
             for (std::size_t j = 0; j < open.size(); ++j) {
                 const auto i = open[j];
                 const auto& q = p(r.parameters, i);
                 const double low = q.to_fit(q.low) - r.x[i], high = q.to_fit(q.high) - r.x[i];
-                d[i] = solved[static_cast<Eigen::Index>(j)];
+                d[i] = free[static_cast<Eigen::Index>(j)];
                 if (!(d[i] >= low && d[i] <= high)) {
                     d[i] = std::clamp(std::isfinite(d[i]) ? d[i] : 0.0, low, high);
                     fixed[static_cast<std::size_t>(i)] = clipped = true;
@@ -264,5 +257,135 @@ private:
     predictor predictor_;
     scoring scoring_;
 };
+
+/// One fit on its way: it asks for the innovations of some plants, takes them, and asks again, until it is done. Many courses that
+/// ask at the same time share the lanes of a pass (fitter::run).
+class fit_course {
+public:
+    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
+    /// at one more effect: the others' slopes are those of the model without it.
+    /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again. Slopes cost a pass
+    /// for each parameter, a step costs one; the last steps are taken with new slopes in any case.
+    fit_course(const fitter& f, const plant_model& start, const std::vector<parameter>& ps, int iterations,
+               fitter::columns known = {}, int chords = 4)
+        : fitter_(&f), known_(std::move(known)), iterations_(iterations),
+          chords_(chords), best_{.plant = start,
+                                 .parameters = ps,
+                                 .x = Eigen::VectorXd(static_cast<Eigen::Index>(ps.size()))} {
+        for (std::size_t i = 0; i < ps.size(); ++i)
+            best_.x[static_cast<Eigen::Index>(i)] = ps[i].to_fit(ps[i].start);
+        fitter::put(best_.plant, ps, best_.x);
+    }
+
+    /// Puts the plants that the next step needs behind `plants`; none when the fit is done.
+    void ask(std::vector<plant_model>& plants) {
+        if (stage_ == stage::done) return;
+        if (stage_ == stage::begin) plants.push_back(best_.plant);
+        if (stage_ == stage::trial) plants.push_back(trial_.plant);
+        if (stage_ != stage::trial) {
+            auto each = fitter::moved(best_, known_, which_, step_);
+            plants.insert(plants.end(), std::make_move_iterator(each.begin()),
+                          std::make_move_iterator(each.end()));
+        }
+    }
+    /// Takes their innovations; returns how many it had asked for.
+    std::size_t take(std::span<std::vector<double>> innovation, std::span<const double> choices) {
+        switch (stage_) {
+        case stage::begin:
+            best_.innovation.swap(innovation[0]);
+            fitter_->judge(best_, choices[0]);
+            take_slopes(innovation.subspan(1));
+            next();
+            return 1 + which_.size();
+        case stage::slopes:
+            take_slopes(innovation);
+            since_ = 0;
+            old_ = 0;
+            if (!better_) damping_ = damping_before_;
+            next();
+            return which_.size();
+        case stage::trial:
+            trial_.innovation.swap(innovation[0]);
+            fitter_->judge(trial_, choices[0]);
+            compare();
+            return 1;
+        case stage::done:
+            break;
+        }
+        return 0;
+    }
+    fit_result& result() { return best_; }
+
+private:
+    enum class stage { begin, trial, slopes, done };
+
+    void take_slopes(std::span<std::vector<double>> moved) {
+        slopes_.resize(best_.parameters.size());
+        for (std::size_t j = 0; j < which_.size(); ++j)
+            slopes_[which_[j]] = fitter::slope(std::move(moved[j]), best_, step_[j]);
+        fitter_->linearize(best_, slopes_, known_);
+    }
+    /// The next iteration, if there is one.
+    void next() {
+        if (++iteration_ > iterations_ || best_.x.size() == 0) {
+            stage_ = stage::done;
+            return;
+        }
+        better_ = false;
+        gain_ = 0;
+        damping_before_ = damping_;
+        attempt_ = 0;
+        try_step();
+    }
+    void try_step() {
+        trial_.plant = best_.plant;
+        trial_.parameters = best_.parameters;
+        trial_.x = fitter_->step(best_, damping_);
+        fitter::put(trial_.plant, trial_.parameters, trial_.x);
+        stage_ = stage::trial;
+    }
+    void compare() {
+        if (trial_.objective < best_.objective) {
+            gain_ = best_.objective - trial_.objective;
+            trial_.quadratic = std::move(best_.quadratic);
+            trial_.quadratic_mean = std::move(best_.quadratic_mean);
+            std::swap(best_, trial_);
+            better_ = true;
+            damping_ = std::max(1e-6, damping_ / 24);
+        }
+        damping_ *= 8;
+        if (!better_ && ++attempt_ < 6) return try_step();
+        since_ += gain_;
+        const bool settled = gain_ < 0.1; // a hair beside the margins of the selection
+        if ((settled && since_ < 1) || iteration_ == iterations_) {
+            if (better_) fitter_->follow(best_, slopes_, known_);
+            stage_ = stage::done;
+        } else if (settled || ++old_ > chords_) {
+            stage_ = stage::slopes;
+        } else {
+            fitter_->follow(best_, slopes_, known_);
+            next();
+        }
+    }
+
+    const fitter* fitter_;
+    fitter::columns known_;
+    int iterations_, chords_, iteration_ = 0, attempt_ = 0, old_ = 0;
+    stage stage_ = stage::begin;
+    fit_result best_, trial_{};
+    std::vector<std::vector<double>> slopes_{};
+    std::vector<std::size_t> which_{};
+    std::vector<double> step_{};
+    double damping_ = 1e-3, damping_before_ = 0, since_ = 0,
+           gain_ = 0; // since: what was gained with these slopes
+    bool better_ = false;
+};
+
+inline fit_result fitter::fit(const plant_model& start, const std::vector<parameter>& ps,
+                              int iterations) const {
+    fit_course course(*this, start, ps, iterations);
+    run(std::span(&course, 1));
+    return std::move(course.result());
+}
 
 } // namespace quadrant::diagnosis

@@ -14,10 +14,12 @@ namespace quadrant::diagnosis {
 struct friction_contact {
     static constexpr std::size_t most = 4;
     std::size_t elements = 1;
-    double length = 2e-7; ///< deflection at which the mean element slips [m], geometric mean
-    double attraction = std::numeric_limits<double>::infinity(); ///< C: a spring that slips goes to its share so [N/s]
-    double damping = 0;   ///< of an element that sticks: force stiffness * damping * velocity, as in LuGre [s]
-    double spread = 1;    ///< ratio of the lengths of neighbouring elements
+    double length =
+        0; ///< deflection at which the mean element slips [m], geometric mean; above 0 where friction acts
+    double attraction =
+        std::numeric_limits<double>::infinity(); ///< C: a spring that slips goes to its share so [N/s]
+    double damping = 0; ///< of an element that sticks: force stiffness * damping * velocity, as in LuGre [s]
+    double spread = 1;  ///< ratio of the lengths of neighbouring elements
     std::array<double, most> weights{1, 0, 0, 0};    ///< shares of the level
     std::array<double, most> lengths_as_described{}; ///< all above 0: these instead of length and spread
 

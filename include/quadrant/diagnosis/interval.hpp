@@ -21,7 +21,7 @@ inline Eigen::MatrixXd covariance(const candidate& c, const scoring& s) {
             scatter(i, i) += 1 / (p.spread * p.spread);
         }
     h.diagonal() *= 1 + 1e-9;
-    const Eigen::MatrixXd inverse = h.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+    const Eigen::MatrixXd inverse = solved<Eigen::MatrixXd>(h, Eigen::MatrixXd::Identity(n, n));
     return inverse * scatter * inverse;
 }
 

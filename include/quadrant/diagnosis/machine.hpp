@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "axis_words.hpp"
-#include "own_force.hpp"
+#include "own_law.hpp"
 
 #include <functional>
 #include <map>
@@ -14,6 +14,8 @@
 /// Field names are the file's keys, so that a message, the file and the code say the same word; all values SI.
 /// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad and N m.
 namespace quadrant::diagnosis {
+
+struct effect;
 
 /// Motor, moving mass and friction of an axis, as the simulation has them.
 struct plant_description {
@@ -30,7 +32,9 @@ struct plant_description {
     std::optional<double> presliding_length_m;        ///< deflection at 1 - 1/e of the Coulomb level
     std::optional<double> presliding_damping_s;       ///< of the contact before it slips, over its stiffness
     std::vector<double> gms_weights, gms_stiffness_N_per_m; ///< one entry an element; the weights add up to 1
-    std::optional<double> gms_attraction_N_per_s; ///< of an element that slips to its share; absent: at once
+    /// How fast a slipping element reaches its limit: the attraction C of the Maxwell-slip law. Absent: at
+    /// once.
+    std::optional<double> gms_attraction_N_per_s;
     std::optional<double> friction_position_amplitude, friction_position_period_m, friction_position_phase_rad;
     std::optional<double> friction_drift, friction_drift_time_s;
     std::optional<double> mode_mass_kg, mode_frequency_Hz, mode_damping; ///< second mass, part of mass_kg
@@ -131,13 +135,16 @@ struct axis_description {
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
     axis_kind kind = axis_kind::linear;
-    /// A force of the caller's own, with the values of its parameters: code, which no file holds.
-    struct valued_force {
-        const own_force* force;
-        own_force::values values;
+    /// A law that the simulation has, with its values: of an effect of the list, or of the caller's own, which
+    /// no file holds.
+    struct valued_law {
+        const own_law* law;
+        own_law::values values;
     };
-    std::vector<own_suspect> own_effects{}; ///< beside those of the list (own_effect.hpp)
-    std::vector<valued_force> own_forces{}; ///< that the simulation has
+    std::vector<valued_law> laws{};
+    /// Numbers of keys that have neither a member above nor a law, by key (machine_key.hpp).
+    std::map<std::string, std::vector<double>, std::less<>> numbers{};
+    std::vector<const effect*> own_effects{}; ///< suspects beside those of the list (own_effect.hpp)
 };
 
 /// A whole machine file, checked.

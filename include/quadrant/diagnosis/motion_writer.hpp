@@ -10,13 +10,15 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Writes a reference piece by piece; every piece begins and ends at rest.
+/// Writes a reference piece by piece; every piece begins and ends at rest. `unit`: record_scales::unit() [s].
 class motion_writer {
 public:
-    motion_writer(double start, double period) : x_(start), period_(period) { rest(0.2); }
+    motion_writer(double start, double period, double unit) : x_(start), period_(period), unit_(unit) {
+        rest(0.2);
+    }
 
-    void rest(double seconds) {
-        append(seconds, [](double) { return 0.0; });
+    void rest(double units) {
+        append(units * unit_, [](double) { return 0.0; });
     }
     /// Constant speed between ramps of the shape (1 - cos)/2; a stroke too short for the speed takes a lower one.
     void stroke(double length, double speed, double acceleration) {
@@ -53,14 +55,16 @@ public:
     const std::vector<double>& written() const { return out_; }
 
 private:
-    double x_, at_ = x_, period_;
+    double x_, at_ = x_, period_, unit_;
     std::vector<double> out_{x_};
 };
 
-/// Tones at equal ratios up to a tenth of the sample rate or 200 Hz, of equal acceleration, with Schroeder's phases.
+/// Tones at equal ratios up to a tenth of the sample rate or 200 cycles in a unit of time, of equal acceleration, with
+/// Schroeder's phases.
 class multi_sine {
 public:
-    explicit multi_sine(double period) : top_Hz(std::min(200.0, 0.1 / period)), bottom_Hz(0.1 * top_Hz) {}
+    multi_sine(double period, double unit)
+        : top_Hz(std::min(200 / unit, 0.1 / period)), bottom_Hz(0.1 * top_Hz), unit_(unit) {}
 
     double top_Hz, bottom_Hz;
 
@@ -81,13 +85,14 @@ public:
     }
     /// Position at scale 1, faded in and out at the ends of `length`.
     double at(double t, double length) const {
-        const double edge = std::min(0.2, length / 4);
+        const double edge = std::min(0.2 * unit_, length / 4);
         const double fade = std::clamp(std::min(t, length - t) / edge, 0.0, 1.0);
         return fade * fade * (3 - 2 * fade) * sum(t, 2);
     }
 
 private:
     static constexpr int tones = 12;
+    double unit_;
     double angular(int i) const {
         return 2 * std::numbers::pi * bottom_Hz * std::pow(top_Hz / bottom_Hz, i / (tones - 1.0));
     }

@@ -6,13 +6,13 @@ namespace quadrant::diagnosis::detail {
 
 /// The log of one axis with the acceleration of the axis of its kind that moves most beside it, zero-phase filtered to the
 /// bandwidth of the residual force: what cross-coupling would follow.
-inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period) {
+inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period,
+                               double bandwidth_Hz) {
     axis_log out = own;
     double most = 0;
     for (const axis_log& other : log.axes) {
         if (other.name == own.name || other.still || other.kind != own.kind) continue;
-        const double bandwidth = residual_bandwidth_Hz(period);
-        auto a = derivative(derivative(zero_phase(other.position, bandwidth, period), period), period);
+        auto a = derivative(derivative(zero_phase(other.position, bandwidth_Hz, period), period), period);
         if (const double size = rms(a); size > most) {
             most = size;
             out.other_acceleration = std::move(a);

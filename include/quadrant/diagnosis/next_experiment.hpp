@@ -118,7 +118,8 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
     out.gain_of_log = std::max(0.0, log);
     const double period = c.record.period;
     const auto motions =
-        motions_for(names, standard_motions(shown_by(c.log.reference, period), period, c.resolution));
+        motions_for(names, standard_motions(shown_by(c.log.reference, period, c.record.scale.corner_Hz), period,
+                                            c.record.scale));
     if (motions.empty()) {
         out.motion = names.front().name->exciting_motion;
         out.finding = "not simulated: the reference of this log shows no travel and speed to stay inside";
@@ -126,7 +127,7 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
     }
     axis_description axis = c.axis;
     if (axis.controller) axis.controller = c.mended();
-    const proving_ground ground(axis, period, c.resolution, c.noise);
+    const proving_ground ground(axis, period, c.resolution, c.noise, c.record.scale);
     const separation best = best_motion(ground, motions, names, c.limits.threads);
     const auto inside = worded("%zu motions inside the travel, speed and acceleration of this log", best.tried);
     const auto take = [&](std::size_t motion) {

@@ -68,9 +68,9 @@ estimate share_on(const std::vector<double>& residual, const axis_record& r,
     });
 }
 
-/// Rows within 50 ms of a change of the measured direction.
+/// Rows within a block of a change of the measured direction.
 inline std::vector<bool> near_reversal(const axis_record& r) {
-    const auto width = static_cast<std::size_t>(0.05 / r.period);
+    const std::size_t width = r.score.block;
     std::vector<bool> out(r.velocity.size(), false);
     for (std::size_t k = 1; k < r.velocity.size(); ++k)
         if (r.velocity[k] * r.velocity[k - 1] < 0)
@@ -96,7 +96,7 @@ inline std::vector<place> regimes(const std::vector<double>& residual, const axi
     std::vector<place> out;
     std::vector<int> bin(n, -1);
     const auto binned = [&](const std::vector<double>& x, int bins, auto apart) {
-        double low = 0, high = 0;
+        double low = x[0], high = x[0];
         for (std::size_t k = 0; k < n; ++k) {
             low = std::min(low, x[k]);
             high = std::max(high, x[k]);
@@ -121,7 +121,7 @@ inline std::vector<place> regimes(const std::vector<double>& residual, const axi
                    worded("follows the velocity, reversals apart: mean %+.2f N forwards, %+.2f N backwards",
                           nf > 0 ? forward / nf : 0, nb > 0 ? backward / nb : 0),
                    binned(r.velocity, 24, at_reversal), ""});
-    out.push_back({"reversal", "", "within 50 ms of a change of direction",
+    out.push_back({"reversal", "", worded("within %.2g s of a change of direction", r.scale.block()),
                    detail::share_on(residual, r, draws, at_reversal), ""});
     const std::vector<double> position(r.position.begin(), r.position.end());
     out.push_back(
@@ -133,7 +133,7 @@ inline std::vector<place> regimes(const std::vector<double>& residual, const axi
     // Frequency: energy by band, cut with the zero-phase filter so that the bands add up.
     std::vector<double> rest = residual;
     double lower = 0;
-    for (double upper : {5.0, 20.0, r.bandwidth_Hz}) {
+    for (double upper : {r.bandwidth_Hz / 20, r.bandwidth_Hz / 5, r.bandwidth_Hz}) {
         const auto below = upper < r.bandwidth_Hz ? zero_phase(residual, upper, r.period) : residual;
         std::vector<double> energy(r.segments, 0.0), band(r.segments, 0.0);
         for (std::size_t k = r.score.skip; k < n; ++k) {
@@ -149,24 +149,24 @@ inline std::vector<place> regimes(const std::vector<double>& residual, const axi
             }
             return e > 0 ? std::min(1.0, b / e) : 0;
         });
-        out.push_back({"frequency", "", worded("between %.0f and %.0f Hz", lower, upper), share, ""});
+        out.push_back({"frequency", "", worded("between %.3g and %.3g Hz", lower, upper), share, ""});
         rest = below;
         lower = upper;
     }
     return out;
 }
 
-/// Amplitude density of a signal [unit/sqrt(Hz)] by averaged periodograms of 1 s with a Hann window, half overlapped,
-/// at 1, 2, 3 ... Hz up to the bandwidth. Direct sums: a report needs a hundred lines, not a library.
+/// Amplitude density of a signal [unit/sqrt(Hz)] by averaged periodograms with a Hann window, half overlapped, at a hundred
+/// lines up to the bandwidth, each window as long as the cycle of the first. Direct sums: a report needs no library.
 inline void spectrum(const std::vector<double>& x, double period, double up_to_Hz,
                      std::vector<double>& frequency, std::vector<double>& density) {
     frequency.clear();
     density.clear();
-    const auto window = std::min(x.size(), static_cast<std::size_t>(1 / period));
+    const auto window = std::min(x.size(), static_cast<std::size_t>(100 / (up_to_Hz * period)));
     if (window < 8) return;
     const double weight = 3.0 / 8.0; // mean square of the Hann window
-    for (int hertz = 1; hertz <= up_to_Hz; ++hertz) {
-        const double f = hertz;
+    for (int line = 1; line <= 100; ++line) {
+        const double f = up_to_Hz * line / 100;
         double power = 0, count = 0;
         for (std::size_t first = 0; first + window <= x.size(); first += window / 2) {
             double re = 0, im = 0, c = 1, s = 0;

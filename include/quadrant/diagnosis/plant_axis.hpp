@@ -7,31 +7,33 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Laws of the caller's own at the joints of one plant. They are called through a pointer that this program set, so that code for
-/// another instruction set may call them too.
+/// Laws of effects at the joints of one plant. They are called through a pointer that this program set, so that code for another
+/// instruction set may call them too.
 class plant_laws {
 public:
-    using state = own_forces::memories;
+    using state = own_laws::memories;
+    static constexpr std::size_t joints = 6;
 
     plant_laws() = default;
-    explicit plant_laws(const own_forces& laws)
-        : laws_(&laws), present_(!laws.empty()),
-          ask_([](const own_forces& of, const joint_point<double>& p, state& remembered) {
-              return of.at({p.position, p.velocity, p.command, p.time, p.step}, remembered);
-          }) {}
-    bool at(joint where) const noexcept { return present_ && where == joint::force; }
-    double operator()(joint, const joint_point<double>& p, state& remembered) const {
-        return ask_(*laws_, p, remembered);
+    explicit plant_laws(const own_laws& laws)
+        : laws_(&laws), ask_([](const own_laws& of, joint where, const law_point& p, state& remembered) {
+              return of.sum(where, p, remembered);
+          }) {
+        for (std::size_t i = 0; i < joints; ++i) at_[i] = laws.any_at(static_cast<joint>(i));
     }
-    double operator()(joint where, const joint_point<double>& p, const state& remembered) const {
+    bool at(joint where) const noexcept { return at_[static_cast<std::size_t>(where)]; }
+    double operator()(joint where, const law_point& p, state& remembered) const {
+        return ask_(*laws_, where, p, remembered);
+    }
+    double operator()(joint where, const law_point& p, const state& remembered) const {
         state unchanged = remembered;
         return (*this)(where, p, unchanged);
     }
 
 private:
-    const own_forces* laws_ = nullptr;
-    bool present_ = false;
-    double (*ask_)(const own_forces&, const joint_point<double>&, state&) = nullptr;
+    const own_laws* laws_ = nullptr;
+    std::array<bool, joints> at_{};
+    double (*ask_)(const own_laws&, joint, const law_point&, state&) = nullptr;
 };
 
 /// The same for plants side by side: asked lane by lane, where a plant has any.
@@ -45,10 +47,10 @@ public:
     template <class AxisOf> lane_laws(std::size_t count, const AxisOf& axis_of) {
         for (std::size_t i = 0; i < width; ++i) {
             laws_[i] = axis_of(i < count ? i : count - 1).laws;
-            present_ = present_ || laws_[i].at(joint::force);
+            for (std::size_t j = 0; j < at_.size(); ++j) at_[j] = at_[j] || laws_[i].at(static_cast<joint>(j));
         }
     }
-    bool at(joint where) const noexcept { return present_ && where == joint::force; }
+    bool at(joint where) const noexcept { return at_[static_cast<std::size_t>(where)]; }
     Real operator()(joint where, const joint_point<Real>& p, state& remembered) const {
         Real out(0);
         for (std::size_t i = 0; i < width; ++i)
@@ -67,7 +69,7 @@ public:
 
 private:
     std::array<plant_laws, width> laws_{};
-    bool present_ = false;
+    std::array<bool, plant_laws::joints> at_{};
 };
 
 } // namespace detail

@@ -44,7 +44,7 @@ struct plant_model {
     double spring = 0;         ///< [N/m], about position 0
     double coupling = 0;       ///< of the other axis' acceleration
     harmonics cogging;         ///< [N] over position
-    diagnosis::own_forces own; ///< forces that no list names
+    own_laws own;              ///< laws of effects that have no member here
     /// A second mass on a spring, not seen by the encoder.
     struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
@@ -58,12 +58,13 @@ struct plant_model {
     harmonics cyclic; ///< [m] over position
 
     plant_model() = default;
-    explicit plant_model(const plant_description& d) {
+    /// `give`: of a contact that is not described, record_scales::give() [m].
+    plant_model(const plant_description& d, double give) {
         axis_description a;
         a.plant = d;
-        *this = plant_model(a);
+        *this = plant_model(a, give);
     }
-    explicit plant_model(const axis_description& a) {
+    plant_model(const axis_description& a, double give) {
         const plant_description& d = a.plant;
         delay = d.delay_s;
         loss = a.actuator.loss_probability.value_or(0);
@@ -79,6 +80,7 @@ struct plant_model {
         friction.stribeck_velocity = d.stribeck_velocity_m_per_s.value_or(1);
         friction.viscous_asymmetry = d.viscous_asymmetry.value_or(0);
         friction.coulomb_asymmetry = d.coulomb_asymmetry.value_or(0);
+        friction.contact.length = give;
         if (d.presliding_length_m) friction.contact.exponential(*d.presliding_length_m);
         if (!d.gms_weights.empty()) describe_contact(d);
         friction.contact.attraction = d.gms_attraction_N_per_s.value_or(friction.contact.attraction);
@@ -99,7 +101,7 @@ struct plant_model {
             cutting = {1 / *a.process.fundamental_Hz, a.process.force_N, a.process.phase_rad};
         cutting_mean = a.process.mean_N.value_or(0);
         cyclic = one(a.encoder.cyclic_m, a.encoder.cyclic_period_m, a.encoder.cyclic_phase_rad);
-        for (const auto& f : a.own_forces) own.of(*f.force) = f.values;
+        for (const auto& l : a.laws) own.of(*l.law) = l.values;
     }
 
 private:

@@ -25,7 +25,7 @@ inline const pass_table& passes() { return passes_of<>; }
 struct predictor {
     static constexpr std::size_t abreast = 8; ///< plants in one pass
     double period;                            ///< T [s]
-    double corner_Hz = 60; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
+    double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
     double resolution = 0;                        ///< step of the position [m]
@@ -46,18 +46,18 @@ struct predictor {
         pass(one, command, into, acceleration);
         return 0;
     }
-    /// The same for several plants, some at a time side by side: half the time. One list of innovations a plant, and of
-    /// accelerations where they are asked for.
+    /// The same for several plants, some at a time side by side: a third of the time and less. One list of innovations a plant, of
+    /// accelerations where they are asked for, and of choices likewise.
     void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
-             std::span<std::vector<double>> acceleration = {}) const {
+             std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const {
         for (std::size_t i = 0; i < plants.size();) {
             std::vector<double>* const a = acceleration.empty() ? nullptr : &acceleration[i];
             std::size_t n = 0;
             while (i + n < plants.size() && n < abreast && plants[i + n].loss == 0) ++n;
             if (n > 0)
                 pass(plants.subspan(i, n), command, innovation.subspan(i, n), a);
-            else
-                run(plants[i], innovation[i], a);
+            else if (const double chosen = run(plants[i], innovation[i], a); !choices.empty())
+                choices[i] = chosen;
             i += std::max<std::size_t>(1, n);
         }
     }

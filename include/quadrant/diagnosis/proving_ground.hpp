@@ -18,8 +18,10 @@ struct confusable {
 /// stand-in, with the noise and the steps of the encoder that its log had.
 class proving_ground {
 public:
-    proving_ground(const axis_description& axis, double period, double resolution, double noise)
-        : axis_(axis), period_(period), resolution_(resolution),
+    /// `scale`: of that log.
+    proving_ground(const axis_description& axis, double period, double resolution, double noise,
+                   const record_scales& scale)
+        : axis_(axis), period_(period), resolution_(resolution), scale_(scale),
           sigma_(std::sqrt(std::max(0.0, noise * noise - resolution * resolution / 12))) {
         axis_.encoder.resolution_m = resolution;
         if (!axis_.controller) axis_.controller = stand_in(axis.plant);
@@ -31,7 +33,6 @@ public:
         axis_log log;
         log.name = axis_.name;
         log.reference = m.reference;
-        log.position_step = 1e-12;
         const double start = m.reference[0];
         const double held =
             (plant.spring * start - plant.constant_force - plant.cutting_mean) / plant.force_constant;
@@ -55,7 +56,7 @@ public:
     double gain(const planned_motion& m, const confusable& truth, const confusable& other, bool whole) const {
         const axis_log log = record(truth.model.fit.plant, m);
         if (log.position.empty()) return 0;
-        const axis_record r = prepare(log, period_, resolution_);
+        const axis_record r = prepare(log, period_, resolution_, scale_);
         const candidate own = refitted(r, truth.model, whole ? 30 : first_look);
         candidate best = refitted(r, other.model, whole ? 30 : first_look);
         if (whole) {
@@ -77,7 +78,7 @@ private:
     /// the feedforward of its mass and its viscous friction.
     controller_description stand_in(const plant_description& p) const {
         const double dead_time = p.delay_s + axis_.actuator.lag_s.value_or(0) + 1.5 * period_;
-        const double crossover = std::min(2 * std::numbers::pi * 30, 0.35 / dead_time);
+        const double crossover = std::min(0.5 / scale_.response(), 0.35 / dead_time);
         const double gain = crossover * p.mass_kg / p.force_constant_N_per_V;
         controller_description c;
         c.position_gain_per_s = crossover / 4;
@@ -110,7 +111,9 @@ private:
     }
 
     axis_description axis_;
-    double period_, resolution_, sigma_;
+    double period_, resolution_;
+    record_scales scale_;
+    double sigma_;
 };
 
 } // namespace quadrant::diagnosis

@@ -2,6 +2,7 @@
 #pragma once
 #include "fit.hpp"
 #include "log.hpp"
+#include "scales.hpp"
 #include "signals.hpp"
 
 namespace quadrant::diagnosis {
@@ -10,26 +11,24 @@ namespace quadrant::diagnosis {
 struct axis_record {
     double period = 0;
     std::span<const double> reference{}, position{}, command{};
-    std::vector<double> velocity{}, acceleration{}; ///< zero-phase, at `smooth_Hz` [m/s], [m/s^2]
+    std::vector<double> velocity{}, acceleration{}; ///< zero-phase, at the corner of `scale` [m/s], [m/s^2]
     std::vector<std::size_t> segment{};             ///< motion segment of every row
     std::size_t segments = 0;
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
-    double volt = 1;         ///< what a volt is for a command in volts: a tenth of the largest, in other units
-    /// Times that travel and speed exceed 1 m and 1 m/s, or 1: a motor's angle is hundreds of radians, and so much larger are
-    /// the lengths and speeds that are tried.
-    double reach = 1, pace = 1;
+    record_scales scale{};   ///< what is long, fast and strong here
     predictor observer;
     scoring score{};
 };
 
 /// Rows where one motion ends and the next begins: the velocity of the reference changes sign, starts or stops.
-/// Segments are at least 0.25 s long and at most 1.5 s; they, not samples, are left out and resampled, because the
+/// Segments are at least five blocks long and at most thirty; they, not samples, are left out and resampled, because the
 /// samples inside one motion say the same thing again and again.
-inline std::vector<std::size_t> motion_segments(std::span<const double> motion, double period) {
-    const auto shortest = std::max<std::size_t>(1, static_cast<std::size_t>(0.25 / period));
-    const auto longest = static_cast<std::size_t>(1.5 / period);
-    const auto v = derivative(zero_phase(motion, 20, period), period);
+inline std::vector<std::size_t> motion_segments(std::span<const double> motion, double period,
+                                                const record_scales& scale) {
+    const auto shortest = std::max<std::size_t>(1, static_cast<std::size_t>(5 * scale.block() / period));
+    const auto longest = static_cast<std::size_t>(30 * scale.block() / period);
+    const auto v = derivative(zero_phase(motion, scale.corner_Hz / 3, period), period);
     double peak = 0;
     for (double x : v) peak = std::max(peak, std::abs(x));
     const auto sense = [&](double x) { return x > 1e-4 * peak ? 1 : x < -1e-4 * peak ? -1 : 0; };
@@ -62,8 +61,6 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
     return zero_phase(raw, bandwidth_Hz, period);
 }
 
-inline double residual_bandwidth_Hz(double period) { return std::min(100.0, 0.15 / period); }
-
 /// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
 inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz) {
     std::vector<double> impulse(4001, 0.0);
@@ -84,32 +81,28 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
-inline axis_record prepare(const axis_log& log, double period, double resolution) {
+/// `scale`: of this log, or of the one that it is compared with.
+inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
     axis_record r{.period = period,
                   .reference = log.reference,
                   .position = log.position,
                   .command = log.command,
+                  .scale = scale,
                   .observer = {.period = period,
+                               .corner_Hz = scale.corner_Hz,
                                .position = log.position,
                                .command = log.command,
                                .other_acceleration = log.other_acceleration,
-                               .resolution = std::max(resolution, log.position_step)}};
-    const auto smooth = zero_phase(log.position, 60, period);
+                               .resolution = std::max({resolution, log.position_step, scale.count})}};
+    const auto smooth = zero_phase(log.position, scale.corner_Hz, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
-    const auto [low, high] = std::minmax_element(smooth.begin(), smooth.end());
-    r.reach = std::max(1.0, *high - *low);
-    for (double v : r.velocity) r.pace = std::max(r.pace, std::abs(v));
-    r.segment = motion_segments(log.reference, period);
+    r.segment = motion_segments(log.reference, period, scale);
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
-    r.bandwidth_Hz = residual_bandwidth_Hz(period);
-
-    r.resolution = std::max({resolution, log.position_step, 1e-12});
-    double largest = 0;
-    for (double u : log.command) largest = std::max(largest, std::abs(u));
-    if (log.command_unit != "V" && largest > 0) r.volt = largest / 10;
+    r.bandwidth_Hz = scale.bandwidth_Hz();
+    r.resolution = std::max({resolution, log.position_step, scale.count});
     auto& s = r.score;
-    s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.01 / period)));
+    s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
     s.block = 5 * s.mean;
     s.skip = s.block;
     s.floor = 0.4 * r.resolution;

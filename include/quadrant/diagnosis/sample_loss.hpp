@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 namespace quadrant::diagnosis {
@@ -74,7 +75,7 @@ private:
           step_(command.size(), 0.0), pulse_(step_), held_(step_), left_(step_), gain_(step_),
           weight_(command.size(), a.probability) {
         for (std::size_t k = 1; k < step_.size(); ++k) step_[k] = command[k - 1] - command[k];
-        variance_ = neighbourhood(innovation_, 0);
+        variance_ = neighbourhood(innovation_, square(reading_noise_));
     }
 
     static double square(double x) { return x * x; }
@@ -85,7 +86,8 @@ private:
             squares.clear();
             for (std::size_t k = from; k < std::min(e.size(), from + window); ++k)
                 squares.push_back(square(e[k]));
-            out.push_back(std::max(least, quantile(squares, 0.5) / 0.455) + 1e-30);
+            out.push_back(
+                std::max({least, quantile(squares, 0.5) / 0.455, std::numeric_limits<double>::min()}));
         }
         return out;
     }

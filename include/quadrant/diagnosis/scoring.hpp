@@ -5,8 +5,8 @@
 
 namespace quadrant::diagnosis {
 
-/// How innovations become a score. Blocks of 50 ms; two channels: the innovation itself, and its mean over 10 ms,
-/// which is blind to the encoder's rounding and sees slow forces. A block counts nu/2 log(mean square + floor^2):
+/// How innovations become a score. Two channels: the innovation itself, and its mean over a fifth of a block, which is
+/// blind to the encoder's rounding and sees slow forces. A block counts nu/2 log(mean square + floor^2):
 /// free of scale, so that pulses and quiet stretches both count, and bounded below by the floor. nu is the effective
 /// number of independent samples of a block, far below the number of rows because innovations are correlated.
 struct scoring {

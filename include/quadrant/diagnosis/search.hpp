@@ -16,7 +16,7 @@ public:
     search(const axis_record& record, const axis_description& axis, std::vector<std::string> excluded, rules r,
            progress tell)
         : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
-        given_.fit.plant = plant_model(axis);
+        given_.fit.plant = plant_model(axis, record.scale.give());
         given_.fit.parameters = {};
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
@@ -25,7 +25,7 @@ public:
             -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
-        start.fit.parameters = calibration(axis.plant, axis.tolerance);
+        start.fit.parameters = calibration(axis, record.scale.give());
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -119,8 +119,7 @@ public:
             return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end();
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
-        for (const own_suspect& own : axis_.own_effects)
-            if (allowed(own.searched)) out.push_back(own.searched);
+        std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
         return out;
     }
 
@@ -291,17 +290,42 @@ private:
         fit_result here = from.fit;
         fit.evaluate(here);
         const auto slopes = fit.slopes(here);
-        on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
-            candidate& c = models[which[i]];
-            c = sketch(record_, from, *c.effects.back(), look, slopes, rules_.first_look);
+        in_groups(which, 4, [&](std::span<const std::size_t> some) {
+            std::vector<first_look> looks;
+            std::vector<fit_course> courses;
+            for (const std::size_t i : some) {
+                looks.emplace_back(fit, from, *models[i].effects.back(), look, slopes, rules_.first_look);
+                std::move(looks.back().courses().begin(), looks.back().courses().end(),
+                          std::back_inserter(courses));
+            }
+            fit.run(std::span(courses));
+            auto next = courses.begin();
+            for (std::size_t j = 0; j < some.size(); ++j) {
+                for (fit_course& c : looks[j].courses()) c = std::move(*next++);
+                models[some[j]].fit = looks[j].best();
+                models[some[j]].total = -std::numeric_limits<double>::infinity();
+            }
         });
     }
     /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by promise.
     void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models) const {
         std::stable_sort(which.begin(), which.end(),
                          [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
-        on_all_cores(which.size(), rules_.threads, [&](std::size_t i) {
-            i < most ? finish(record_, models[which[i]]) : judge(record_, models[which[i]]);
+        const std::size_t fitted = std::min(most, which.size());
+        in_groups(std::span(which).first(fitted), 2, [&](std::span<const std::size_t> some) {
+            std::vector<candidate*> pair;
+            for (const std::size_t i : some) pair.push_back(&models[i]);
+            finish(record_, pair);
+        });
+        in_groups(std::span(which).subspan(fitted), 1,
+                  [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
+    }
+    /// use(a few of these), on all cores. The same few whatever the number of cores, so that the result is the same.
+    template <class Use>
+    void in_groups(std::span<const std::size_t> which, std::size_t size, const Use& use) const {
+        on_all_cores((which.size() + size - 1) / size, rules_.threads, [&](std::size_t group) {
+            const std::size_t first = group * size;
+            use(which.subspan(first, std::min(size, which.size() - first)));
         });
     }
     const candidate* tried(const candidate& from, const effect* added) const {

@@ -18,11 +18,14 @@ namespace detail {
 class tracking_forecast {
 public:
     tracking_forecast(const axis_description& axis, const axis_log& log, double period)
-        : axis_(axis), log_(log), period_(period), skip_(static_cast<std::size_t>(0.05 / period)) {
+        : axis_(axis), log_(log), period_(period) {
         const double count = observed_count(log.position, log.position_step);
         const double resolution = std::max({axis.encoder.resolution_m, log.position_step, count});
-        const axis_record record = prepare(log, period, resolution);
-        plant_ = restarted(plant_model(axis), record);
+        const axis_record record =
+            prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution));
+        scale_ = record.scale;
+        skip_ = record.score.skip;
+        plant_ = restarted(plant_model(axis, scale_.give()), record);
         std::vector<double> innovation;
         record.observer.run(plant_, innovation);
         noise_ = position_noise(innovation, record.score, resolution);
@@ -55,7 +58,7 @@ public:
         std::vector<std::vector<figures>> after(n, std::vector<figures>(plants));
         on_all_cores(plants, 0, [&](std::size_t i) {
             const axis_description& axis = i < inside.size() ? *inside[i] : *at_ends[i - inside.size()];
-            plant_model plant(axis);
+            plant_model plant(axis, scale_.give());
             plant.cutting_start = plant_.cutting_start;
             const auto bare = loop(axis, plant, {}, {});
             for (std::size_t c = 0; c < n; ++c)
@@ -102,9 +105,10 @@ private:
         const double rows = std::max(1.0, static_cast<double>(error.size()) - static_cast<double>(skip_));
         out.rms = std::sqrt(e2 / rows);
         out.command = std::sqrt(u2 / rows);
-        const auto all = analysis::quadrant_glitches(
-            reference, position, duration::from_value(period_),
-            {.window = duration::from_value(std::max(0.1, period_)), .settle = duration::from_value(0.05)});
+        const auto all =
+            analysis::quadrant_glitches(reference, position, duration::from_value(period_),
+                                        {.window = duration::from_value(std::max(2 * scale_.block(), period_)),
+                                         .settle = duration::from_value(scale_.block())});
         for (const auto& g : all) out.glitch += std::abs(g.peak.value()) / static_cast<double>(all.size());
         return out;
     }
@@ -133,7 +137,8 @@ private:
     const axis_description& axis_;
     const axis_log& log_;
     double period_;
-    std::size_t skip_;
+    std::size_t skip_ = 0;
+    record_scales scale_;
     plant_model plant_;
     double noise_ = 0;
     std::vector<double> error_;

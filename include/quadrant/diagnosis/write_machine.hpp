@@ -15,31 +15,20 @@ nlohmann::ordered_json numbers_json(const std::array<number_key<Target>, N>& key
     return out;
 }
 
-inline void put_unless_empty(nlohmann::ordered_json& box, const char* key, const std::vector<double>& values) {
-    if (!values.empty()) box[key] = values;
-}
-
-inline nlohmann::ordered_json plant_json(const axis_description& a) {
-    const plant_description& p = a.plant;
-    auto out = numbers_json(plant_keys, p);
-    if (!is_force(a.command_unit)) out["force_constant_N_per_" + a.command_unit] = p.force_constant_N_per_V;
-    put_unless_empty(out, "cogging_N", p.cogging_N);
-    put_unless_empty(out, "cogging_phase_rad", p.cogging_phase_rad);
-    put_unless_empty(out, "gms_weights", p.gms_weights);
-    put_unless_empty(out, "gms_stiffness_N_per_m", p.gms_stiffness_N_per_m);
-    return out;
-}
-
-inline nlohmann::ordered_json actuator_json(const actuator_description& a) {
-    auto out = numbers_json(actuator_keys, a);
-    if (a.dac_bits) out["dac_bits"] = *a.dac_bits;
-    return out;
-}
-
-inline nlohmann::ordered_json process_json(const process_description& p) {
-    auto out = numbers_json(process_keys, p);
-    put_unless_empty(out, "force_N", p.force_N);
-    put_unless_empty(out, "phase_rad", p.phase_rad);
+/// What a description says of effects in one box, under the keys of a linear axis.
+inline nlohmann::ordered_json effects_json(std::string_view box, const axis_description& a) {
+    auto out = nlohmann::ordered_json::object();
+    for_each_key(box, [&](const machine_key& k, const effect& e) {
+        std::string key(k.key());
+        if (k.unit_of_command && is_force(a.command_unit)) return;
+        if (k.unit_of_command) key.back() = a.command_unit[0];
+        const auto values = numbers_of(a, k, e);
+        if (values.empty()) return;
+        if (k.shape == key_shape::number)
+            out[key] = values[0];
+        else
+            out[key] = values;
+    });
     return out;
 }
 
@@ -60,28 +49,35 @@ inline nlohmann::ordered_json& place_in(nlohmann::ordered_json& box, std::string
     return (*place)[std::string(key)];
 }
 
-/// The boxes of an axis under the keys of its kind.
-inline nlohmann::ordered_json in_words_of(axis_kind kind, const nlohmann::ordered_json& boxes) {
-    if (kind == axis_kind::linear || !boxes.is_object()) return boxes;
+/// The keys of a box as an axis of this kind has them.
+inline nlohmann::ordered_json in_words_of(axis_kind kind, std::string_view box,
+                                          const nlohmann::ordered_json& content) {
+    if (kind == axis_kind::linear || !content.is_object()) return content;
     nlohmann::ordered_json out = nlohmann::ordered_json::object();
-    for (const auto& [key, value] : boxes.items()) out[key_of(key, kind)] = in_words_of(kind, value);
+    for (const auto& [key, value] : content.items()) {
+        const machine_key* known = key_named(box == "plant" ? key : fmt::format("{}.{}", box, key));
+        out[known ? known->key_for(kind) : key_of(key, kind)] = in_words_of(kind, "", value);
+    }
     return out;
 }
 
 inline nlohmann::ordered_json axis_json(const axis_description& a) {
-    nlohmann::ordered_json tolerance = nlohmann::ordered_json::object(), out = {{"plant", plant_json(a)}};
+    nlohmann::ordered_json tolerance = nlohmann::ordered_json::object(), out;
+    const auto box = [&](std::string_view name, const nlohmann::ordered_json& content) {
+        if (!content.empty()) out[std::string(name)] = in_words_of(a.kind, name, content);
+    };
+    for (const std::string_view name : boxes_of_effects()) {
+        auto content = effects_json(name, a);
+        if (name == "actuator") content.update(numbers_json(actuator_keys, a.actuator));
+        if (name == "actuator" && a.actuator.dac_bits) content["dac_bits"] = *a.actuator.dac_bits;
+        box(name, content);
+    }
     for (const auto& [key, value] : a.tolerance.given)
         if (key != "force_constant" || !is_force(a.command_unit))
             tolerance[key] = value; // there 0 by definition
-    const auto box = [&](const char* name, nlohmann::ordered_json content) {
-        if (!content.empty()) out[name] = std::move(content);
-    };
-    box("tolerance", std::move(tolerance));
-    box("encoder", numbers_json(encoder_keys, a.encoder));
-    box("actuator", actuator_json(a.actuator));
-    box("process", process_json(a.process));
-    if (a.controller && !a.controller->own) out["controller"] = controller_json(*a.controller);
-    return in_words_of(a.kind, out);
+    box("tolerance", tolerance);
+    if (a.controller && !a.controller->own) box("controller", controller_json(*a.controller));
+    return out;
 }
 
 } // namespace detail

@@ -73,9 +73,10 @@ public:
     value operator()(argument v) noexcept {
         const Real side = turned(v, state_.side);
         const value u = at(v, side);
-        if (!finite(v, u)) return out_.hold();
-        state_.side = side;
-        return out_.keep(u);
+        const auto good = finite(v, u);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.side, side);
+        return out_.keep(good, u);
     }
     void reset() noexcept {
         state_ = {};
@@ -84,12 +85,13 @@ public:
     void settle(argument v) noexcept {
         const Real side = turned(v, Real(0));
         const value u = at(v, side);
-        if (!finite(v, u)) return out_.raise();
-        state_.side = side;
-        out_.reset(u);
+        const auto good = finite(v, u);
+        set_where(good, state_.side, side);
+        out_.settle(good, u);
     }
 
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
@@ -101,7 +103,6 @@ private:
                    high = clamped(Real(2) * x + Real(1), Real(-1), Real(1));
         return clamped(side, low, high);
     }
-    static Real clamped(Real x, Real low, Real high) noexcept { return x < low ? low : x > high ? high : x; }
     value at(argument v, Real side) const noexcept {
         return share_ * (law_.slip(v) * side + law_.viscous() * v);
     }

@@ -42,7 +42,7 @@ public:
 
     value operator()(velocity v, acceleration a) noexcept {
         const value u = inertia_ * a + drag_ * v;
-        return finite(u) ? out_.keep(u) : out_.hold();
+        return out_.keep(finite(u), u);
     }
     template <motion_sample Motion> value operator()(const Motion& r) noexcept {
         return (*this)(r.velocity, r.acceleration);
@@ -50,7 +50,7 @@ public:
     void reset() noexcept { out_.reset(); }
     void settle(velocity v, acceleration a) noexcept {
         const value u = inertia_ * a + drag_ * v;
-        finite(u) ? out_.reset(u) : out_.raise();
+        out_.settle(finite(u), u);
     }
 
     /// From the position of a trajectory that knows its derivatives.
@@ -59,6 +59,7 @@ public:
         return s * (s * detail::plain(inertia_) + detail::plain(drag_));
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 

@@ -39,24 +39,30 @@ public:
 
     value operator()(argument x) noexcept {
         const value v = rate_ * (x - state_.x);
-        if (!finite(v)) return out_.hold();
-        state_.x = x;
-        return out_.keep(v);
+        const auto good = finite(v);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.x, x);
+        return out_.keep(good, v);
     }
     void reset() noexcept { settle(argument()); }
     void settle(argument x) noexcept { settle(x, value()); }
     void settle(argument x, value rate) noexcept {
-        if (!finite(x, rate)) return out_.raise();
-        state_.x = x;
-        out_.reset(rate);
+        const auto good = finite(x, rate);
+        set_where(good, state_.x, x);
+        out_.settle(good, rate);
     }
-    void shift(argument by) noexcept { finite(by) ? void(state_.x += by) : out_.raise(); }
+    void shift(argument by) noexcept {
+        const auto good = finite(by);
+        set_where(good, state_.x, state_.x + by);
+        out_.raise(!good);
+    }
 
     std::complex<double> response(frequency f) const {
         const double angle = 2 * std::numbers::pi * f.value() * period_.value();
         return (1.0 - std::polar(1.0, -angle)) / period_.value();
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

@@ -54,6 +54,7 @@ public:
 
     std::complex<double> response(frequency f) const { return quadrant::response(coefficients_, f, period_); }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

@@ -50,16 +50,19 @@ public:
 
     value operator()(argument y) noexcept {
         const value v = keep_ * state_.v + take_ * (y - state_.y);
-        if (!finite(v)) return out_.hold();
-        state_ = {y, v};
-        return out_.keep(v);
+        const auto good = finite(v);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.y, y);
+        set_where(good, state_.v, v);
+        return out_.keep(good, v);
     }
     void reset() noexcept { settle(argument()); }
     void settle(argument y) noexcept { settle(y, value()); }
     void settle(argument y, value rate) noexcept {
-        if (!finite(y, rate)) return out_.raise();
-        state_ = {y, rate};
-        out_.reset(rate);
+        const auto good = finite(y, rate);
+        set_where(good, state_.y, y);
+        set_where(good, state_.v, rate);
+        out_.settle(good, rate);
     }
     void retune(const filtered_derivative& next) noexcept {
         if (next.period_ != period_) return out_.raise();
@@ -67,13 +70,18 @@ public:
         take_ = next.take_;
         given_ = next.given_;
     }
-    void shift(argument by) noexcept { finite(by) ? void(state_.y += by) : out_.raise(); }
+    void shift(argument by) noexcept {
+        const auto good = finite(by);
+        set_where(good, state_.y, state_.y + by);
+        out_.raise(!good);
+    }
 
     std::complex<double> response(frequency f) const {
         const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
         return detail::plain(take_) * (1.0 - back) / (1.0 - detail::plain(keep_) * back);
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

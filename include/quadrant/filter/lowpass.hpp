@@ -49,15 +49,18 @@ public:
 
     value operator()(value x) noexcept {
         const value y = state_.y + b_ * ((x - state_.y) + (state_.x - state_.y));
-        if (!finite(y)) return out_.hold();
-        state_ = {x, y};
-        return out_.keep(y);
+        const auto good = finite(y);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.x, x);
+        set_where(good, state_.y, y);
+        return out_.keep(good, y);
     }
     void reset() noexcept { settle(value()); }
     void settle(value x) noexcept {
-        if (!finite(x)) return out_.raise();
-        state_ = {x, x};
-        out_.reset(x);
+        const auto good = finite(x);
+        set_where(good, state_.x, x);
+        set_where(good, state_.y, x);
+        out_.settle(good, x);
     }
 
     void retune(const lowpass& next) noexcept {
@@ -66,9 +69,10 @@ public:
         given_ = next.given_;
     }
     void shift(value by) noexcept {
-        if (!finite(by)) return out_.raise();
-        state_.x += by, state_.y += by;
-        out_.keep(out_.last() + by);
+        const auto good = finite(by);
+        set_where(good, state_.x, state_.x + by);
+        set_where(good, state_.y, state_.y + by);
+        out_.keep(good, out_.last() + by);
     }
 
     std::complex<double> response(frequency f) const {
@@ -76,6 +80,7 @@ public:
         return detail::plain(b_) * (1.0 + back) / (1.0 - (1 - 2 * detail::plain(b_)) * back);
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

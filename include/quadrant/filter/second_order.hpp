@@ -32,9 +32,10 @@ step(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>&
     const quantity_of<Signal, Real> y = c.b0 * x + state.s[0];
     const quantity_of<Signal, Real> s0 = c.b1 * x - c.a1 * y + state.s[1];
     const quantity_of<Signal, Real> s1 = c.b2 * x - c.a2 * y;
-    if (!finite(y, s0, s1)) return out.hold();
-    state.s = {s0, s1};
-    return out.keep(y);
+    const auto good = finite(y, s0, s1);
+    if (none(good)) return out.hold();
+    set_where(good, state.s, {s0, s1});
+    return out.keep(good, y);
 }
 
 /// As if x had been applied for ever; an x that is not finite only raises the fault flag.
@@ -44,9 +45,9 @@ void settle(const second_order_coefficients<Real>& c, second_order_state<Signal,
     const Real gain = (c.b0 + c.b1 + c.b2) / (1 + c.a1 + c.a2);
     const quantity_of<Signal, Real> y = gain * x;
     const quantity_of<Signal, Real> s0 = y - c.b0 * x, s1 = c.b2 * x - c.a2 * y;
-    if (!finite(y, s0, s1)) return out.raise();
-    state.s = {s0, s1};
-    out.reset(y);
+    const auto good = finite(y, s0, s1);
+    set_where(good, state.s, {s0, s1});
+    out.settle(good, y);
 }
 
 /// Other coefficients in the next step, for a filter whose gain at standstill is one: the state goes on as if the last input
@@ -59,17 +60,16 @@ void retune(second_order_coefficients<Real>& c, const second_order_coefficients<
     const quantity_of<Signal, Real> s0 = state.s[0] + (c.b0 - next.b0) * x,
                                     s1 = state.s[1] + ((next.b2 - c.b2) + (c.a2 - next.a2)) * x;
     c = next;
-    if (finite(s0, s1)) state.s = {s0, s1};
+    set_where(finite(s0, s1), state.s, {s0, s1});
 }
 
 /// As if all inputs so far had been higher by so much, for the same filters.
 template <signal_tag Signal, class Real>
 void shift(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
            held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> by) noexcept {
-    if (!finite(by)) return out.raise();
-    state.s[0] += by - c.b0 * by;
-    state.s[1] += (c.b2 - c.a2) * by;
-    out.keep(out.last() + by);
+    const auto good = finite(by);
+    set_where(good, state.s, {state.s[0] + (by - c.b0 * by), state.s[1] + (c.b2 - c.a2) * by});
+    out.keep(good, out.last() + by);
 }
 
 /// Response of the section at f, as it runs with this period.

@@ -64,7 +64,8 @@ public:
             require_finite("transfer_function.denominator", p.denominator[i]);
         }
         const number a0 = p.denominator[0];
-        require(detail::plain(a0) != 0, "transfer_function.denominator[0]", a0, "must not be zero");
+        require_lanes([&](std::size_t i) { return detail::plain(lane(a0, i)) != 0; },
+                      "transfer_function.denominator[0]", a0, "must not be zero");
         Real sum_of_a(1), size_of_a(1);
         gain sum_of_b{};
         for (std::size_t i = 0; i <= Order; ++i) {
@@ -75,41 +76,42 @@ public:
             a_[i - 1] = Real(p.denominator[i] / a0);
             require_finite("transfer_function.denominator / denominator[0]", a_[i - 1]);
             sum_of_a += a_[i - 1];
-            size_of_a += a_[i - 1] < Real(0) ? -a_[i - 1] : a_[i - 1];
+            size_of_a += absolute(a_[i - 1]);
         }
         // Closer to z = 1 than the coefficients can tell: the sum is nothing but their rounding.
         const double rounding = 4 * double(std::numeric_limits<plain_real>::epsilon());
-        integrates_ = std::abs(detail::plain(sum_of_a)) <= rounding * detail::plain(size_of_a);
-        if (!integrates_) standstill_ = sum_of_b / sum_of_a;
+        integrates_ = less_equal(absolute(sum_of_a), Real(plain_real(rounding)) * size_of_a);
+        if (!all(integrates_)) set_where(!integrates_, standstill_, sum_of_b / sum_of_a);
     }
 
     value operator()(argument x) noexcept {
         std::array<value, Order> next;
         const value y = Order == 0 ? value(b_[0] * x) : value(b_[0] * x + first());
-        bool good = finite(y);
+        Real sum = y.value();
         for (std::size_t i = 0; i < Order; ++i) {
             next[i] = b_[i + 1] * x - a_[i] * y;
             if (i + 1 < Order) next[i] += state_.s[i + 1];
-            good = good && finite(next[i]);
+            sum += next[i].value();
         }
-        if (!good) return out_.hold();
-        state_.s = next;
-        return out_.keep(y);
+        const auto good = finite(sum);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.s, next);
+        return out_.keep(good, y);
     }
     void reset() noexcept { settle(argument(), value()); }
-    void settle(argument x) noexcept { settle(x, integrates_ ? out_.last() : value(standstill_ * x)); }
+    void settle(argument x) noexcept { settle(x, select(integrates_, out_.last(), value(standstill_ * x))); }
     void settle(argument x, value y) noexcept {
         std::array<value, Order> s;
-        bool good = finite(x, y);
+        Real sum = x.value() + y.value();
         for (std::size_t i = Order; i-- > 0;) {
             s[i] = b_[i + 1] * x - a_[i] * y; // as if x and y had stood for ever
             if (i + 1 < Order) s[i] += s[i + 1];
             if (i == 0) s[i] = y - b_[0] * x; // the same, but for a pole at z = 1
-            good = good && finite(s[i]);
+            sum += s[i].value();
         }
-        if (!good) return out_.raise();
-        state_.s = s;
-        out_.reset(y);
+        const auto good = finite(sum);
+        set_where(good, state_.s, s);
+        out_.settle(good, y);
     }
 
     std::complex<double> response(frequency f) const {
@@ -121,8 +123,9 @@ public:
         }
         return over / under;
     }
-    bool integrates() const noexcept { return integrates_; } ///< has a pole at z = 1
+    mask_of<Real> integrates() const noexcept { return integrates_; } ///< has a pole at z = 1
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
@@ -137,7 +140,7 @@ private:
     duration period_;
     std::array<gain, Order + 1> b_{};
     std::array<Real, Order> a_{}; ///< from z^-1 on
-    bool integrates_ = false;
+    mask_of<Real> integrates_{};
     gain standstill_{};
     state state_;
     held_output<value> out_;

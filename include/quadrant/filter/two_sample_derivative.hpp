@@ -39,21 +39,26 @@ public:
 
     value operator()(argument y) noexcept {
         const value v = half_rate_ * (y - state_.y2);
-        if (!finite(v)) return out_.hold();
-        state_ = {y, state_.y1};
-        return out_.keep(v);
+        const auto good = finite(v);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.y2, state_.y1);
+        set_where(good, state_.y1, y);
+        return out_.keep(good, v);
     }
     void reset() noexcept { settle(argument()); }
     void settle(argument y) noexcept { settle(y, value()); }
     void settle(argument y, value rate) noexcept {
         const argument before = y - rate * in_real<Real>(period_);
-        if (!finite(before, rate)) return out_.raise();
-        state_ = {y, before};
-        out_.reset(rate);
+        const auto good = finite(before, rate);
+        set_where(good, state_.y1, y);
+        set_where(good, state_.y2, before);
+        out_.settle(good, rate);
     }
     void shift(argument by) noexcept {
-        if (!finite(by)) return out_.raise();
-        state_.y1 += by, state_.y2 += by;
+        const auto good = finite(by);
+        set_where(good, state_.y1, state_.y1 + by);
+        set_where(good, state_.y2, state_.y2 + by);
+        out_.raise(!good);
     }
 
     std::complex<double> response(frequency f) const {
@@ -61,6 +66,7 @@ public:
         return (1.0 - std::polar(1.0, -2 * angle)) / (2 * period_.value());
     }
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 

@@ -62,7 +62,7 @@ public:
     friend lane_mask both(const lane_mask& a, const lane_mask& b) noexcept { return a & b; }
     friend lane_mask either(const lane_mask& a, const lane_mask& b) noexcept { return a | b; }
     friend lane_mask select(const lane_mask& choice, const lane_mask& one, const lane_mask& other) noexcept {
-        return (choice & one) | (!choice & other);
+        return (choice & one) | (other & !choice);
     }
 
     friend bool any(const lane_mask& m) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../lanes/lane_by_lane.hpp"
 
 #include <array>
 #include <complex>
@@ -90,6 +91,25 @@ private:
     bool limited_ = false;
     state state_;
     held_output<value> out_;
+};
+
+/// In lanes: each lane has its own length, and the call loops over the lanes.
+template <signal_tag Signal, std::size_t Capacity, multi_lane Real>
+class delay_line<Signal, Capacity, Real> : public lane_by_lane<delay_line<Signal, Capacity>, Real> {
+public:
+    /// How late the output of each lane is.
+    struct parameters {
+        std::array<std::size_t, lane_count<Real>> length; ///< in periods; 0 ... Capacity
+    };
+    delay_line(const parameters& p, duration period)
+        : lane_by_lane<delay_line<Signal, Capacity>, Real>(
+              [&](std::size_t i) { return typename delay_line<Signal, Capacity>::parameters{p.length[i]}; },
+              period),
+          given_(p) {}
+    const parameters& given() const noexcept { return given_; }
+
+private:
+    parameters given_;
 };
 
 } // namespace quadrant

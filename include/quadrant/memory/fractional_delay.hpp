@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../lanes/lane_by_lane.hpp"
 #include "cubic_weights.hpp"
 
 #include <array>
@@ -11,6 +12,11 @@
 #include <numbers>
 
 namespace quadrant {
+
+namespace detail {
+template <std::size_t Order, std::size_t Capacity>
+concept delay_order = Order == 1 || (Order == 3 && Capacity >= 1);
+} // namespace detail
 
 /// Delays a wire by any time, not only whole periods: the dead time of a drive, 0.4 ms at 0.5 ms per sample.
 ///   y(t) = the polynomial through the Order + 1 samples around t - delay (Lagrange)
@@ -28,7 +34,8 @@ namespace quadrant {
 /// Throws "fractional_delay.delay = ...: must lie between ... and ... (capacity)".
 /// Cost: 1 or 4 multiplications, 8 (Capacity + Order + 2) bytes of state. For whole periods: `delay_line`.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order = 1, class Real = double>
-requires(Order == 1 || (Order == 3 && Capacity >= 1)) class fractional_delay {
+requires detail::delay_order<Order, Capacity>
+class fractional_delay {
 public:
     using input = Signal;
     using output = Signal;
@@ -124,6 +131,31 @@ private:
     bool limited_ = false;
     state state_;
     held_output<value> out_;
+};
+
+/// In lanes: each lane has its own delay, and the call loops over the lanes.
+template <signal_tag Signal, std::size_t Capacity, std::size_t Order, multi_lane Real>
+requires detail::delay_order<Order, Capacity>
+class fractional_delay<Signal, Capacity, Order, Real>
+    : public lane_by_lane<fractional_delay<Signal, Capacity, Order>, Real> {
+    using one = fractional_delay<Signal, Capacity, Order>;
+
+public:
+    /// The dead time of each lane, in seconds.
+    struct parameters {
+        quantity<si::time, Real> delay; ///< (Order 1: 0, Order 3: 1) ... Capacity periods
+    };
+    fractional_delay(const parameters& p, duration period)
+        : lane_by_lane<one, Real>([&](std::size_t i) { return typename one::parameters{lane(p.delay, i)}; },
+                                  period),
+          given_(p) {}
+    void delay(quantity<si::time, Real> d) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).delay(lane(d, i));
+    }
+    const parameters& given() const noexcept { return given_; }
+
+private:
+    parameters given_;
 };
 
 } // namespace quadrant

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../lanes/lane_by_lane.hpp"
 #include "cubic_weights.hpp"
 #include "fir.hpp"
 
@@ -12,6 +13,11 @@
 #include <numbers>
 
 namespace quadrant {
+
+namespace detail {
+template <std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps>
+concept repeats = Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1;
+} // namespace detail
 
 /// Repetitive memory loop: learns, cycle after cycle, what to add to the position error so that an error that returns
 /// with the same cycle (a circle, a turning cutter) dies out.
@@ -38,7 +44,8 @@ namespace quadrant {
 /// A delay alone: `delay_line`.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order = 1, std::size_t LearningTaps = 90,
           std::size_t SmoothingTaps = 61, class Real = double>
-requires(Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1) class repetitive {
+requires detail::repeats<Order, LearningTaps, SmoothingTaps>
+class repetitive {
 public:
     using input = Signal;
     using output = Signal;
@@ -262,6 +269,54 @@ private:
     bool pending_ = false, limited_ = false;
     state state_;
     held_output<value> out_;
+};
+
+/// In lanes: each lane has its own cycle, weights and filters, and the call loops over the lanes.
+template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
+          std::size_t SmoothingTaps, multi_lane Real>
+requires detail::repeats<Order, LearningTaps, SmoothingTaps>
+class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real>
+    : public lane_by_lane<repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps>, Real> {
+    using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps>;
+
+public:
+    /// As those of one memory; `ahead` and `fade` are the same in all lanes.
+    struct parameters {
+        quantity<si::time, Real> cycle;
+        std::array<Real, Order> weights{Real(1)};
+        std::array<Real, LearningTaps> learning{Real(1)};
+        std::size_t ahead = 0;
+        std::array<Real, SmoothingTaps> smoothing = only_the_middle();
+        duration fade{};
+
+        static std::array<Real, SmoothingTaps> only_the_middle() {
+            std::array<Real, SmoothingTaps> q{};
+            q[SmoothingTaps / 2] = Real(1);
+            return q;
+        }
+        /// Those of lane i.
+        typename one::parameters of(std::size_t i) const {
+            return {lane(cycle, i), lane(weights, i), lane(learning, i), ahead, lane(smoothing, i), fade};
+        }
+    };
+    repetitive(const parameters& p, duration period)
+        : lane_by_lane<one, Real>([&](std::size_t i) { return p.of(i); }, period), given_(p) {}
+    using lane_by_lane<one, Real>::settle;
+    void settle(typename repetitive::argument x, typename repetitive::value y) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).settle(lane(x, i), lane(y, i));
+    }
+    /// Of what repeats in each lane, from the next step on.
+    void cycle(quantity<si::time, Real> d) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).cycle(lane(d, i));
+    }
+    void retune(const repetitive& next) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).retune(next.of(i));
+        given_ = next.given_;
+    }
+    const parameters& given() const noexcept { return given_; }
+
+private:
+    parameters given_;
 };
 
 } // namespace quadrant

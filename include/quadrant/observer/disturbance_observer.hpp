@@ -65,17 +65,20 @@ public:
 
     disturbance_observer(const parameters& p, duration period) : given_(checked(p, period)), period_(period) {
         const auto q = q_filter<Order, NumeratorOrder>(p.corner);
-        integrates_ = detail::plain(p.plant.denominator[0]) == 0;
+        integrates_ = equal(p.plant.denominator[0], number(0));
         const double k = 2 / period.value();
         std::array<number, NumeratorOrder + 1> top{};
         for (std::size_t i = 0; i <= NumeratorOrder; ++i) top[i] = q.numerator[i];
         const auto under =
             detail::bilinear_polynomial<order>(detail::product(q.denominator, p.plant.numerator), k, 0);
         const auto over = detail::bilinear_polynomial<order>(detail::product(top, p.plant.numerator), k, 0);
-        const auto inverse = detail::bilinear_polynomial<order>(detail::product(top, p.plant.denominator), k,
-                                                                integrates_ ? 1 : 0);
-        require(detail::roots_inside_circle(under), "disturbance_observer.plant.numerator",
-                p.plant.numerator[0], "has a zero on or right of the imaginary axis: 1/Gn would be unstable");
+        const auto back = detail::product(top, p.plant.denominator);
+        auto inverse = detail::bilinear_polynomial<order>(back, k, all(integrates_) ? 1 : 0);
+        if (any(integrates_) && !all(integrates_))
+            set_where(integrates_, inverse, detail::bilinear_polynomial<order>(back, k, 1));
+        require_lanes([&](std::size_t i) { return detail::roots_inside_circle(lane(under, i)); },
+                      "disturbance_observer.plant.numerator", p.plant.numerator[0],
+                      "has a zero on or right of the imaginary axis: 1/Gn would be unstable");
         for (std::size_t i = 0; i <= order; ++i) {
             from_measured_[i] = gain_of<Command, Measured, Real>::from_value(Real(inverse[i] / under[0]));
             from_command_[i] = Real(over[i] / under[0]);
@@ -83,77 +86,92 @@ public:
             if (i > 0) feedback_[i - 1] = Real(under[i] / under[0]);
         }
         solved_ = Real(1) / (Real(1) - from_command_[0]);
-        standstill_ = integrates_ ? gain_of<Command, Measured, Real>()
-                                  : gain_of<Command, Measured, Real>::from_value(
-                                        Real(p.plant.denominator[0] / p.plant.numerator[0]));
+        standstill_ = select(
+            integrates_, gain_of<Command, Measured, Real>(),
+            gain_of<Command, Measured, Real>::from_value(Real(p.plant.denominator[0] / p.plant.numerator[0])));
     }
 
     /// The disturbance, on the understanding that wanted - disturbance is applied.
     value operator()(argument measured, value wanted = value()) noexcept {
-        const argument x = integrates_ ? argument(measured - state_.measured) : measured;
+        const argument x = select(integrates_, argument(measured - state_.measured), measured);
         const value free = from_measured_[0] * x + state_.s[0]; // d = free - q0 u and u = wanted - d
         const value d = solved_ * (free - from_command_[0] * wanted), u = wanted - d;
         std::array<value, order> next;
-        bool good = finite(measured, d, u);
+        Real sum = bare(measured, d, u);
         for (std::size_t i = 0; i < order; ++i) {
             next[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
             if (i + 1 < order) next[i] += state_.s[i + 1];
-            good = good && finite(next[i]);
+            sum += next[i].value();
         }
+        const auto good = finite(sum);
         stepped_ = good;
-        if (!good) return out_.hold();
-        state_ = {next, measured, x, u};
-        return out_.keep(d);
+        if (none(good)) return out_.hold();
+        set_where(good, state_.s, next);
+        set_where(good, state_.measured, measured);
+        set_where(good, state_.moved, x);
+        set_where(good, state_.command, u);
+        return out_.keep(good, d);
     }
     /// What was really applied of the last command, without what was added after it (friction feedforward).
     void applied(value u) noexcept {
-        if (!stepped_) return; // no sample was taken
+        if (none(stepped_)) return; // no sample was taken
         const value more = u - state_.command, d = out_.last() - from_command_[0] * more;
         std::array<value, order> s = state_.s;
-        bool good = finite(u, d);
+        Real sum = bare(u, d);
         for (std::size_t i = 0; i < order; ++i) {
             s[i] += (feedback_[i] * from_command_[0] - from_command_[i + 1]) * more;
-            good = good && finite(s[i]);
+            sum += s[i].value();
         }
-        if (!good) return out_.raise();
-        state_.s = s;
-        state_.command = u;
-        out_.keep(d);
+        const auto good = finite(sum);
+        const auto taken = both(stepped_, good);
+        if (none(taken)) return out_.raise(stepped_);
+        set_where(taken, state_.s, s);
+        set_where(taken, state_.command, u);
+        out_.keep(select(taken, d, out_.last()));
+        out_.raise(both(stepped_, !good));
     }
     void reset() noexcept { settle(argument()); }
     void settle(argument measured) noexcept { settle(measured, value()); }
     void settle(argument measured, value d) noexcept {
-        const argument x = integrates_ ? argument() : measured;
+        const argument x = select(integrates_, argument(), measured);
         const value u = standstill_ * measured - d;
         const std::array<value, order> s = standing(x, u, d);
-        bool good = finite(measured, d);
-        for (const value& each : s) good = good && finite(each);
-        if (!good) return out_.raise();
-        state_ = {s, measured, x, u};
-        stepped_ = false;
-        out_.reset(d);
+        Real sum = bare(measured, d);
+        for (const value& each : s) sum += each.value();
+        const auto good = finite(sum);
+        set_where(good, state_.s, s);
+        set_where(good, state_.measured, measured);
+        set_where(good, state_.moved, x);
+        set_where(good, state_.command, u);
+        set_where(good, stepped_, mask_of<Real>());
+        out_.settle(good, d);
     }
     void retune(const disturbance_observer& next) noexcept {
-        if (next.period_ != period_ || next.integrates_ != integrates_) return out_.raise();
+        if (next.period_ != period_) return out_.raise();
         const value d = out_.last();
         const auto before = standing(state_.moved, state_.command, d),
                    after = next.standing(state_.moved, state_.command, d);
-        const held_output<value> out = out_;
-        const bool stepped = stepped_;
-        state s = state_;
-        bool good = true;
+        std::array<value, order> s = state_.s;
+        Real sum(0);
         for (std::size_t i = 0; i < order; ++i) {
-            s.s[i] += after[i] - before[i];
-            good = good && finite(s.s[i]);
+            s[i] += after[i] - before[i];
+            sum += s[i].value();
         }
-        if (!good) return out_.raise();
-        *this = next;
-        state_ = s;
-        out_ = out;
-        stepped_ = stepped;
+        const auto good = both(finite(sum), select(integrates_, next.integrates_, !next.integrates_));
+        if (none(good)) return out_.raise();
+        given_ = next.given_;
+        set_where(good, from_measured_, next.from_measured_);
+        set_where(good, from_command_, next.from_command_);
+        set_where(good, feedback_, next.feedback_);
+        set_where(good, standstill_, next.standstill_);
+        set_where(good, solved_, next.solved_);
+        set_where(good, state_.s, s);
+        out_.raise(!good);
     }
     void shift(argument by) noexcept { ///< where the plant integrates; else a position of its own holds it
-        finite(by) && integrates_ ? void(state_.measured += by) : out_.raise();
+        const auto good = both(finite(by), integrates_);
+        set_where(good, state_.measured, state_.measured + by);
+        out_.raise(!good);
     }
 
     /// From the measured signal to the disturbance with wanted = 0, the loop through the command closed: (Q/Gn) / (1 - Q).
@@ -166,7 +184,7 @@ public:
     /// Q/Gn as it runs.
     std::complex<double> inverse(frequency f) const {
         const auto back = shift(f);
-        return detail::polynomial(from_measured_, back) / under(back) * (integrates_ ? 1.0 - back : 1.0);
+        return detail::polynomial(from_measured_, back) / under(back) * (all(integrates_) ? 1.0 - back : 1.0);
     }
     /// Gn(j w), continuous.
     std::complex<double> nominal(frequency f) const {
@@ -175,6 +193,7 @@ public:
     }
     value disturbance() const noexcept { return out_.last(); } ///< with what was applied, if that has been told
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
 
@@ -184,11 +203,19 @@ private:
         require_below_nyquist("disturbance_observer.corner", p.corner, period);
         for (const auto& c : p.plant.numerator) require_finite("disturbance_observer.plant.numerator", c);
         for (const auto& c : p.plant.denominator) require_finite("disturbance_observer.plant.denominator", c);
-        require(detail::plain(p.plant.numerator.back()) != 0, "disturbance_observer.plant.numerator",
-                p.plant.numerator.back(), "highest coefficient must not be zero");
-        require(detail::plain(p.plant.denominator.back()) != 0, "disturbance_observer.plant.denominator",
-                p.plant.denominator.back(), "highest coefficient must not be zero");
+        const auto not_zero = [](const number& c) {
+            return [&c](std::size_t i) { return detail::plain(lane(c, i)) != 0; };
+        };
+        const number &over = p.plant.numerator.back(), &under = p.plant.denominator.back();
+        require_lanes(not_zero(over), "disturbance_observer.plant.numerator", over,
+                      "highest coefficient must not be zero");
+        require_lanes(not_zero(under), "disturbance_observer.plant.denominator", under,
+                      "highest coefficient must not be zero");
         return p;
+    }
+    /// Their sum without units, for `finite`.
+    template <class... Values> static Real bare(const Values&... values) noexcept {
+        return (values.value() + ...);
     }
     /// The state as if these had stood for ever.
     std::array<value, order> standing(argument x, value u, value d) const noexcept {
@@ -209,15 +236,15 @@ private:
 
     parameters given_;
     duration period_;
-    bool integrates_ =
-        true; ///< the plant does: z enters by its differences, so that a constant gives exactly zero
+    mask_of<Real> integrates_ = mask_of<Real>(
+        true); ///< the plant does: z enters by its differences, so that a constant gives exactly zero
     std::array<gain_of<Command, Measured, Real>, order + 1> from_measured_{}; ///< numerator of Q/Gn
     std::array<Real, order + 1> from_command_{};    ///< numerator of Q; [0] passes straight through
     std::array<Real, order> feedback_{};            ///< denominator from z^-1 on
     gain_of<Command, Measured, Real> standstill_{}; ///< 1 / Gn(0)
     Real solved_{1};
     state state_;
-    bool stepped_ = false;
+    mask_of<Real> stepped_{};
     held_output<value> out_;
 };
 

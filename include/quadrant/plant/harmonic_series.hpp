@@ -30,8 +30,14 @@ template <std::size_t Harmonics, class Value, class Real> struct harmonic_series
     /// At so many periods; only the part beyond whole periods is turned into an angle, so that far away is as exact as near.
     Value operator()(const Real& turns) const noexcept {
         using std::cos, std::sin;
-        const Real angle = (turns - whole(turns)) * Real(2 * std::numbers::pi);
-        return (*this)(Real(cos(angle)), Real(sin(angle)));
+        const Real part = turns - whole(turns);
+        if constexpr (multi_lane<Real>) { // lanes bring their own; see lanes/turns.hpp
+            const auto at = circle_of_turns(part);
+            return (*this)(at.cosine, at.sine);
+        } else {
+            const Real angle = part * Real(2 * std::numbers::pi);
+            return (*this)(Real(cos(angle)), Real(sin(angle)));
+        }
     }
 
 private:

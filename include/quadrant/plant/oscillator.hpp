@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../select.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +20,19 @@ template <class Number> struct oscillator {
         using std::cos, std::exp, std::sin, std::sqrt;
         const Number w = Number(2 * std::numbers::pi) * centre_Hz;
         const Number decay = zeta * w, ringing = w * sqrt(Number(1) - zeta * zeta);
-        const Number e = exp(-decay * h), c = e * cos(ringing * h), s = e * sin(ringing * h) / ringing;
+        const Number e = exp(-decay * h), angle = ringing * h;
+        Number c, s;
+        if constexpr (multi_lane<Number>) { // lanes bring their own; see lanes/turns.hpp
+            const Number turns = angle * Number(0.5 / std::numbers::pi);
+            const auto at = circle_of_turns(turns - floor(turns));
+            c = at.cosine;
+            s = at.sine;
+        } else {
+            c = cos(angle);
+            s = sin(angle);
+        }
+        c = e * c;
+        s = e * s / ringing;
         stiffness = w * w;
         stay = c + decay * s;
         onward = s;

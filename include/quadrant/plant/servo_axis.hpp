@@ -217,7 +217,8 @@ public:
     Real reading(const state& s) const noexcept {
         Real y = s.load;
         if (cyclic_.present()) y += cyclic_(s.load);
-        if (laws_.at(joint::reading)) y += laws_(joint::reading, {s.load, s.v, Real(0), Real(0), h_}, s.laws);
+        if (laws_.at(joint::reading))
+            y += laws_(joint::reading, joint_point<Real>{s.load, s.v, Real(0), Real(0), h_}, s.laws);
         return y;
     }
     /// The position that reads so, to the first order of the cyclic error [m].

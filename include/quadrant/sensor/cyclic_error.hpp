@@ -28,25 +28,30 @@ public:
 
     cyclic_error(const parameters& p, duration sample_period) : given_(p), sum_("cyclic_error", p) {
         require_positive("cyclic_error.sample_period", sample_period);
-        double steepest = 0;
-        for (std::size_t i = 0; i < Harmonics; ++i)
-            steepest += 2 * std::numbers::pi * static_cast<double>(i + 1) *
-                        std::abs(detail::plain(p.size[i]) / detail::plain(p.period));
-        require(steepest <= 1, "cyclic_error.size", p.size[0],
-                "must not let the reading run backwards (2 pi sum i size_i <= period)");
+        const auto runs_forward = [&](std::size_t which) {
+            double steepest = 0;
+            for (std::size_t i = 0; i < Harmonics; ++i)
+                steepest +=
+                    2 * std::numbers::pi * static_cast<double>(i + 1) *
+                    std::abs(detail::plain(lane(p.size[i], which)) / detail::plain(lane(p.period, which)));
+            return steepest <= 1;
+        };
+        require_lanes(runs_forward, "cyclic_error.size", p.size[0],
+                      "must not let the reading run backwards (2 pi sum i size_i <= period)");
     }
 
     value operator()(argument x) noexcept {
         const value y = x + sum_(x);
-        return finite(x, y) ? out_.keep(y) : out_.hold();
+        return out_.keep(finite(x, y), y);
     }
     void reset() noexcept { out_.reset(); }
     void settle(argument x) noexcept {
         const value y = x + sum_(x);
-        finite(x, y) ? out_.reset(y) : out_.raise();
+        out_.settle(finite(x, y), y);
     }
 
     bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
     state now() const noexcept { return {}; }
 

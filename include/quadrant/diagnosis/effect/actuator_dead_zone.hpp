@@ -9,8 +9,27 @@ namespace quadrant::diagnosis::suspect {
 /// velocity instead.
 inline constexpr effect actuator_dead_zone{
     .name = "actuator_dead_zone",
+    .label = "actuator dead zone",
     .box = "actuator",
+    .joins = joint::command,
     .exciting_motion = "slow reversals beside accelerations in which the command changes its sign in motion",
+    .shows = "when the command changes its sign",
+    .keys = {machine_key{.name = "actuator.dead_zone_V",
+                         .rule = detail::rule::not_negative,
+                         .meaning = "commands below it have no effect, larger ones lose it",
+                         .at = member<&actuator_description::dead_zone_V>}},
+    .prior = {0.2, "hydraulic valves and cheap output stages have it; servo amplifiers seldom"},
+    .remedy = "Invert the dead zone in the drive: it needs the direction of the whole command.",
+    .advice =
+        [](const plant_model& p, double, std::string_view unit) {
+            return fmt::format(
+                "the inverse in the drive: {:.3g} {} more in the direction of the whole command; the "
+                "reference does not know that direction",
+                p.dead_zone, unit);
+        },
+    .trial = {.low = 1e-4,
+              .high = 1,
+              .into = [](trial_machine& m) { m.set("actuator.dead_zone_V", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double most = detail::largest_command(s), usual = rms(s.record.command);
         if (!(usual > 0)) return {};

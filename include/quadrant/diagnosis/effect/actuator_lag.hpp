@@ -8,16 +8,32 @@ namespace quadrant::diagnosis::suspect {
 /// amplitude that falls with frequency, where a delay keeps the amplitude.
 inline constexpr effect actuator_lag{
     .name = "actuator_lag",
+    .label = "current-loop lag",
     .box = "actuator",
+    .joins = joint::command,
     .exciting_motion = "multi-sine of 20 to 300 Hz, or sharp starts and stops",
+    .shows = "phase that bends, amplitude that falls",
+    .keys = {machine_key{.name = "actuator.lag_s",
+                         .rule = detail::rule::up_to_a_second,
+                         .meaning = "time constant of the current loop, first order",
+                         .at = member<&actuator_description::lag_s>}},
+    .prior = {0.4, "every current loop has one; most are faster than a position log can see"},
+    .remedy = "Tune the current loop faster; use lower position and velocity gains until then.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format("a faster current loop (now {:.3g} ms); until then lower gains", 1e3 * p.lag);
+        },
+    .trial = {.low = 2e-5,
+              .high = 0.02,
+              .into = [](trial_machine& m) { m.set("actuator.lag_s", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double t = s.record.period;
+        const double t = s.record.scale.response();
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.lag; };
         return {{{.key = "actuator.lag_s",
                   .of = of,
-                  .start = detail::best_start(s, of, {0.3 * t, t, 3 * t, 8 * t}),
-                  .low = 0.05 * t,
-                  .high = 50 * t,
+                  .start = detail::best_start(s, of, {0.06 * t, 0.2 * t, 0.6 * t, 1.6 * t}),
+                  .low = 0.01 * t,
+                  .high = 10 * t,
                   .logarithmic = true,
                   .step = 1e-2}}};
     },

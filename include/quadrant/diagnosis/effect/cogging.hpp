@@ -14,12 +14,48 @@ namespace quadrant::diagnosis::suspect {
 /// a longer one is a slope or an offset by another name.
 inline constexpr effect cogging{
     .name = "cogging",
+    .label = "cogging",
     .box = "mechanics",
+    .joins = joint::force,
     .exciting_motion = "slow strokes in both directions over several periods",
+    .shows = "periodic in position, up to half the travel",
+    .keys = {machine_key{.name = "cogging_period_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "of the fundamental",
+                         .at = member<&plant_description::cogging_period_m>,
+                         .needs = {"cogging_N"},
+                         .tolerance = true},
+             machine_key{.name = "cogging_N",
+                         .rule = detail::rule::any_number,
+                         .meaning = "force: sum of N_i sin(2 pi i x / period + phase_i)",
+                         .at = member<&plant_description::cogging_N>,
+                         .needs = {"cogging_period_m"},
+                         .shape = key_shape::harmonics,
+                         .tolerance = true},
+             machine_key{.name = "cogging_phase_rad",
+                         .rule = detail::rule::any_number,
+                         .meaning = "of each harmonic",
+                         .at = member<&plant_description::cogging_phase_rad>,
+                         .entries_of = "cogging_N",
+                         .shape = key_shape::harmonics}},
+    .prior = {0.5, "every motor with iron has it; ironless motors do not"},
+    .compensation = "cogging_harmonics at the reference",
+    .remedy = "Feed the cogging forward over the position (cogging_harmonics), after the axis knows its "
+              "absolute position.",
+    .trial = {.low = 1e-4,
+              .high = 0.5,
+              .into =
+                  [](trial_machine& m) {
+                      const int harmonics = m.whole(1, 6);
+                      m.set("cogging_period_m", m.passed_period());
+                      m.set_harmonics("cogging_N", "cogging_phase_rad", harmonics,
+                                      m.amplitude * m.around.peak_force);
+                  },
+              .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
         std::vector<std::vector<parameter>> out;
-        const double shortest = std::max(travel / 400, 2e-4);
+        const double shortest = std::max(travel / 400, 8 * s.record.resolution);
         const auto& x = s.record.position;
         for (double period :
              detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
@@ -29,7 +65,7 @@ inline constexpr effect cogging{
                                           [&](double p) { return p > 0.01 * most; }); // a tenth in force
             const auto repeats = many ? detail::repeating<detail::cogging_harmonics, 8>
                                       : detail::repeating<detail::cogging_harmonics, 3>;
-            out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, 2 * s.force_of_a_volt()));
+            out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, s.force_scale()));
         }
         return out;
     },

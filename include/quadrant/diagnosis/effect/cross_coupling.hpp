@@ -8,8 +8,30 @@ namespace quadrant::diagnosis::suspect {
 /// way. Joins the force. Shows while the other axis accelerates, at rest too.
 inline constexpr effect cross_coupling{
     .name = "cross_coupling",
+    .label = "coupling from the other axis",
     .box = "mechanics",
+    .joins = joint::force,
     .exciting_motion = "accelerate the other axis while this one rests, then both in a circle",
+    .shows = "the other axis' acceleration",
+    .keys = {machine_key{.name = "coupling",
+                         .rule = detail::rule::asymmetry,
+                         .meaning =
+                             "this axis' acceleration gains coupling times the other's, of the same kind",
+                         .at = member<&plant_description::coupling>}},
+    .prior = {0.2,
+              "stacked axes and soft machine beds have it; it shows only while the other axis accelerates"},
+    .remedy = "Feed the other axis' reference acceleration forward in this command; check squareness and how "
+              "the machine stands.",
+    .advice =
+        [](const plant_model& p, double, std::string_view unit) {
+            return fmt::format(
+                "the other axis' reference acceleration times {:.3g} {} s^2/m in this command (not simulated "
+                "here: the log of one axis does not say what the other is asked for next)",
+                -p.mass * p.coupling / p.force_constant, unit);
+        },
+    .trial = {.low = 0.001,
+              .high = 0.5,
+              .into = [](trial_machine& m) { m.set("coupling", m.sign() * m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const auto& other = s.record.observer.other_acceleration;
         double aa = 0, af = 0;

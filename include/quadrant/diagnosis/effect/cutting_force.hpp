@@ -10,16 +10,64 @@ namespace quadrant::diagnosis::suspect {
 
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the force. Shows as
 /// lines in the frequency of the residual that no motion shifts. The mean cannot be told from a constant force; the phase
-/// begins anew with each log. The fundamental up to 200 Hz: above, rounding of the encoder makes limit cycles.
+/// begins anew with each log. The fundamental up to three times the corner: above, rounding of the encoder makes limit cycles.
 inline constexpr effect cutting_force{
     .name = "cutting_force",
+    .label = "cutting force",
     .box = "process",
+    .joins = joint::force,
     .exciting_motion = "rest and slow strokes with the process running, and again with it off",
+    .shows = "lines in frequency that no motion shifts",
+    .keys = {machine_key{.name = "process.fundamental_Hz",
+                         .rule = detail::rule::positive,
+                         .meaning = "of the process",
+                         .at = member<&process_description::fundamental_Hz>,
+                         .needs = {"force_N"}},
+             machine_key{
+                 .name = "process.force_N",
+                 .rule = detail::rule::any_number,
+                 .meaning = "force: mean + sum of N_i sin(2 pi i f t + phase_i), t from the first row of a log",
+                 .at = member<&process_description::force_N>,
+                 .needs = {"fundamental_Hz"},
+                 .shape = key_shape::harmonics},
+             machine_key{.name = "process.phase_rad",
+                         .rule = detail::rule::any_number,
+                         .meaning = "of each harmonic",
+                         .at = member<&process_description::phase_rad>,
+                         .entries_of = "force_N",
+                         .shape = key_shape::harmonics},
+             machine_key{.name = "process.mean_N",
+                         .rule = detail::rule::any_number,
+                         .meaning = "mean force",
+                         .at = member<&process_description::mean_N>}},
+    .prior = {0.3, "only where a process runs while the log is recorded"},
+    .remedy =
+        "Use a harmonic force observer or repetitive control at the frequency found; balance spindle and tool.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format(
+                "a harmonic force observer or repetitive control at {:.4g} Hz: when the process begins is "
+                "not known beforehand",
+                p.cutting.period > 0 ? 1 / p.cutting.period : 0.0);
+        },
+    .trial = {.low = 1e-4,
+              .high = 0.3,
+              .into =
+                  [](trial_machine& m) {
+                      const int harmonics = m.whole(1, 4);
+                      m.set("process.fundamental_Hz",
+                            m.log_uniform(8, std::min(120.0, 0.15 / m.around.period)));
+                      const double size = m.amplitude * m.around.peak_force;
+                      m.set_harmonics("process.force_N", "process.phase_rad", harmonics, size);
+                      m.set_untold("process.mean_N", {m.chance(0.3) ? 0.5 * size : 0});
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double duration = detail::duration(s), most = 10 * s.force_of_a_volt();
+        const double duration = detail::duration(s),
+                     most = 10 * s.force_scale(); // the loop may be too slow to answer
         std::vector<double> time(s.residual.size());
         for (std::size_t k = 0; k < time.size(); ++k) time[k] = static_cast<double>(k) * s.record.period;
-        const double shortest = std::max(1.0 / 200, 10 * s.record.period), longest = 0.5;
+        const double cycle = 1 / s.record.scale.corner_Hz; // of the corner
+        const double shortest = std::max(0.3 * cycle, 10 * s.record.period), longest = 30 * cycle;
         std::vector<std::vector<parameter>> out;
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
@@ -30,7 +78,7 @@ inline constexpr effect cutting_force{
                                   .start = 0,
                                   .low = -most,
                                   .high = most,
-                                  .step = 1e-5 * s.force_of_a_volt()});
+                                  .step = 1e-6 * s.force_scale()});
         }
         return out;
     },

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../key_value.hpp"
 #include "../record.hpp"
+#include "effect_record.hpp"
 
-#include <string_view>
+#include <fmt/format.h>
 
 namespace quadrant::diagnosis {
 
@@ -16,26 +16,8 @@ struct screening {
     const plant_model& leader;
     const std::vector<double>& residual; ///< [N], sign of residual_force()
 
-    /// Force of a volt, the scale of forces on this axis; of a tenth of the largest command where that is in other units [N].
-    double force_of_a_volt() const { return leader.force_constant * record.volt; }
-};
-
-/// One suspect. A new effect is one file that defines one of these, plus its line in effects.hpp; a user's own needs neither
-/// (own_effect.hpp).
-struct effect {
-    std::string_view name, box;
-    std::string_view exciting_motion; ///< what motion shows it
-    /// A name that is the same model on any motion as far as its other terms agree (gap/FORMAT.md, known equivalences).
-    std::string_view equivalent = "";
-    /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the same
-    /// key). None: it cannot be told from this record.
-    std::vector<std::vector<parameter>> (*starts)(const screening&);
-    /// The machine file's keys with the values of a fitted model.
-    std::vector<key_value> (*read)(const plant_model&);
-    /// What the plant model needs before the parameters mean anything; most effects need nothing.
-    void (*join)(plant_model&, const screening&) = [](plant_model&, const screening&) {};
-    /// Another law of the same effect, as good on this record, would have up to this multiple of the first value read.
-    double by_another_law = 1;
+    /// Force of the largest command, the scale of forces on this axis [N].
+    double force_scale() const { return leader.force_constant * record.scale.command; }
 };
 
 namespace detail {
@@ -66,17 +48,17 @@ inline parameter freed(const char* key, double& (*of)(plant_model&), double valu
 /// a play) only looking helps. Each costs one pass over the log.
 inline double best_start(const screening& s, double& (*of)(plant_model&), const std::vector<double>& values) {
     const fitter fit(s.record.observer, s.record.score);
-    double best = values.front(), least = std::numeric_limits<double>::infinity();
+    std::vector<fit_course> looks;
     for (double value : values) {
-        fit_result trial{.plant = s.leader, .x = Eigen::VectorXd(0)};
-        of(trial.plant) = value;
-        fit.evaluate(trial);
-        if (trial.objective < least) {
-            least = trial.objective;
-            best = value;
-        }
+        plant_model plant = s.leader;
+        of(plant) = value;
+        looks.emplace_back(fit, plant, std::vector<parameter>{}, 0);
     }
-    return best;
+    fit.run(std::span(looks));
+    const auto least = std::min_element(looks.begin(), looks.end(), [](auto& a, auto& b) {
+        return a.result().objective < b.result().objective;
+    });
+    return values[static_cast<std::size_t>(least - looks.begin())];
 }
 
 } // namespace detail

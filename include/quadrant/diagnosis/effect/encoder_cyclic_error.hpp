@@ -13,8 +13,43 @@ namespace quadrant::diagnosis::suspect {
 /// periodic force does the reverse.
 inline constexpr effect encoder_cyclic_error{
     .name = "encoder_cyclic_error",
+    .label = "cyclic encoder error",
     .box = "sensor",
+    .joins = joint::reading,
     .exciting_motion = "the same stroke slowly and fast, over several periods",
+    .shows = "periodic in position, the same size at every speed",
+    .keys = {machine_key{.name = "encoder.cyclic_m",
+                         .rule = detail::rule::any_number,
+                         .meaning = "reading = x + cyclic sin(2 pi x / period + phase)",
+                         .at = member<&encoder_description::cyclic_m>,
+                         .needs = {"cyclic_period_m"}},
+             machine_key{.name = "encoder.cyclic_period_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "of that wave",
+                         .at = member<&encoder_description::cyclic_period_m>,
+                         .needs = {"cyclic_m"}},
+             machine_key{.name = "encoder.cyclic_phase_rad",
+                         .rule = detail::rule::any_number,
+                         .meaning = "of that wave",
+                         .at = member<&encoder_description::cyclic_phase_rad>}},
+    .prior = {0.3, "interpolated scales have some tens of nanometres; an eccentric ring has more"},
+    .remedy = "Adjust the reading head, or correct the reading by a table over one period; a feedforward would "
+              "follow the error.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format(
+                "adjust the scale's head, or correct the reading by a table over {:.3g} um of travel: the "
+                "loop follows the error, and a feedforward would only help it to",
+                1e6 * p.cyclic.period);
+        },
+    .trial = {.low = 2e-8,
+              .high = 1e-4,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("encoder.cyclic_period_m",
+                            m.log_uniform(2e-4, std::max(1e-3, m.around.travel / 3)));
+                      m.set_harmonics("encoder.cyclic_m", "encoder.cyclic_phase_rad", 1, m.amplitude);
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
         std::vector<double> innovation;
@@ -27,7 +62,7 @@ inline constexpr effect encoder_cyclic_error{
                                                std::max(shortest, longest / 20), 1, s.record.score.skip))
                 out.push_back(detail::repeating<detail::encoder_cyclic_error_harmonics, 1>(
                     "encoder.cyclic_period_m", "encoder.cyclic_m", period, travel,
-                    std::min(1e-4 * s.record.reach, 0.1 * period)));
+                    std::min(5e-4 * travel, 0.1 * period)));
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

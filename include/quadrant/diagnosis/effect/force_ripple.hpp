@@ -13,16 +13,53 @@ namespace quadrant::diagnosis::suspect {
 /// it from cogging.
 inline constexpr effect force_ripple{
     .name = "force_ripple",
+    .label = "force ripple",
     .box = "actuator",
+    .joins = joint::motor_gain,
     .exciting_motion =
         "strokes over several periods with strong accelerations, or against a load, and the same slowly",
+    .shows = "periodic in position, grows with the command",
+    .keys = {machine_key{.name = "ripple",
+                         .rule = detail::rule::asymmetry,
+                         .meaning = "of the force constant over the position, relative",
+                         .at = member<&plant_description::ripple>,
+                         .needs = {"ripple_period_m"},
+                         .percent = true},
+             machine_key{.name = "ripple_period_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "of that wave",
+                         .at = member<&plant_description::ripple_period_m>,
+                         .needs = {"ripple"}},
+             machine_key{.name = "ripple_phase_rad",
+                         .rule = detail::rule::any_number,
+                         .meaning = "of that wave",
+                         .at = member<&plant_description::ripple_phase_rad>}},
+    .prior = {0.3, "commutation is never perfect, but a few per cent hide behind friction"},
+    .remedy = "Correct the commutation table of the drive: the force constant varies with the position of the "
+              "magnets.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format(
+                "divide the whole command by 1 + {:.3g} sin(2 pi x/{:.4g} m + {:.3g}), in the drive's "
+                "commutation table: it grows with the command, which the reference does not know",
+                std::hypot(p.ripple.sine[0], p.ripple.cosine[0]), p.ripple.period,
+                std::atan2(p.ripple.cosine[0], p.ripple.sine[0]));
+        },
+    .trial = {.low = 0.002,
+              .high = 0.5,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("ripple_period_m", m.passed_period());
+                      m.set_harmonics("ripple", "ripple_phase_rad", 1, m.amplitude);
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
         std::vector<double> by_command(s.residual.size());
         for (std::size_t k = 0; k < by_command.size(); ++k) by_command[k] = s.residual[k] * s.record.command[k];
         std::vector<std::vector<parameter>> out;
-        for (double period : spatial_peaks(by_command, s.record.position, 0.5 * travel,
-                                           std::max(travel / 400, 2e-4), 2, s.record.score.skip))
+        for (double period :
+             spatial_peaks(by_command, s.record.position, 0.5 * travel,
+                           std::max(travel / 400, 8 * s.record.resolution), 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::force_ripple_harmonics, 1>("ripple_period_m", "ripple",
                                                                                period, travel, 0.9));
         return out;

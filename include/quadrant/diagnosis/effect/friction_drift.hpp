@@ -8,8 +8,39 @@ namespace quadrant::diagnosis::suspect {
 /// force, in the friction box. Shows as the same stroke that needs another force later.
 inline constexpr effect friction_drift{
     .name = "friction_drift",
+    .label = "friction that drifts with time",
     .box = "mechanics",
+    .joins = joint::friction,
     .exciting_motion = "the same stroke repeated for longer than the machine takes to warm up",
+    .shows = "friction whose level changes over the log",
+    .keys = {machine_key{.name = "friction_drift",
+                         .rule = detail::rule::above_minus_one,
+                         .meaning = "Coulomb level times 1 + drift (1 - exp(-t / time))",
+                         .at = member<&plant_description::friction_drift>,
+                         .needs = {"friction_drift_time_s"},
+                         .percent = true},
+             machine_key{.name = "friction_drift_time_s",
+                         .rule = detail::rule::positive,
+                         .meaning = "time in which it has changed by 1 - 1/e",
+                         .at = member<&plant_description::friction_drift_time_s>,
+                         .needs = {"friction_drift"}}},
+    .prior = {0.2, "machines warm up, but a log of seconds is short against that"},
+    .remedy = "Warm the machine up before it works, or add a disturbance observer; one level of feedforward is "
+              "right at one time only.",
+    .advice = [](const plant_model&, double, std::string_view) -> std::string {
+        return "warm up, or a disturbance observer: a feedforward of one level is right at one time only";
+    },
+    .trial = {.low = 0.01,
+              .high = 2,
+              .into =
+                  [](trial_machine& m) {
+                      const double drift = m.chance(0.7)
+                                               ? -m.amplitude / (1 + m.amplitude) // warming oil: less friction
+                                               : m.amplitude;
+                      m.set("friction_drift", drift);
+                      m.set("friction_drift_time_s", m.around.seconds * m.log_uniform(0.15, 1));
+                  },
+              .needs_coulomb = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         const double duration = detail::duration(s);

@@ -13,21 +13,54 @@ namespace quadrant::diagnosis::suspect {
 /// with position and turns its sign with the direction; cogging does not turn.
 inline constexpr effect position_dependent_friction{
     .name = "position_dependent_friction",
+    .label = "friction that varies along the travel",
     .box = "mechanics",
+    .joins = joint::friction,
     .exciting_motion = "the same slow stroke in both directions over the whole travel",
+    .shows = "friction whose level varies along the travel",
+    .keys = {machine_key{.name = "friction_position_amplitude",
+                         .rule = detail::rule::asymmetry,
+                         .meaning = "of the Coulomb level along the travel, relative",
+                         .at = member<&plant_description::friction_position_amplitude>,
+                         .needs = {"friction_position_period_m"},
+                         .percent = true},
+             machine_key{.name = "friction_position_period_m",
+                         .rule = detail::rule::positive,
+                         .meaning = "of that wave",
+                         .at = member<&plant_description::friction_position_period_m>,
+                         .needs = {"friction_position_amplitude"}},
+             machine_key{.name = "friction_position_phase_rad",
+                         .rule = detail::rule::any_number,
+                         .meaning = "of that wave",
+                         .at = member<&plant_description::friction_position_phase_rad>}},
+    .prior = {0.3,
+              "guides that are not straight and screws that are tight at one end are common on old machines"},
+    .compensation = "harmonics times the sign of the motion",
+    .remedy = "Feed the friction forward along the travel; align the guide, or have the screw looked at where "
+              "it is tight.",
+    .trial = {.low = 0.01,
+              .high = 0.9,
+              .into =
+                  [](trial_machine& m) {
+                      const double period = m.passed_period();
+                      m.set("friction_position_period_m", period);
+                      m.set_harmonics("friction_position_amplitude", "friction_position_phase_rad", 1,
+                                      m.amplitude);
+                  },
+              .needs_coulomb = true,
+              .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         const double travel = detail::travel(s);
-        double peak = 0;
-        for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
+        const double peak = s.record.scale.speed;
         std::vector<double> against(s.residual.size());
         for (std::size_t k = 0; k < against.size(); ++k) {
             const double v = s.record.velocity[k];
             against[k] = std::abs(v) < 0.005 * peak ? 0 : v > 0 ? s.residual[k] : -s.residual[k];
         }
         std::vector<std::vector<parameter>> out;
-        for (double period : spatial_peaks(against, s.record.position, 2 * travel, std::max(travel / 50, 1e-3),
-                                           2, s.record.score.skip))
+        for (double period :
+             spatial_peaks(against, s.record.position, 2 * travel, travel / 50, 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::position_dependent_friction_harmonics, 1>(
                 "friction_position_period_m", "friction_position_amplitude", period, travel, 0.95));
         return out;

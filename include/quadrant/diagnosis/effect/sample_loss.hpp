@@ -27,8 +27,24 @@ namespace quadrant::diagnosis::suspect {
 /// in most places: losses know nothing of the motion.
 inline constexpr effect sample_loss{
     .name = "sample_loss",
+    .label = "loss of command samples",
     .box = "actuator",
+    .joins = joint::command,
     .exciting_motion = "multi-sine of 50 to 200 Hz: the command must change much in each period",
+    .shows = "pulses as large as the command's change",
+    .keys = {machine_key{.name = "actuator.loss_probability",
+                         .rule = detail::rule::relative,
+                         .meaning = "of a period in which the drive keeps the previous command",
+                         .at = member<&actuator_description::loss_probability>,
+                         .percent = true}},
+    .prior = {0.1, "a healthy bus loses nothing; one with a bad plug or without real time does"},
+    .remedy = "Repair the connection between controller and drive: plugs, shielding, real time of the host.",
+    .advice = [](const plant_model&, double, std::string_view) -> std::string {
+        return "mend the transmission: which periods lose their command is not known beforehand";
+    },
+    .trial = {.low = 0.001,
+              .high = 0.2,
+              .into = [](trial_machine& m) { m.set("actuator.loss_probability", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         plant_model plant = s.leader;
         plant.loss = 0;

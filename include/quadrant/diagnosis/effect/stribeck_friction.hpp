@@ -8,15 +8,46 @@ namespace quadrant::diagnosis::suspect {
 /// friction box. Shows as a residual that grows as the axis gets slower.
 inline constexpr effect stribeck_friction{
     .name = "stribeck_friction",
+    .label = "Stribeck friction",
     .box = "mechanics",
+    .joins = joint::friction,
     .exciting_motion = "slow reversals and constant speeds from creep to a few times the Stribeck velocity",
+    .shows = "grows as the axis gets slower",
+    .keys = {machine_key{.name = "static_N",
+                         .rule = detail::rule::not_negative,
+                         .meaning = "friction at rest, not below coulomb_N",
+                         .at = member<&plant_description::static_N>,
+                         .needs = {"stribeck_velocity_m_per_s"},
+                         .tolerance = true},
+             machine_key{.name = "stribeck_velocity_m_per_s",
+                         .rule = detail::rule::positive,
+                         .meaning = "speed at which the excess over coulomb_N has fallen to 1/e",
+                         .at = member<&plant_description::stribeck_velocity_m_per_s>,
+                         .needs = {"static_N"},
+                         .tolerance = true}},
+    .fault = [](const axis_description& a) -> key_fault {
+        if (a.plant.static_N && *a.plant.static_N < a.plant.coulomb_N.value_or(0))
+            return {"static_N", "must not lie below {}", "coulomb_N"};
+        return {};
+    },
+    .prior = {0.6, "sliding guides and seals have it; rolling guides have little of it"},
+    .compensation = "the law over speed (friction_feedforward<stribeck>)",
+    .remedy = "Feed the friction forward by its law over speed; a smoother guide oil or a rolling guide "
+              "removes the cause.",
+    .trial = {.low = 0.01,
+              .high = 4,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("static_N", m.now("coulomb_N") * (1 + m.amplitude));
+                      m.set("stribeck_velocity_m_per_s", m.log_uniform(1e-3, 1e-2));
+                  },
+              .needs_coulomb = true,
+              .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        double peak = 0;
-        for (double v : s.record.velocity) peak = std::max(peak, std::abs(v));
+        const double peak = s.record.scale.speed;
         std::vector<std::vector<parameter>> out;
-        for (double slow : {0.001, 0.005, 0.02}) {
-            const double velocity = slow * s.record.pace;
-            if (velocity > 0.5 * peak) continue;
+        for (double slow : {0.004, 0.02, 0.08}) {
+            const double velocity = slow * peak;
             const double force = detail::mean_residual(s,
                                                        [&](std::size_t k) {
                                                            const double v = s.record.velocity[k];
@@ -26,7 +57,7 @@ inline constexpr effect stribeck_friction{
                                      const double v = s.record.velocity[k];
                                      return -v > 0.1 * velocity && -v < velocity;
                                  });
-            const double scale = 1e-3 * s.force_of_a_volt();
+            const double scale = 1e-4 * s.force_scale();
             const double start =
                 std::max({s.leader.friction.excess + 0.5 * force, 0.3 * s.leader.friction.excess, scale});
             out.push_back({{.key = "static_N",
@@ -39,8 +70,8 @@ inline constexpr effect stribeck_friction{
                            {.key = "stribeck_velocity_m_per_s",
                             .of = [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
                             .start = velocity,
-                            .low = 2e-4,
-                            .high = 0.1 * s.record.pace,
+                            .low = 8e-4 * peak,
+                            .high = 0.4 * peak,
                             .logarithmic = true,
                             .step = 1e-3}});
         }

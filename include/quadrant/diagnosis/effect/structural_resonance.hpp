@@ -54,12 +54,51 @@ namespace quadrant::diagnosis::suspect {
 /// a multi-sine as a phase that turns twice.
 inline constexpr effect structural_resonance{
     .name = "structural_resonance",
+    .label = "structural resonance",
     .box = "mechanics",
+    .joins = joint::transmission,
     .exciting_motion = "multi-sine of 10 to 300 Hz, or a chirp through the suspected frequency",
+    .shows = "ringing, a phase that turns twice",
+    .keys = {machine_key{.name = "mode_mass_kg",
+                         .rule = detail::rule::positive,
+                         .meaning = "second mass on a spring, part of mass_kg",
+                         .at = member<&plant_description::mode_mass_kg>,
+                         .needs = {"mode_frequency_Hz"}},
+             machine_key{.name = "mode_frequency_Hz",
+                         .rule = detail::rule::positive,
+                         .meaning = "of it with the first mass held",
+                         .at = member<&plant_description::mode_frequency_Hz>,
+                         .needs = {"mode_mass_kg"}},
+             machine_key{.name = "mode_damping",
+                         .rule = detail::rule::relative,
+                         .meaning = "of it, a damping ratio",
+                         .at = member<&plant_description::mode_damping>}},
+    .fault = [](const axis_description& a) -> key_fault {
+        if (a.plant.mode_mass_kg.value_or(0) >= a.plant.mass_kg)
+            return {"mode_mass_kg", "must lie below {}, of which it is a part", "mass_kg"};
+        return {};
+    },
+    .prior = {0.5, "every structure has one; many lie above what the servo excites"},
+    .remedy = "Put a notch near the frequency found into the command and command less jerk; a stiffer mount "
+              "removes the cause.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format("a notch in the command near {:.3g} Hz and a reference with less jerk",
+                               p.mode.frequency_Hz);
+        },
+    .trial = {.low = 0.003,
+              .high = 0.45,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("mode_mass_kg", m.amplitude * m.now("mass_kg"));
+                      m.set("mode_frequency_Hz", m.log_uniform(15, std::min(140.0, 0.12 / m.around.period)));
+                      m.set("mode_damping", m.log_uniform(0.005, 0.06));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double m = s.leader.mass, highest = std::min(600.0, 0.3 / s.record.period);
+        const double m = s.leader.mass, corner = s.record.scale.corner_Hz,
+                     highest = std::min(10 * corner, 0.3 / s.record.period);
         std::vector<std::vector<parameter>> out;
-        for (double f : detail::ringing_frequencies(s, 6, highest, 3))
+        for (double f : detail::ringing_frequencies(s, 0.1 * corner, highest, 3))
             for (double share : {0.03, 0.2})
                 out.push_back({{.key = "mode_mass_kg",
                                 .of = [](plant_model& p) -> double& { return p.mode.mass; },
@@ -71,7 +110,7 @@ inline constexpr effect structural_resonance{
                                {.key = "mode_frequency_Hz",
                                 .of = [](plant_model& p) -> double& { return p.mode.frequency_Hz; },
                                 .start = f,
-                                .low = 5,
+                                .low = 0.08 * corner,
                                 .high = highest,
                                 .logarithmic = true,
                                 .step = 1e-3},

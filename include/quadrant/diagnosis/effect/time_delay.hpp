@@ -8,18 +8,41 @@ namespace quadrant::diagnosis::suspect {
 /// with frequency while the amplitude stays.
 inline constexpr effect time_delay{
     .name = "time_delay",
+    .label = "time delay",
     .box = "actuator",
+    .joins = joint::command,
     .exciting_motion = "multi-sine of 20 to 200 Hz, or sharp starts and stops",
+    .shows = "phase that grows with frequency",
+    .keys = {machine_key{
+        .name = "delay_s",
+        .rule = detail::rule::up_to_a_second,
+        .meaning = "from the sample instant to the command's first action; the hold is not part of it",
+        .at = member<&plant_description::delay_s>,
+        .tolerance = true}},
+    .prior = {0.6, "buses and sampled drives delay by a period or two that no file mentions"},
+    .remedy =
+        "Shorten the path of the command, or run the reference ahead by the delay; lower the gains until then.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format(
+                "no feedforward takes a delay out of a loop: shorten the way of the command (now {:.3g} "
+                "ms), or run the reference ahead by it (preview), so that what is fed forward comes in "
+                "time",
+                1e3 * p.delay);
+        },
+    .trial = {.low = 2e-5,
+              .high = 0.02,
+              .into = [](trial_machine& m) { m.set("delay_s", m.now("delay_s") + m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double t = s.record.period;
         std::vector<std::vector<parameter>> out;
-        for (double extra :
-             {0.1, 2.0}) // below and above the period: the delay moves the residual in steps of rows
+        // The lower end, inside one period, and a delay to which the loop responds.
+        for (double extra : {0.1 * t, 0.4 * s.record.scale.response()})
             out.push_back({{.key = "delay_s",
                             .of = [](plant_model& p) -> double& { return p.delay; },
-                            .start = s.leader.delay + extra * t,
+                            .start = s.leader.delay + extra,
                             .low = 0,
-                            .high = s.leader.delay + 20 * t,
+                            .high = s.leader.delay + 4 * s.record.scale.response(),
                             .step = 0.02 * t}});
         return out;
     },

@@ -13,7 +13,7 @@ inline constexpr std::size_t terms = 6;
 
 /// Legendre polynomials between two ends, constant outside: value[0], value[1] the ends, then the size of each [N]. They reach
 /// over the whole range, so that each stretch of motion says something about all of it.
-template <over Of> double curve(const force_point& now, const own_force::values& value, own_force::memory&) {
+template <over Of> double curve(const law_point& now, const own_law::values& value, own_law::memory&) {
     const double z = Of == over::position   ? now.position
                      : Of == over::velocity ? now.velocity
                      : Of == over::time     ? now.time
@@ -30,7 +30,7 @@ template <over Of> double curve(const force_point& now, const own_force::values&
     }
     return sum;
 }
-template <over Of> inline constexpr own_force force{.law = curve<Of>};
+template <over Of> inline constexpr own_law force{.law = curve<Of>};
 
 /// The ends are those of the record.
 template <over Of> void span(plant_model& plant, const screening& s) {
@@ -47,7 +47,7 @@ template <over Of> void span(plant_model& plant, const screening& s) {
 }
 
 template <over Of> std::vector<std::vector<parameter>> starts(const screening& s) {
-    const double most = 10 * s.force_of_a_volt();
+    const double most = 3 * s.force_scale();
     return {[&]<std::size_t... I>(std::index_sequence<I...>){
         return std::vector<parameter>{{.key = "force_N",
                                        .of = own_number<force<Of>, 2 + I>,

@@ -8,8 +8,27 @@ namespace quadrant::diagnosis::suspect {
 /// the velocity.
 inline constexpr effect viscous_friction{
     .name = "viscous_friction",
+    .label = "viscous friction",
     .box = "mechanics",
+    .joins = joint::friction,
     .exciting_motion = "constant speeds, slow and fast, in both directions",
+    .shows = "proportional to velocity",
+    .keys = {machine_key{.name = "viscous_N_s_per_m",
+                         .rule = detail::rule::not_negative,
+                         .meaning = "friction force for each m/s",
+                         .at = member<&plant_description::viscous_N_s_per_m>,
+                         .tolerance = true}},
+    .prior = {0.7, "oil changes with temperature and age, so the value in a file is seldom today's"},
+    .compensation = "the key viscous_feedforward_V_s_per_m",
+    .remedy =
+        "Set the viscous feedforward to the value found; if it has grown, check grease, oil and temperature.",
+    .trial = {.low = 0.02,
+              .high = 20,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("viscous_N_s_per_m", m.changed(m.now("viscous_N_s_per_m"), 0.7));
+                  },
+              .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         double vv = 0, vf = 0;
         for (std::size_t k = 0; k < s.residual.size(); ++k) {
@@ -17,7 +36,7 @@ inline constexpr effect viscous_friction{
             vf += s.record.velocity[k] * s.residual[k];
         }
         const double b = s.leader.friction.viscous_slope, slope = vv > 0 ? vf / vv : 0;
-        const double start = std::max({b + slope, 0.25 * b, 1e-3 * s.leader.mass});
+        const double start = std::max({b + slope, 0.25 * b, 1e-5 * s.force_scale() / s.record.scale.speed});
         return {{{.key = "viscous_N_s_per_m",
                   .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
                   .start = start,

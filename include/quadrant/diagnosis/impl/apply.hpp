@@ -81,7 +81,7 @@ private:
                 throw bad_input(
                     file_,
                     fmt::format("axes.{}.controller: is missing; the diagnosis is of another machine", c.axis));
-            set(c.axis, box, key, value_of(kind_of(c.axis), key, p), c.effect);
+            set(c.axis, box, key, value_of(p), c.effect);
         }
     }
 
@@ -92,7 +92,9 @@ private:
             const auto [box, key] = place_of(c, p.key);
             if (!axis.contains(box) || !axis[box].contains(key)) return false;
             const json& value = axis[box][key];
-            return value != 0 && !(key == at_rest && value == axis[box].value(coulomb, 0.0));
+            const machine_key* known = key_named(p.key);
+            return value != (known ? known->neutral : 0.0) &&
+                   !(key == at_rest && value == axis[box].value(coulomb, 0.0));
         };
         if (!c.described && std::all_of(c.parameters.begin(), c.parameters.end(), says_something))
             throw bad_input(file_,
@@ -116,11 +118,9 @@ private:
     }
 
     /// A number, or an array of harmonics or elements where the machine file has one.
-    static json value_of(axis_kind kind, const std::string& key, const parameter_estimate& p) {
-        static constexpr std::array arrays{
-            "cogging_N", "cogging_phase_rad", "gms_weights", "gms_stiffness_N_per_m", "force_N", "phase_rad"};
-        const bool array = std::any_of(arrays.begin(), arrays.end(),
-                                       [&](const char* linear) { return key_of(linear, kind) == key; });
+    static json value_of(const parameter_estimate& p) {
+        const machine_key* known = key_named(p.key);
+        const bool array = known && known->shape != key_shape::number;
         if (!array && p.values.size() == 1) return p.values[0].value;
         json values = json::array();
         for (const estimate& e : p.values) values.push_back(e.value);
@@ -170,7 +170,7 @@ private:
 };
 
 /// Takes the causes that are code in a machine out of a diagnosis, and into the axis: the numbers of its own controller, a
-/// force of its own.
+/// law of its own.
 inline void take_own(axis_description& axis, diagnosis_result& d, double at_least) {
     std::erase_if(d.causes, [&](const cause& c) {
         if (c.axis != axis.name || c.probability < at_least) return false;
@@ -180,14 +180,14 @@ inline void take_own(axis_description& axis, diagnosis_result& d, double at_leas
                     if (p.key == k.key) k.value = p.values.at(0).value;
             return true;
         }
-        for (const own_suspect& own : axis.own_effects)
-            if (own.force->name == c.effect) {
-                axis_description::valued_force found{own.force, {}};
-                for (std::size_t i = 0; i < own.force->count(); ++i)
+        for (const effect* own : axis.own_effects)
+            if (own->name == c.effect && own->law) {
+                axis_description::valued_law found{own->law, {}};
+                for (std::size_t i = 0; i < own->law->count(); ++i)
                     for (const parameter_estimate& p : c.parameters)
-                        if (p.key == own.force->numbers[i].key) found.values[i] = p.values.at(0).value;
-                std::erase_if(axis.own_forces, [&](const auto& f) { return f.force == own.force; });
-                axis.own_forces.push_back(found);
+                        if (p.key == own->law->numbers[i].key) found.values[i] = p.values.at(0).value;
+                std::erase_if(axis.laws, [&](const auto& l) { return l.law == own->law; });
+                axis.laws.push_back(found);
                 return true;
             }
         return false;
@@ -214,7 +214,8 @@ QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& mac
             if (axis.name == own.name) {
                 if (own.controller && own.controller->own) axis.controller = std::move(own.controller);
                 axis.own_effects = std::move(own.own_effects);
-                axis.own_forces = std::move(own.own_forces);
+                std::copy_if(own.laws.begin(), own.laws.end(), std::back_inserter(axis.laws),
+                             [](const auto& l) { return !is_listed(l.law); });
             }
     return out;
 }

@@ -80,7 +80,8 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         const auto logged = std::find_if(log.axes.begin(), log.axes.end(),
                                          [&](const axis_log& l) { return l.name == axis.name && !l.still; });
         if (logged == log.axes.end()) continue;
-        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s);
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s,
+                                                        bandwidth_of(axis, *logged, machine.sample_period_s));
         const detail::tracking_forecast forecast(axis, coupled, machine.sample_period_s);
         compensated_axis& a = out.axes.emplace_back();
         a.name = axis.name;

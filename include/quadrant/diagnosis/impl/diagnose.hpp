@@ -6,7 +6,7 @@
 #include "../calibrated.hpp"
 #include "../causes.hpp"
 #include "../diagnose.hpp"
-#include "../effect_names.hpp"
+#include "../effect_list.hpp"
 #include "../how_far.hpp"
 #include "../neighbour.hpp"
 #include "../next_experiment.hpp"
@@ -86,7 +86,10 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
 
 /// Keys and sentences as the axis' own kind has them.
 inline void put_in_words(axis_kind kind, std::vector<parameter_estimate>& parameters) {
-    for (auto& p : parameters) p.key = key_of(p.key, kind);
+    for (auto& p : parameters) {
+        const machine_key* key = key_named(p.key);
+        p.key = key ? key->name_for(kind) : key_of(p.key, kind);
+    }
 }
 inline void put_in_words(axis_kind kind, std::vector<place>& places) {
     for (place& p : places) p.finding = text_of(p.finding, kind);
@@ -183,14 +186,12 @@ inline void add_own_effects(std::vector<std::string>& names, const axis_descript
         const auto refuse = [&](const std::string& why) {
             throw std::invalid_argument(fmt::format("own_effects of axis {}: {}", axis.name, why));
         };
-        if (!e->force || !e->searched) refuse("one is null");
-        const auto same = [&](const auto& other) { return other.name == e->force->name; };
-        if (std::any_of(effect_names.begin(), effect_names.end(), same))
-            refuse(fmt::format("{} is a name of the list", e->force->name));
-        if (std::any_of(own.begin(), e, [&](const own_suspect& before) { return same(*before.force); }))
-            refuse(fmt::format("{} is there twice", e->force->name));
-        if (std::find(names.begin(), names.end(), e->force->name) == names.end())
-            names.emplace_back(e->force->name);
+        if (!*e || !(*e)->starts || !(*e)->read) refuse("one is null, or has no starts or no reading");
+        const std::string_view name = (*e)->name;
+        if (effect_named(name)) refuse(fmt::format("{} is a name of the list", name));
+        if (std::any_of(own.begin(), e, [&](const effect* before) { return before->name == name; }))
+            refuse(fmt::format("{} is there twice", name));
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
     }
 }
 
@@ -209,10 +210,11 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
     for (const axis_description& axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
-        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s);
+        const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
         if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
-            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s);
+            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s, band);
         detail::add_own_effects(out.own_effects, axis);
         if (axis.controller && axis.controller->own) // its file's kind is known after all
             std::erase_if(out.notes, [&](const std::string& note) {

@@ -18,7 +18,10 @@ inline axis_log recorded(const axis_description& axis, const axis_log& motion, d
     std::vector<double> errors(motion.reference.size());
     if (noise > 0)
         for (double& e : errors) e = white(random);
-    const auto run = simulate_closed_loop(*axis.controller, axis, plant_model(axis), period, motion, errors, 1);
+    const auto [low, high] = std::minmax_element(motion.reference.begin(), motion.reference.end());
+    const record_scales scale{.travel = *high - *low, .count = axis.encoder.resolution_m};
+    const plant_model plant(axis, scale.give());
+    const auto run = simulate_closed_loop(*axis.controller, axis, plant, period, motion, errors, 1);
     out.position = run.position;
     out.command = run.command;
     return out;
@@ -54,7 +57,8 @@ QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& mach
             const auto was = detail::named(found.axes, planned.name);
             if (!axis || !was || planned.still) continue;
             axis_log motion_of = *detail::named(motion.axes, planned.name);
-            motion_of = detail::with_neighbour(before, motion_of, machine.sample_period_s);
+            motion_of =
+                detail::with_neighbour(before, motion_of, machine.sample_period_s, was->gap_after.bandwidth_Hz);
             planned = detail::recorded(*axis, motion_of, machine.sample_period_s,
                                        detail::noise_beside_rounding(*axis, *was, machine.sample_period_s));
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../effect_names.hpp"
+#include "../effect_list.hpp"
 #include "../read/json_keys.hpp"
 #include "../read_diagnosis.hpp"
 #include "../result.hpp"
@@ -84,7 +84,7 @@ private:
         node.refuse("must be explained, partly_explained, unexplained, within_tolerance or no_gap");
     }
     std::string effect_of(const json_node& node) const {
-        constexpr auto known = names_of(effect_names);
+        const auto known = names_of_effects();
         const std::string& name = node.text();
         if (std::find(known.begin(), known.end(), name) == known.end() &&
             std::find(own_.begin(), own_.end(), name) == own_.end())

@@ -12,8 +12,8 @@ namespace detail {
 inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period) {
     const double resolution = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
-    const axis_record record = prepare(log, period, resolution);
-    const plant_model plant = restarted(plant_model(axis), record);
+    const axis_record record = prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution));
+    const plant_model plant = restarted(plant_model(axis, record.scale.give()), record);
     const std::vector<double> all(record.segments, 1.0);
     const auto scored_rms = [&](const std::vector<double>& x) {
         return segment_energy(x, record.segment, record.segments, record.score.skip).rms(all);
@@ -66,9 +66,11 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
     for (const axis_description& axis : machine.axes)
         for (const axis_log& logged : log.axes)
             if (logged.name == axis.name && !logged.still)
-                out.axes.push_back(
-                    detail::simulate_axis(axis, detail::with_neighbour(log, logged, machine.sample_period_s),
-                                          machine.sample_period_s));
+                out.axes.push_back(detail::simulate_axis(
+                    axis,
+                    detail::with_neighbour(log, logged, machine.sample_period_s,
+                                           bandwidth_of(axis, logged, machine.sample_period_s)),
+                    machine.sample_period_s));
     return out;
 }
 

@@ -3,6 +3,7 @@
 #include "apply.hpp"
 #include "compensate.hpp"
 #include "diagnose.hpp"
+#include "effect_list.hpp"
 #include "forecast.hpp"
 #include "passes.hpp"
 #include "read_diagnosis.hpp"

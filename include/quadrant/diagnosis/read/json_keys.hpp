@@ -8,22 +8,6 @@
 /// What the readers of JSON files share: schema, axes, unknown keys, and tables of numbers.
 namespace quadrant::diagnosis::detail {
 
-namespace rule {
-inline constexpr number_rule positive{"must be a number > 0", [](double x) { return x > 0; }};
-inline constexpr number_rule not_negative{"must be a number >= 0", [](double x) { return x >= 0; }};
-inline constexpr number_rule any_number{"must be a number", [](double) { return true; }};
-inline constexpr number_rule up_to_a_second{"must be a number from 0 to 1 (seconds)",
-                                            [](double x) { return x >= 0 && x <= 1; }};
-inline constexpr number_rule asymmetry{"must be a number between -1 and 1 (relative)",
-                                       [](double x) { return x > -1 && x < 1; }};
-inline constexpr number_rule above_minus_one{"must be a number above -1 (relative)",
-                                             [](double x) { return x > -1; }};
-inline constexpr number_rule relative{"must be a number from 0 to below 1 (relative: 0.05 is 5 %)",
-                                      [](double x) { return x >= 0 && x < 1; }};
-inline constexpr number_rule bits{"must be a whole number from 1 to 32",
-                                  [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }};
-} // namespace rule
-
 using key_names = std::span<const std::string_view>;
 
 inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_names others = {}) {

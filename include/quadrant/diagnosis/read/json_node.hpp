@@ -2,6 +2,7 @@
 #pragma once
 #include "../axis_words.hpp"
 #include "json_text.hpp"
+#include "number_rule.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,11 +11,6 @@
 #include <span>
 
 namespace quadrant::diagnosis::detail {
-
-struct number_rule {
-    const char* text;
-    bool (*holds)(double);
-};
 
 /// One value of a JSON file with its dotted path, for messages "FILE: axes.x.plant.mass_kg: must be ...".
 struct json_node {

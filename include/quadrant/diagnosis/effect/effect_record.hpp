@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../key_value.hpp"
+#include "machine_key.hpp"
+#include "trial_machine.hpp"
+
+namespace quadrant::diagnosis {
+
+struct parameter;
+struct screening;
+
+/// How common an effect is before any log is seen, against Coulomb friction with 1, and why.
+struct prior_odds {
+    double odds = 1;
+    std::string_view reason{};
+};
+
+/// What an effect's numbers break in a machine file: the key, the rule, and where the rule has `{}` another key
+/// of the box.
+struct key_fault {
+    std::string_view key{}, rule{}, other{}; ///< no key: nothing is wrong
+};
+
+/// One effect: the only place where its name, keys, law and words stand. What reads and writes files, words on
+/// pages, tables in docs, the schema and the trial follow from the list of these (effects.hpp).
+struct effect {
+    std::string_view name{};
+    std::string_view label{}; ///< as people call it: "Stribeck friction"
+    std::string_view
+        box{}; ///< of the loop; a machine file has boxes of the same names, "plant" for actuator and mechanics
+    joint joins = joint::force;
+    std::string_view exciting_motion{}; ///< what motion shows it
+    /// A name that is the same model on any motion as far as its other terms agree.
+    std::string_view equivalent{};
+    std::string_view shows{}; ///< as what it shows in the residual force
+    key_list keys{};
+    const own_law* law = nullptr; ///< of an effect whose law is no part of plant_model
+    /// A rule between values, beyond those of single keys; refuses what no machine can be.
+    key_fault (*fault)(const axis_description&) = nullptr;
+    prior_odds prior{};
+    std::string_view compensation{}; ///< the feedforward that pays it; empty: none does
+    std::string_view remedy{};       ///< what the owner of the machine may do about it, one sentence
+    /// The same with the numbers of a corrected plant, where no feedforward pays: plant, encoder count [m],
+    /// unit of the command.
+    std::string (*advice)(const plant_model&, double, std::string_view) = nullptr;
+    trial_injection trial{};
+    /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the
+    /// same key). None: it cannot be told from this record. Null: it is found by other means than a fit of the
+    /// plant.
+    std::vector<std::vector<parameter>> (*starts)(const screening&) = nullptr;
+    /// The machine file's keys with the values of a fitted model.
+    std::vector<key_value> (*read)(const plant_model&) = nullptr;
+    /// What the plant model needs before the parameters mean anything; most effects need nothing.
+    void (*join)(plant_model&, const screening&) = [](plant_model&, const screening&) {};
+    /// Another law of the same effect, as good on this record, would have up to this multiple of the first
+    /// value read.
+    double by_another_law = 1;
+};
+
+} // namespace quadrant::diagnosis

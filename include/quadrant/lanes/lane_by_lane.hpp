@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../finite.hpp"
+#include "../signal.hpp"
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace quadrant {
+
+/// W blocks in double behind the call of one block in lanes: for a law whose state holds whole numbers (where in a ring
+/// the delay of this lane is read). It loops over its lanes and costs what W blocks cost.
+/// Lane i's block is of(i); what is not a verb of all blocks is asked of it, such as response.
+template <class Block, multi_lane Real> class lane_by_lane {
+public:
+    static constexpr std::size_t size = lane_count<Real>;
+    using input = typename Block::input;
+    using output = typename Block::output;
+    using argument = quantity_of<input, Real>;
+    using value = quantity_of<output, Real>;
+    using number = Real; ///< of parameters
+    using mask = mask_of<Real>;
+    using state = std::array<typename Block::state, size>; ///< that of each lane
+
+    value operator()(argument x) noexcept {
+        const std::array<double, size> in = x.value().each();
+        std::array<double, size> out;
+        for (std::size_t i = 0; i < size; ++i) out[i] = each_[i](Block::argument::from_value(in[i])).value();
+        return value::from_value(Real(out));
+    }
+    void reset() noexcept {
+        for (Block& block : each_) block.reset();
+    }
+    void settle(argument x) noexcept {
+        for (std::size_t i = 0; i < size; ++i) each_[i].settle(lane(x, i));
+    }
+    void shift(argument by) noexcept requires requires(Block& b, typename Block::argument x) { b.shift(x); }
+    {
+        for (std::size_t i = 0; i < size; ++i) each_[i].shift(lane(by, i));
+    }
+
+    /// The block of lane i.
+    Block& of(std::size_t i) noexcept { return each_[i]; }
+    const Block& of(std::size_t i) const noexcept { return each_[i]; }
+    state now() const noexcept {
+        state out;
+        for (std::size_t i = 0; i < size; ++i) out[i] = each_[i].now();
+        return out;
+    }
+    bool faulted() const noexcept { return any(faulted_lanes()); } ///< some lane has a fault
+    mask faulted_lanes() const noexcept {
+        mask out;
+        for (std::size_t i = 0; i < size; ++i) out.set(i, each_[i].faulted());
+        return out;
+    }
+
+protected:
+    /// parameters_of(i): those of lane i, as the block in double takes them.
+    template <class ParametersOf>
+    lane_by_lane(const ParametersOf& parameters_of, duration period)
+        : lane_by_lane(parameters_of, period, std::make_index_sequence<size>()) {}
+
+private:
+    template <class ParametersOf, std::size_t... I>
+    lane_by_lane(const ParametersOf& parameters_of, duration period, std::index_sequence<I...>)
+        : each_{Block(parameters_of(I), period)...} {}
+
+    std::array<Block, size> each_;
+};
+
+} // namespace quadrant

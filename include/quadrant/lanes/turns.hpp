@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "math.hpp"
+
+namespace quadrant::detail {
+
+/// Cosine and sine of an angle given in turns.
+template <class Real> struct on_circle { Real cosine, sine; };
+
+/// cos(2 pi t) and sin(2 pi t) in lanes for |t| <= 4: the nearest quarter turn is taken off exactly, and the rest, at most an
+/// eighth of a turn, goes through the polynomials of Cephes' sin and cos (S. Moshier, netlib). One reduction and no
+/// multiplication by pi before it: within 2e-16 of the true values, and the same on every instruction set.
+template <std::size_t W, class Isa> on_circle<lanes<W, Isa>> circle_of_turns(const lanes<W, Isa>& t) noexcept {
+    using number = lanes<W, Isa>;
+    const number quarters = floor(number(4) * t + number(0.5));
+    const number x = (t - number(0.25) * quarters) * number(6.283185307179586), z = x * x;
+    number s = number(1.58962301576546568060e-10);
+    for (const double c : {-2.50507477628578072866e-8, 2.75573136213857245213e-6, -1.98412698295895385996e-4,
+                           8.33333333332211858878e-3, -1.66666666666666307295e-1})
+        s = s * z + number(c);
+    s = x + x * z * s;
+    number c = number(-1.13585365213876817300e-11);
+    for (const double k : {2.08757008419747316778e-9, -2.75573141792967388112e-7, 2.48015872888517045348e-5,
+                           -1.38888888888730564116e-3, 4.16666666666665929218e-2})
+        c = c * z + number(k);
+    c = number(1) - number(0.5) * z + z * z * c;
+    // Quarter turns: (c, s), (-s, c), (-c, -s), (s, -c).
+    const number quarter = quarters - number(4) * floor(number(0.25) * quarters);
+    const auto odd = either(equal(quarter, number(1)), equal(quarter, number(3)));
+    const number cosine = select(odd, s, c), sine = select(odd, c, s);
+    const auto cosine_turned = either(equal(quarter, number(1)), equal(quarter, number(2)));
+    const auto sine_turned = greater_equal(quarter, number(2));
+    return {select(cosine_turned, -cosine, cosine), select(sine_turned, -sine, sine)};
+}
+
+} // namespace quadrant::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/described_numbers.hpp"
+#include "quadrant/diagnosis/plant_model.hpp"
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+using namespace quadrant::diagnosis;
+
+TEST_CASE("key_unit: a key is split before its unit, and the unit is written as in a text") {
+    struct row {
+        const char *key, *stem, *unit;
+    };
+    for (const row& r :
+         {row{"stribeck_velocity_m_per_s", "stribeck_velocity", "m/s"},
+          row{"acceleration_feedforward_V_s2_per_m", "acceleration_feedforward", "V s²/m"},
+          row{"quadratic_Nm_s2_per_rad2", "quadratic", "N m s²/rad²"}, row{"inertia_kg_m2", "inertia", "kg m²"},
+          row{"position_gain_per_s", "position_gain", "1/s"}, row{"encoder.cyclic_m", "encoder.cyclic", "m"},
+          row{"process.force_N", "process.force", "N"}, row{"travel_per_turn_m", "travel_per_turn", "m"},
+          row{"friction_drift", "friction_drift", ""}, row{"m", "m", ""}}) {
+        CAPTURE(r.key);
+        CHECK(parts_of(r.key).stem == r.stem);
+        CHECK(unit_text(parts_of(r.key).unit) == r.unit);
+    }
+}
+
+TEST_CASE("effects: every record says what pages and files need, and no name or key stands in two of them") {
+    std::set<std::string_view> names, keys, tolerances;
+    for (const effect* e : every_effect()) {
+        CAPTURE(e->name);
+        CHECK(names.insert(e->name).second);
+        CHECK(!e->label.empty());
+        CHECK(!e->exciting_motion.empty());
+        CHECK(!e->shows.empty());
+        CHECK(e->remedy.ends_with('.'));
+        CHECK(!e->prior.reason.empty());
+        CHECK(e->prior.odds > 0);
+        CHECK((e->starts == nullptr) == (e->read == nullptr));
+        CHECK((e->trial.into != nullptr));
+        CHECK(e->trial.low < e->trial.high);
+        CHECK((e->equivalent.empty() || effect_named(e->equivalent) != nullptr));
+        for (const machine_key& k : e->keys) {
+            CAPTURE(k.name);
+            CHECK(keys.insert(k.name).second);
+            CHECK(!k.meaning.empty());
+            CHECK((!k.tolerance || tolerances.insert(k.tolerance_name()).second));
+            CHECK(key_named(k.name_for(axis_kind::rotary)) == &k);
+            if (e->law) CHECK(e->law->index_of(k.name) < e->law->count());
+        }
+    }
+}
+
+TEST_CASE("effects: what an effect reads from a fitted model are keys of its record") {
+    const plant_model plant;
+    for (const effect* e : every_effect()) {
+        if (!e->read) continue;
+        CAPTURE(e->name);
+        for (const key_value& found : e->read(plant)) {
+            CAPTURE(found.key);
+            const auto is = [&](const machine_key& k) { return k.name == found.key; };
+            CHECK(std::any_of(e->keys.begin(), e->keys.end(), is));
+        }
+    }
+}
+
+TEST_CASE("effects: a key without member and law is kept under its name, whatever its box") {
+    constexpr machine_key arm{.name = "payload.arm_m", .same_when_rotary = true},
+        errors{.name = "transmission.pitch_error_m", .shape = key_shape::harmonics};
+    const effect payload{.name = "arm_length", .keys = {arm, errors}};
+    CHECK(arm.box() == "payload");
+    CHECK(arm.key_for(axis_kind::rotary) == "arm_m");
+    CHECK(errors.key_for(axis_kind::rotary) == "pitch_error_rad");
+    axis_description axis;
+    CHECK(numbers_of(axis, arm, payload).empty());
+    put_numbers(axis, arm, payload, {0.18});
+    put_numbers(axis, errors, payload, {2e-6, 1e-6});
+    CHECK(numbers_of(axis, arm, payload) == std::vector<double>{0.18});
+    CHECK(numbers_of(axis, errors, payload) == std::vector<double>{2e-6, 1e-6});
+    CHECK(axis.numbers.size() == 2);
+}
