@@ -170,8 +170,7 @@ TEST_CASE("compensate: an effect without a feedforward gets advice and no gain, 
     CHECK(!a.compensations[0].claimed);      // the integral pays it already
     for (const effect* e : every_effect()) { // either a feedforward or advice, for every name
         CAPTURE(e->name);
-        CHECK((advice_on(e->name, plant_model(file.axes[0], 2e-7), 1e-7, "V").empty() ==
-               !e->compensation.empty()));
+        CHECK((advice_on(e->name, plant_model(file.axes[0], 2e-7), 1e-7, "V").empty() == !e->compensation.empty()));
         CHECK(!e->remedy.empty());
     }
 }
