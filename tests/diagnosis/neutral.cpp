@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// A model is continuous where an effect vanishes: a machine file that has a key at its neutral value, or a billionth of a typical
-// size beside it, predicts what the file without the key predicts. The gaps agree within 1e-6: an effect of typical
-// size moves the gap by less than a thousand times the gap, a billionth of it by less than a millionth. A jump at the
-// neutral value is larger by orders, however small the key.
+// A model is continuous where an effect vanishes: a machine file that has a key at its neutral value, or a
+// billionth of a typical size beside it, predicts what the file without the key predicts. The gaps agree
+// within 1e-6: an effect of typical size moves the gap by less than a thousand times the gap, a billionth of
+// it by less than a millionth. A jump at the neutral value is larger by orders, however small the key.
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
@@ -18,7 +18,8 @@ using json = nlohmann::ordered_json;
 
 namespace {
 
-/// Where a key is neutral, by its size: `with` what it needs in the file, as box.key, which stays in the file without it.
+/// Where a key is neutral, by its size: `with` what it needs in the file, as box.key, which stays in the file
+/// without it.
 struct neutral_place {
     json at;   ///< the neutral value; null: none can be written
     json near; ///< a billionth of a typical size beside it

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
-// No block of the plant creates energy: from rest, the work that random forces put in is at any time at least the kinetic energy.
-// A force held over a step does the work force times way exactly, whatever the step. Springs of a friction law are stretched by
-// the velocity at the end of a step, the position moves by the mean of both: beside their energy the work is counted along the
-// way of the springs. Tolerance: a billionth of the work that went in and out, which is rounding.
+// No block of the plant creates energy: from rest, the work that random forces put in is at any time at least
+// the kinetic energy. A force held over a step does the work force times way exactly, whatever the step.
+// Springs of a friction law are stretched by the velocity at the end of a step, the position moves by the
+// mean of both: beside their energy the work is counted along the way of the springs. Tolerance: a billionth
+// of the work that went in and out, which is rounding.
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
@@ -62,7 +63,8 @@ private:
     double in_ = 0, all_ = 0, worst_ = 0;
 };
 
-/// By a mass on a friction law, run from rest again and again. `stored(friction)`: in the springs of the law [J].
+/// By a mass on a friction law, run from rest again and again. `stored(friction)`: in the springs of the law
+/// [J].
 template <class Friction, class Stored = std::nullptr_t>
 double created_by(const typename Friction::parameters& friction, const Stored& stored = {}) {
     constexpr bool springs = !std::same_as<Stored, std::nullptr_t>;

@@ -11,8 +11,9 @@
 
 namespace quadrant::diagnosis {
 
-/// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way from the
-/// machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only reads it.
+/// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way
+/// from the machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only
+/// reads it.
 class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,

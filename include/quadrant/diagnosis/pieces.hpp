@@ -5,9 +5,9 @@
 
 namespace quadrant::diagnosis {
 
-/// A record of one motion, cut into as many pieces as there are folds, of whole blocks: a model is then tested on the
-/// piece that it was not fitted to, as it is on a motion of a longer record. Other records stay as they are. `motions`: how
-/// many the record holds.
+/// A record of one motion, cut into as many pieces as there are folds, of whole blocks: a model is then
+/// tested on the piece that it was not fitted to, as it is on a motion of a longer record. Other records stay
+/// as they are. `motions`: how many the record holds.
 inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     motions = r.segments;
     auto& of_block = r.score.segment_of_block;

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-/// Logs of the machines that the library's blocks come from, each with a machine file that describes the same machine.
+/// Logs of the machines that the library's blocks come from, each with a machine file that describes the same
+/// machine.
 namespace sources {
 
 /// One sample of one axis: what was asked, what the encoder read, what the controller answered.

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""Every machine of the sources, logged from the library's own blocks and diagnosed with a machine file that describes the same
-machine: no gap, or one within the tolerances, and no cause at 0.5 or above. On a table whose y axis has a third more
-friction than its file, friction of y is named, and the corrected file predicts the error at the reversals within 20 %.
-usage: check.py SOURCE_LOGS QUADRANT_GAP FOLDER [NAME...]     names: these cases instead of the default ones, which are two,
-or all with QUADRANT_TESTS=all"""
+"""Logs of the sources' machines, made by the library's own blocks, beside machine files that describe the same machines:
+no gap, or one within the tolerances, and no cause at 0.5 or above. On a table whose y axis has a third more friction
+than its file, friction of y is named, and the corrected file predicts the error at the reversals within 20 %.
+usage: check.py SOURCE_LOGS QUADRANT_GAP FOLDER [NAME...]
+NAME: these cases instead of the default ones, which are two, or all with QUADRANT_TESTS=all"""
 import json, os, subprocess, sys
 from concurrent.futures import ThreadPoolExecutor
 from fnmatch import fnmatch
@@ -12,7 +12,7 @@ from fnmatch import fnmatch
 FRICTION = {"coulomb_friction", "stribeck_friction"}
 DEFAULT = ("table.raised.no_bound.sine100", "cnc.diamond")
 
-# What is not as it should be, and why. A case of these that is as it should be fails the check, so that its line goes.
+# What is not as it should be, and why. A case of these that is as it should be fails the check: its line then goes.
 NOT_YET = {
     "table.own_loop.attraction.diamond": "a loop that leaves nothing but noise: a name for a score below the noise floor",
     "table.own_loop.no_bound.circle": "the same; the plant is advanced by whole periods, in sub-steps it leaves less",
@@ -27,7 +27,8 @@ def run(*words):
 
 
 def claims(found):
-    return [(c["axis"], c["effect"], round(c["probability"], 2)) for c in found["causes"] if c["probability"] >= 0.5]
+    sure = [c for c in found["causes"] if c["probability"] >= 0.5]
+    return [(c["axis"], c["effect"], round(c["probability"], 2)) for c in sure]
 
 
 def equal_machine(found):
@@ -43,11 +44,12 @@ def raised_friction(found, logs, gap, folder):
         return f"friction of y is not named: {found['verdict']}, claims {named}"
     if any(axis != "y" or effect not in FRICTION for axis, effect, _ in named):
         return f"more than friction of y is named: {named}"
-    run(gap, "apply", "--machine", f"{folder}/machine.json", "--diagnosis", f"{folder}/found.json", "--out",
-        f"{folder}/corrected.json")
+    run(gap, "apply", "--machine", f"{folder}/machine.json", "--diagnosis", f"{folder}/found.json",
+        "--out", f"{folder}/corrected.json")
     error = json.loads(run(logs, "reversals", f"{folder}/corrected.json", f"{folder}/log.csv"))["y"]
     ratio = error["simulated_m"] / error["log_m"]
-    print(f"    reversals of y: log {1e6 * error['log_m']:.2f} um, corrected file {1e6 * error['simulated_m']:.2f} um")
+    logged, simulated = (1e6 * error[key] for key in ("log_m", "simulated_m"))
+    print(f"    reversals of y: log {logged:.2f} um, corrected file {simulated:.2f} um")
     if not 0.8 <= ratio <= 1.2:
         return f"the corrected file predicts {ratio:.2f} of the error at the reversals"
 
@@ -56,8 +58,8 @@ def judge(logs, gap, scratch, name):
     folder = f"{scratch}/{name}"
     try:
         run(logs, "make", scratch, name)
-        run(gap, "diagnose", "--quiet", "--machine", f"{folder}/machine.json", "--log", f"{folder}/log.csv", "--json",
-            f"{folder}/found.json")
+        run(gap, "diagnose", "--quiet", "--machine", f"{folder}/machine.json", "--log", f"{folder}/log.csv",
+            "--json", f"{folder}/found.json")
         with open(f"{folder}/found.json") as f:
             found = json.load(f)
         raised = name.startswith("table.raised")

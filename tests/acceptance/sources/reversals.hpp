@@ -13,8 +13,8 @@
 
 namespace sources {
 
-/// Largest following error between a reversal of the reference and half the way to the next one, mean over the reversals
-/// [m]. The motion before the first reversal is left out.
+/// Largest following error between a reversal of the reference and half the way to the next one, mean over
+/// the reversals [m]. The motion before the first reversal is left out.
 inline double reversal_error(std::span<const double> reference, std::span<const double> position) {
     std::vector<std::size_t> turns;
     double before = 0;

@@ -6,7 +6,8 @@
 
 #include <quadrant/plant/three_phase_drive.hpp>
 
-/// The precision stage of [LowKeck2003]: predictive law, Kalman filter, LuGre friction, current loop of three phases.
+/// The precision stage of [LowKeck2003]: predictive law, Kalman filter, LuGre friction, current loop of three
+/// phases.
 namespace sources::precision_stage {
 
 using namespace quadrant;
@@ -24,7 +25,8 @@ inline three_phase_drive<>::parameters drive() {
             .steps = 20};
 }
 
-/// exp(-v / out) nearest to the machine's exp(-(v / vs)^2), by least squares over five vs: a machine file has no other.
+/// exp(-v / out) nearest to the machine's exp(-(v / vs)^2), by least squares over five vs: a machine file has
+/// no other.
 inline double nearest_stribeck_velocity(double vs) {
     double best = HUGE_VAL, out = vs;
     for (int i = 1; i <= 400; ++i) {
