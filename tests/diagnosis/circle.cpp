@@ -214,6 +214,26 @@ TEST_CASE("ball_bar: play is a backlash and no spike; where the machine cannot h
     CHECK(found(direct) == "reversal_lag.x reversal_lag.y");
     CHECK(find(direct, "reversal_lag")->effects == std::vector<std::string>{"coulomb_friction"});
 }
+TEST_CASE("ball_bar: friction of a direct drive in a loop without integral is never called backlash where the "
+          "machine "
+          "file excludes it, nor does another error stand together with it") {
+    machine m = encoders();
+    m.x = mass_with({.coulomb = 0.05, .stiffness = 1e6}, 100, 200, 0);
+    m.y = mass_with({.coulomb = 0.02, .stiffness = 1e6}, 100, 200, 0);
+    const auto all = all_runs(m, {0.05, 0.1}, {0.03});
+    CHECK(find(ball_bar(all), "backlash", "x")->verdict ==
+          circle_verdict::found); // the same pattern: not excluded
+    for (const auto& runs : {all, std::vector{drive(m, 0.03, 0.1, true)}}) {
+        const auto r = ball_bar(runs, {.excluded_effects = {"backlash"}});
+        for (const auto& e : r.errors) {
+            CHECK(e.name != "backlash");
+            for (const std::string& other : e.together_with) CHECK_FALSE(other.starts_with("backlash"));
+            for (const std::string& effect : e.effects) CHECK(effect != "backlash");
+        }
+    }
+    const auto direct = ball_bar(all, {.excluded_effects = {"backlash"}});
+    CHECK(find(direct, "reversal_lag", "x")->verdict == circle_verdict::found);
+}
 TEST_CASE("ball_bar: presliding friction in a loop is reversal spikes, with their height and width, never a "
           "backlash") {
     machine m = encoders(), free = encoders();

@@ -2,6 +2,7 @@
 #pragma once
 #include "controller_mismatch.hpp"
 #include "log.hpp"
+#include "pieces.hpp"
 #include "restart.hpp"
 #include "search.hpp"
 #include "sensor_box.hpp"
@@ -10,15 +11,16 @@
 
 namespace quadrant::diagnosis {
 
-/// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way from the
-/// machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only reads it.
+/// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way
+/// from the machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only
+/// reads it.
 class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
               const std::vector<std::string>& excluded, const rules& r, const progress& tell)
         : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
           resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
-          record(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution))),
+          record(in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions)),
           models(record, a, excluded, r, tell) {
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
@@ -26,7 +28,7 @@ public:
         if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
         controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
-        if (holdout) second = prepare(*holdout, period, resolution, record.scale);
+        if (holdout) second = in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second);
         path = models.run();
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         noise = models.noise(path.back());
@@ -43,6 +45,7 @@ public:
     rules limits;
     double count;      ///< the step in which the position really moves [m]
     double resolution; ///< the described one, or the real one where that is coarser [m]
+    std::size_t motions = 0, motions_of_second = 0; ///< that the log holds, and the hold-out log
     axis_record record;
     search models;
     std::optional<axis_record> second; ///< the hold-out log

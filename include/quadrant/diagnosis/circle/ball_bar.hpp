@@ -72,19 +72,21 @@ private:
         return std::find(all.begin(), all.end(), effect) != all.end();
     }
 
+    /// A machine without play has the pattern of play all the same, where friction holds the axis back.
+    std::string_view name_of(const circle_pattern& p) const {
+        return p.name == "backlash" && excluded("backlash") ? std::string_view("reversal_lag") : p.name;
+    }
     void name_columns(const joint_fit& fit) {
         for (std::size_t c = 0; c < fit.columns.size(); ++c) {
             const auto& [p, k] = std::tie(fit.patterns[c], fit.columns[c]);
             if (p.of_setup || p.name == "reversal_spikes") continue;
-            const bool lag = p.name == "backlash" && excluded("backlash"); // the same pattern by another name
-            circle_error e =
-                named_error(lag ? "reversal_lag" : p.name, p.axis, p.unit, options_.excluded_effects);
+            circle_error e = named_error(name_of(p), p.axis, p.unit, options_.excluded_effects);
             e.verdict = k.verdict, e.limit = k.limit, e.value = interval_of(k.value, k.standard_error);
             e.circularity = std::abs(k.value) * k.circularity;
             for (const std::size_t other : k.together)
                 if (other != c)
                     e.together_with.push_back(
-                        fit.patterns[other].name +
+                        std::string(name_of(fit.patterns[other])) +
                         (fit.patterns[other].axis.empty() ? "" : " " + fit.patterns[other].axis));
             if (p.name == "backlash") e.reading = reading_of_backlash();
             out_.errors.push_back(std::move(e));

@@ -102,6 +102,17 @@ inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
     }
 }
 
+/// One block and no hold-out log: nothing is left to test a cause on that was not fitted.
+inline bool untested(const axis_case& c) { return !c.second && c.record.segments < 2; }
+/// A cause that nothing has tested is a suspect, as one of a controller that the replay does not confirm.
+inline void to_suspects(std::vector<cause>& causes) {
+    constexpr double guess = 0.4;
+    for (cause& x : causes) {
+        x.probability = std::min(x.probability, guess);
+        x.group_probability = std::min(x.group_probability, guess);
+    }
+}
+
 inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
@@ -109,6 +120,17 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     result.command_unit = c.axis.command_unit;
     std::vector<std::vector<rival>> rivals;
     auto causes = plant_causes(c, &rivals);
+    if (untested(c)) {
+        to_suspects(causes);
+        out.notes.push_back(
+            worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
+                   "samples that it was not fitted to; record more, or give a hold-out log.",
+                   c.axis.name.c_str()));
+    } else if (!c.second && c.motions < 2)
+        out.notes.push_back(
+            worded("axis %s: the record holds one motion, which is cut into %zu pieces to test what was "
+                   "fitted to the others: an effect that shows in another motion only is not seen.",
+                   c.axis.name.c_str(), c.record.segments));
     if (auto of_controller = controller_cause(c)) { // the first explains most
         const double command = rms(c.command_difference(c.log, *c.axis.controller));
         const bool first = command > rms(c.models.residual(c.models.given()));
@@ -146,6 +168,17 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
     out.axes.push_back(std::move(result));
 }
 
+/// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
+inline const axis_case& need_blocks(const axis_case& c, const std::string& file) {
+    if (c.record.score.segment_of_block.empty())
+        throw bad_input(file,
+                        worded("%zu samples of axis %s: a diagnosis needs at least %zu, one block to start "
+                               "the observer and one to score",
+                               c.log.position.size(), c.axis.name.c_str(),
+                               c.record.score.skip + c.record.score.block));
+    return c;
+}
+
 /// Effects of the caller's own have names of their own.
 inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
     const auto& own = axis.own_effects;
@@ -167,12 +200,6 @@ inline void add_own_effects(std::vector<std::string>& names, const axis_descript
 QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine, const machine_log& log,
                                                   const machine_log* holdout, const progress& tell,
                                                   const rules& r) {
-    constexpr double shortest_s = 2; // less holds too few motions to leave some out
-    for (const machine_log* l : {&log, holdout})
-        if (l && static_cast<double>(l->samples) * machine.sample_period_s < shortest_s)
-            throw bad_input(
-                l->file, detail::worded("%zu samples are %.3g s: a diagnosis needs at least %.0f s", l->samples,
-                                        static_cast<double>(l->samples) * machine.sample_period_s, shortest_s));
     diagnosis_result out;
     out.machine_file = machine.file;
     out.log_file = log.file;
@@ -194,8 +221,9 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        detail::diagnose_axis(out, axis_case(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
-                                             machine.excluded_effects, r, tell));
+        const axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
+                          machine.excluded_effects, r, tell);
+        detail::diagnose_axis(out, detail::need_blocks(c, log.file));
     }
     return out;
 }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSL-1.0
+// usage: source_logs list                      the names of all cases
+//        source_logs make FOLDER NAME...       FOLDER/NAME/log.csv and machine.json of each
+//        source_logs reversals MACHINE LOG     JSON: following error at the reversals, logged and simulated
+#include "milling_table.hpp"
+#include "reversals.hpp"
+#include "stage.hpp"
+#include "virtual_cnc.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+int main(int count, char** words) try {
+    std::vector<sources::log_case> cases;
+    sources::milling_table::add(cases);
+    sources::virtual_cnc::add(cases);
+    sources::precision_stage::add(cases);
+    const std::string verb = count > 1 ? words[1] : "";
+    if (verb == "list" && count == 2) {
+        for (const auto& c : cases) std::puts(c.name.c_str());
+    } else if (verb == "reversals" && count == 4) {
+        std::puts(sources::reversals(words[2], words[3]).dump(1).c_str());
+    } else if (verb == "make" && count > 3) {
+        for (int k = 3; k < count; ++k) {
+            const auto found =
+                std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.name == words[k]; });
+            if (found == cases.end()) throw std::runtime_error(std::string("no case ") + words[k]);
+            write(found->make(), std::filesystem::path(words[2]) / found->name);
+        }
+    } else
+        throw std::runtime_error("usage: source_logs list | make FOLDER NAME... | reversals MACHINE LOG");
+    return 0;
+} catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 2;
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "case.hpp"
+
+#include "quadrant_reproduce/stage.hpp"
+
+#include <quadrant/plant/three_phase_drive.hpp>
+
+/// The precision stage of [LowKeck2003]: predictive law, Kalman filter, LuGre friction, current loop of three
+/// phases.
+namespace sources::precision_stage {
+
+using namespace quadrant;
+using namespace quadrant::literals;
+
+/// The drive of docs/blocks/three_phase_drive.md; its back electromotive force does not reach the bus.
+inline three_phase_drive<>::parameters drive() {
+    return {.force_constant = in_si(stage::real.force_constant),
+            .resistance = 2_V / 1_A,
+            .time_constant = 4_ms,
+            .pole_pair = 30_mm,
+            .bus = 150_V,
+            .current_limit = 8_A,
+            .bandwidth = 300_Hz,
+            .steps = 20};
+}
+
+/// exp(-v / out) nearest to the machine's exp(-(v / vs)^2), by least squares over five vs: a machine file has
+/// no other.
+inline double nearest_stribeck_velocity(double vs) {
+    double best = HUGE_VAL, out = vs;
+    for (int i = 1; i <= 400; ++i) {
+        const double candidate = vs * i / 100;
+        double squares = 0;
+        for (int k = 0; k <= 200; ++k) {
+            const double v = 5 * vs * k / 200;
+            const double off = std::exp(-v / candidate) - std::exp(-v * v / (vs * vs));
+            squares += off * off;
+        }
+        if (squares < best) best = squares, out = candidate;
+    }
+    return out;
+}
+
+inline diagnosis::axis_description described(bool three_phases) {
+    const stage::machine& m = stage::real;
+    diagnosis::axis_description d;
+    d.name = "x";
+    d.command_unit = "A";
+    d.plant.mass_kg = m.mass;
+    d.plant.force_constant_N_per_V = m.force_constant;
+    d.plant.viscous_N_s_per_m = m.viscous;
+    d.plant.coulomb_N = m.coulomb;
+    d.plant.static_N = m.static_level;
+    d.plant.stribeck_velocity_m_per_s = nearest_stribeck_velocity(m.stribeck);
+    d.plant.presliding_length_m = m.static_level / m.stiffness; // at rest a bristle approaches Fs exponentially
+    d.plant.presliding_damping_s = m.damping / m.stiffness;
+    d.encoder.resolution_m = 1e-6;
+    d.actuator.limit_V = 8;
+    if (three_phases) d.actuator.lag_s = 1 / (2 * std::numbers::pi * drive().bandwidth.value());
+    d.tolerance.given = {{"mass", 0.05},    {"force_constant", 0.05}, {"viscous", 0.05},
+                         {"coulomb", 0.05}, {"static", 0.05},         {"stribeck_velocity", 0.05}};
+    return d;
+}
+
+/// The loop of stage::axis with the current loop between command and motor, or without it.
+inline written_case make(const std::function<axis_motion<>(double)>& reference, double lasts,
+                         const stage::tuning& tuned, bool three_phases) {
+    const auto believed = stage::believed;
+    using friction = lugre<signal::velocity, signal::voltage>;
+    feed_control<feed_control_boxes<stage::law, friction>> control{
+        .box = {{.law = stage::law_of(believed, tuned),
+                 .friction = stage::friction_of<signal::voltage>(believed, believed.force_constant),
+                 .limit = 8_V},
+                stage::period}};
+    kalman<signal::voltage> filter(stage::filter_of(believed, tuned), stage::period);
+    stage::motor motor(stage::motor_of(stage::real), stage::period);
+    three_phase_drive<> current(drive(), stage::period);
+    quantity<si::length> reading{};
+    quantity<si::electric_potential> command{};
+    recording::axis logged{"x", "A", {}};
+    const double T = stage::period.value();
+    const auto ahead = static_cast<long>(stage::horizon);
+    for (long k = -ahead; static_cast<double>(k) * T <= lasts; ++k) {
+        const auto speed = filter(reading, command);
+        command = control(reference(static_cast<double>(k + ahead) * T), {filter.position(), speed});
+        if (k >= 0) logged.rows.push_back({control.wire.reference.value(), reading.value(), command.value()});
+        reading = three_phases ? motor(0_V, current(command / 1_V * 1_A, motor.now().x, motor.now().v))
+                               : motor(command);
+    }
+    written_case out{{T, {std::move(logged)}}, {}};
+    diagnosis::machine_description file;
+    file.sample_period_s = T;
+    file.excluded_effects = {"backlash"}; // a direct drive
+    file.axes.push_back(described(three_phases));
+    out.machine = to_json(file);
+    return out;
+}
+
+inline void add(std::vector<log_case>& to) {
+    const auto curve = [](double length, double time) {
+        return [s = trajectory::s_curve({length * 1_m, time * 1_s})](double t) {
+            const auto m = s(t * 1_s);
+            return axis_motion<>{m.position, m.velocity, m.acceleration};
+        };
+    };
+    for (const bool three_phases : {true, false}) {
+        const std::string name = three_phases ? "stage.three_phases." : "stage.direct.";
+        const auto put = [&](const char* motion, auto reference, double lasts, const stage::tuning& t) {
+            to.push_back({name + motion, [=] { return make(reference, lasts, t, three_phases); }});
+        };
+        put("move_300mm", curve(0.3, 1), 1.2, stage::tight);
+        put("move_20mm", curve(0.02, 0.5), 0.7, stage::tight);
+        put("move_500um", curve(500e-6, 0.2), 2.2, stage::moderate);
+        put("bs3800", stage::linear_cycle(), stage::linear_cycle::end(), stage::tight);
+    }
+}
+
+} // namespace sources::precision_stage
