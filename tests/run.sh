@@ -13,6 +13,7 @@ build=${QUADRANT_BUILD:-$root/build}
 shared=${QUADRANT_SHARED:-$root/../shared}
 [ ! -d "$shared" ] || shared=$(cd "$shared" && pwd)
 export QUADRANT_SHARED="$shared"
+export CCACHE_BASEDIR="${CCACHE_BASEDIR-$root}" CCACHE_NOHASHDIR=1 # what one clone compiled, another need not
 logs=$build/logs
 mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
