@@ -149,11 +149,12 @@ TEST_CASE("mill.json: X and Y are the printed ones") {
         CHECK(axis.sensor.tachometer_noise_m_per_s ==
               doctest::Approx(source.tachometer_noise.value()).epsilon(1e-6));
         CHECK(axis.dac_step() == vcnc::dac_step.value());
-        const auto law = std::get<pid_description>(axis.law);
+        const auto& law = axis.law;
+        CHECK(law.kind == "pid");
         const auto gains = vcnc::pid_of(printed);
-        CHECK(law.gain_V_per_m == gains.gain.value());
-        CHECK(law.integral_gain_V_per_m_s == gains.integral_gain.value());
-        CHECK(law.derivative_gain_V_s_per_m == gains.derivative_gain.value());
+        CHECK(law.number("gain_V_per_m") == gains.gain.value());
+        CHECK(law.number("integral_gain_V_per_m_s") == gains.integral_gain.value());
+        CHECK(law.number("derivative_gain_V_s_per_m") == gains.derivative_gain.value());
     }
 }
 

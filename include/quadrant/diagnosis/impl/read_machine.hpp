@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../controller/json.hpp"
 #include "../effect_names.hpp"
 #include "../plant_model.hpp"
 #include "../read/key_place.hpp"
@@ -71,7 +72,7 @@ private:
         const axis_kind other = axis.kind == axis_kind::rotary ? axis_kind::linear : axis_kind::rotary;
         for (const auto& [box, content] : axis.value->items()) {
             if (!content.is_object()) continue;
-            const auto known = keys_of_box(box);
+            const auto known = box == "controller" ? keys_of_controller(content) : keys_of_box(box);
             for (const auto& [key, value] : content.items())
                 for (const std::string_view linear : known) {
                     if (key_of(linear, other) != key || key_of(linear, axis.kind) == key) continue;
@@ -87,6 +88,17 @@ private:
                     throw bad_input(top_.file, message);
                 }
         }
+    }
+
+    /// The keys of a controller outside its boxes, by their linear names.
+    static std::vector<std::string_view> keys_of_controller(const nlohmann::json& content) {
+        std::vector<std::string_view> out;
+        const auto kind = content.find("kind");
+        if (kind == content.end() || !kind->is_string()) return out;
+        if (const controller_kind* known = find_controller_kind(kind->get_ref<const std::string&>()))
+            for (const controller_key& key : known->keys)
+                if (!key.in_box()) out.push_back(key.name);
+        return out;
     }
 
     static void read_plant(const json_node& node, axis_description& axis) {
@@ -180,38 +192,14 @@ private:
     }
 
     void read_controller(const json_node& node, axis_description& axis) {
-        const std::string& kind = node.object().need("kind").text();
-        if (kind != "cascade_p_pi")
-            return note(axis, fmt::format("controller kind {} is not known: diagnosed from the command onwards",
-                                          in_quotes(kind)));
-        auto& controller = axis.controller.emplace();
-        read_numbers(node, controller_keys_of_file, controller_other_keys, controller);
-
-        using estimator = controller_description::estimator;
-        if (const auto given = node.find("velocity_estimator")) {
-            const std::string& text = given->text();
-            if (text != "filtered_derivative" && text != "two_sample_mean")
-                given->refuse("must be \"filtered_derivative\" or \"two_sample_mean\"");
-            controller.velocity_estimator =
-                text == "two_sample_mean" ? estimator::two_sample_mean : estimator::filtered_derivative;
-        }
-        const auto filter = node.find("velocity_filter_Hz");
-        if (controller.velocity_estimator == estimator::filtered_derivative) {
-            node.need("velocity_filter_Hz");
-            need_below_nyquist(*filter);
-        } else if (filter) {
-            note(axis, "velocity_filter_Hz is not used by the velocity estimator two_sample_mean");
-        }
-        if (const auto notch = node.find("notch")) {
-            read_numbers(*notch, notch_keys, {}, controller.notch.emplace());
-            need_below_nyquist(notch->need("frequency_Hz"));
-        }
-    }
-
-    void need_below_nyquist(const json_node& frequency) const {
-        const double nyquist = 0.5 / out_.sample_period_s;
-        if (frequency.value->get<double>() >= nyquist)
-            frequency.refuse(fmt::format("must lie below half the sampling rate ({:.6g} Hz)", nyquist));
+        const std::string& name = node.object().need("kind").text();
+        const controller_kind* kind = find_controller_kind(name);
+        if (!kind)
+            return note(axis, fmt::format("controller kind {} is not known (known: {}): diagnosed from the "
+                                          "command onwards",
+                                          in_quotes(name), names_of_kinds()));
+        axis.controller = detail::read_controller(*kind, node, out_.sample_period_s, "kind",
+                                                  [&](const std::string& text) { note(axis, text); });
     }
 
     void note_what_is_assumed(const axis_description& axis) {

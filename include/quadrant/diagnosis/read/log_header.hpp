@@ -24,6 +24,7 @@ struct log_column {
 struct log_header {
     struct axis_columns {
         std::optional<std::size_t> reference, position, command;
+        std::optional<std::size_t> reference_velocity, reference_acceleration, velocity; ///< need not be there
         std::string command_unit;
         std::size_t command_at = 0; ///< in the header line
         std::optional<axis_kind> kind;
@@ -34,7 +35,15 @@ struct log_header {
     std::vector<std::string> notes;
 };
 
-enum class column_role { reference, position, command, not_used_yet };
+enum class column_role {
+    reference,
+    position,
+    command,
+    reference_velocity,
+    reference_acceleration,
+    velocity,
+    not_used_yet
+};
 
 struct column_suffix {
     std::string_view text;
@@ -50,10 +59,14 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_cmd_A", column_role::command, "A"},
     column_suffix{"_cmd_N", column_role::command, "N"},
     column_suffix{"_cmd_Nm", column_role::command, "Nm"},
-    column_suffix{"_vel_m_per_s", column_role::not_used_yet},
+    column_suffix{"_ref_m_per_s", column_role::reference_velocity, "m"},
+    column_suffix{"_ref_m_per_s2", column_role::reference_acceleration, "m"},
+    column_suffix{"_vel_m_per_s", column_role::velocity, "m"},
+    column_suffix{"_ref_rad_per_s", column_role::reference_velocity, "rad"},
+    column_suffix{"_ref_rad_per_s2", column_role::reference_acceleration, "rad"},
+    column_suffix{"_vel_rad_per_s", column_role::velocity, "rad"},
     column_suffix{"_acc_m_per_s2", column_role::not_used_yet},
     column_suffix{"_force_N", column_role::not_used_yet},
-    column_suffix{"_vel_rad_per_s", column_role::not_used_yet},
     column_suffix{"_acc_rad_per_s2", column_role::not_used_yet},
     column_suffix{"_torque_Nm", column_role::not_used_yet},
 };
@@ -87,9 +100,12 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                                                    in_quotes(name), axis_name));
             axis.kind = kind;
         }
-        (suffix.role == column_role::reference  ? axis.reference
-         : suffix.role == column_role::position ? axis.position
-                                                : axis.command) = index;
+        (suffix.role == column_role::reference                ? axis.reference
+         : suffix.role == column_role::position               ? axis.position
+         : suffix.role == column_role::reference_velocity     ? axis.reference_velocity
+         : suffix.role == column_role::reference_acceleration ? axis.reference_acceleration
+         : suffix.role == column_role::velocity               ? axis.velocity
+                                                              : axis.command) = index;
         if (suffix.role == column_role::command) {
             axis.command_unit = suffix.unit;
             axis.command_at = cells.offset();
@@ -121,7 +137,9 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                 fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
-        else if (purpose == log_purpose::record || suffix->role == column_role::reference)
+        else if (purpose == log_purpose::record || suffix->role == column_role::reference ||
+                 suffix->role == column_role::reference_velocity ||
+                 suffix->role == column_role::reference_acceleration)
             join_axis(*suffix, index);
     }
 

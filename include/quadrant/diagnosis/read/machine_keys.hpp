@@ -46,31 +46,6 @@ inline constexpr std::array<std::string_view, 6> plant_other_keys{
     "force_constant_N_per_V", "force_constant_N_per_A", "cogging_N", "cogging_phase_rad", "gms_weights",
     "gms_stiffness_N_per_m"};
 
-inline constexpr std::array controller_keys_of_file{
-    number_key<controller_description>{"position_gain_per_s", rule::not_negative,
-                                       &controller_description::position_gain_per_s, true},
-    number_key<controller_description>{"velocity_gain_V_s_per_m", rule::not_negative,
-                                       &controller_description::velocity_gain_V_s_per_m, true},
-    number_key<controller_description>{"velocity_integral_V_per_m", rule::not_negative,
-                                       &controller_description::velocity_integral_V_per_m},
-    number_key<controller_description>{"velocity_filter_Hz", rule::positive,
-                                       &controller_description::velocity_filter_Hz},
-    number_key<controller_description>{"velocity_feedforward", rule::any_number,
-                                       &controller_description::velocity_feedforward},
-    number_key<controller_description>{"acceleration_feedforward_V_s2_per_m", rule::any_number,
-                                       &controller_description::acceleration_feedforward_V_s2_per_m},
-    number_key<controller_description>{"viscous_feedforward_V_s_per_m", rule::any_number,
-                                       &controller_description::viscous_feedforward_V_s_per_m},
-    number_key<controller_description>{"coulomb_feedforward_V", rule::any_number,
-                                       &controller_description::coulomb_feedforward_V},
-};
-inline constexpr std::array<std::string_view, 3> controller_other_keys{"kind", "velocity_estimator", "notch"};
-
-inline constexpr std::array notch_keys{
-    number_key<notch_description>{"frequency_Hz", rule::positive, &notch_description::frequency_Hz, true},
-    number_key<notch_description>{"damping", rule::positive, &notch_description::damping, true},
-};
-
 inline constexpr std::array actuator_keys{
     number_key<actuator_description>{"limit_V", rule::positive, &actuator_description::limit_V},
     number_key<actuator_description>{"dac_range_V", rule::positive, &actuator_description::dac_range_V},
@@ -130,7 +105,6 @@ inline std::vector<std::string_view> keys_of_box(std::string_view box) {
     if (box == "encoder") add(names_of(encoder_keys));
     if (box == "actuator") add(names_of(actuator_keys));
     if (box == "process") add(names_of(process_keys)), add(process_other_keys);
-    if (box == "controller") add(names_of(controller_keys_of_file));
     return out;
 }
 
