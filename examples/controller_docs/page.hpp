@@ -42,9 +42,10 @@ inline std::string fed_forward(const controller_kind& kind) {
 
 inline std::string section(const controller_kind& kind) {
     std::string out = fmt::format("## `{}`: {}\n\n{}. ", kind.name, kind.label, kind.law);
-    out += kind.motions ? "It reads velocities: the log's columns `_ref_m_per_s`, `_ref_m_per_s2`, `_vel_m_per_s` where "
-                          "they are there, else differences of the positions.\n"
-                        : "It reads positions only.\n";
+    out += kind.motions
+               ? "It reads velocities: the log's columns `_ref_m_per_s`, `_ref_m_per_s2`, `_vel_m_per_s` where "
+                 "they are there, else differences of the positions.\n"
+               : "It reads positions only.\n";
     out += fmt::format("What `compensate` may set: {}.\n\n", fed_forward(kind));
     out += "| key | meaning | value | absent | searched |\n|---|---|---|---|---|\n";
     for (const controller_key& key : kind.keys) {
@@ -62,7 +63,7 @@ inline std::string section(const controller_kind& kind) {
 /// The part of the page behind `intro`, which is written by hand.
 inline std::string page(const std::string& intro) {
     std::string out = intro;
-    for (const controller_kind* kind : controller_kinds()) out += "\n" + section(*kind);
+    for (const controller_kind* kind : controller_kinds()) out += fmt::format("\n{}", section(*kind));
     return out;
 }
 

@@ -30,7 +30,8 @@ inline json schema_of(const controller_key& key) {
         out = schema_of(key.rule);
         break;
     case key_form::list:
-        out = {{"type", "array"}, {"items", schema_of(key.rule)}, {"minItems", key.least}, {"maxItems", key.most}};
+        out = {
+            {"type", "array"}, {"items", schema_of(key.rule)}, {"minItems", key.least}, {"maxItems", key.most}};
         break;
     case key_form::word:
         out["enum"] = json::array();
@@ -78,12 +79,12 @@ inline json schema_of(const controller_kind& kind, const place& at) {
         (*box)["properties"][name] = schema_of(key);
         const bool told = at.drive_is_known && key.name.starts_with("plant_");
         if (!key.needed_with.empty())
-            out["anyOf"] = {{{"required", {name}}},
-                            {{"required", {key.needed_with}},
-                             {"not",
-                              {{"properties",
-                                {{std::string(key.needed_with),
-                                  {{"const", kind.key(key.needed_with).words[0]}}}}}}}}};
+            out["anyOf"] = {
+                {{"required", {name}}},
+                {{"required", {key.needed_with}},
+                 {"not",
+                  {{"properties",
+                    {{std::string(key.needed_with), {{"const", kind.key(key.needed_with).words[0]}}}}}}}}};
         if (!key.needed || told) continue;
         if (old.empty()) {
             (*box)["required"].push_back(name);
@@ -112,8 +113,9 @@ inline json schema() {
         if (!open) name["enum"] = names;
         json any{{"type", "object"}, {"required", {at.named_by}}, {"properties", {{at.named_by, name}}}};
         if (open)
-            any["description"] = "Of a kind that is not known nothing is checked: the axis is diagnosed from the "
-                                 "command onwards.";
+            any["description"] =
+                "Of a kind that is not known nothing is checked: the axis is diagnosed from the "
+                "command onwards.";
         any["allOf"] = kinds;
         defs[open ? fmt::format("{}controller", at.prefix) : std::string("law")] = any;
         for (const controller_kind* kind : controller_kinds())
@@ -121,7 +123,8 @@ inline json schema() {
     }
     return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
             {"title", "Controllers in machine files of quadrant, and laws in files of quadrant-cnc"},
-            {"description", "Written by controller_docs from the records of the kinds. SI units, named in every key."},
+            {"description",
+             "Written by controller_docs from the records of the kinds. SI units, named in every key."},
             {"$defs", defs}};
 }
 

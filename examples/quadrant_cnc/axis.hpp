@@ -12,7 +12,7 @@ namespace quadrant_cnc {
 /// What an axis did in one servo period; SI.
 struct axis_sample {
     double reference = 0, reading = 0, velocity = 0, command = 0; ///< of this sample: what a log holds
-    double place = 0;                               ///< where the table was when it was read
+    double place = 0;                                             ///< where the table was when it was read
     double effort = 0; ///< current [A], or command of the motor [V], until the next sample
     bool limited = false, faulted = false;
 };

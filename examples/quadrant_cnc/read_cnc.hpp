@@ -121,8 +121,7 @@ private:
         const auto name = node.need("law");
         const auto* kind = quadrant::diagnosis::find_controller_kind(name.text());
         if (!kind)
-            name.refuse(
-                fmt::format("{} is none of {}", qd::in_quotes(name.text()), qd::names_of_kinds()));
+            name.refuse(fmt::format("{} is none of {}", qd::in_quotes(name.text()), qd::names_of_kinds()));
         nlohmann::json whole = *node.value;
         for (const auto& [key, value] : plant_keys_of(a))
             if (has_key(*kind, key) && !whole.contains(key)) whole[key] = value;
@@ -130,7 +129,8 @@ private:
         a.law = qd::read_controller(*kind, filled, out_.servo_period_s, "law", [](const std::string&) {});
     }
     static bool has_key(const quadrant::diagnosis::controller_kind& kind, std::string_view name) {
-        return std::any_of(kind.keys.begin(), kind.keys.end(), [&](const auto& key) { return key.name == name; });
+        return std::any_of(kind.keys.begin(), kind.keys.end(),
+                           [&](const auto& key) { return key.name == name; });
     }
 
     void read_friction_feedforward(const qd::json_node& node, axis_description& a) const {

@@ -191,7 +191,8 @@ std::string log_header(const cnc_description& cnc) {
     std::string out = "t_s";
     for (const axis_description& a : cnc.axes) {
         out += fmt::format(",{}_ref_m", a.name());
-        if (a.motion_is_logged()) out += fmt::format(",{0}_ref_m_per_s,{0}_ref_m_per_s2,{0}_vel_m_per_s", a.name());
+        if (a.motion_is_logged())
+            out += fmt::format(",{0}_ref_m_per_s,{0}_ref_m_per_s2,{0}_vel_m_per_s", a.name());
         out += fmt::format(",{0}_pos_m,{0}_cmd_V", a.name());
     }
     return out;

@@ -5,8 +5,8 @@
 #include "quadrant/in_si.hpp"
 #include "quadrant/literals.hpp"
 
-#include <cstdlib>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -64,15 +64,19 @@ TEST_CASE("linuxcnc_pid: every output is that of LinuxCNC's component, bit for b
     CHECK(equal == samples);
 }
 
-TEST_CASE("linuxcnc_pid: settled in an even motion it gives the command that it was told, and goes on from there") {
+TEST_CASE(
+    "linuxcnc_pid: settled in an even motion it gives the command that it was told, and goes on from there") {
     law block({.pgain = 4150_V / 1_m,
                .igain = in_si(33000.0),
                .dgain = 35_V / 1_mps,
                .ff1 = 0.22_V / 1_mps,
                .error_previous_target = false},
               1_ms);
-    block.settle({.reference = 20_mm, .measured = 19.9_mm, .reference_velocity = 50_mmps,
-                  .measured_velocity = 50_mmps, .command = 1.3_V});
+    block.settle({.reference = 20_mm,
+                  .measured = 19.9_mm,
+                  .reference_velocity = 50_mmps,
+                  .measured_velocity = 50_mmps,
+                  .command = 1.3_V});
     const auto u = block(law::position(20.05_mm), 19.95_mm); // the same error: only the integral has gone on
     CHECK(u.value() == doctest::Approx(1.3 + 33000 * 1e-4 * 1e-3));
     block.settle(5_mm, 0.7_V);
@@ -80,7 +84,8 @@ TEST_CASE("linuxcnc_pid: settled in an even motion it gives the command that it 
 }
 
 TEST_CASE("linuxcnc_pid: the integral rests while the output is at its limit and the error points there") {
-    law block({.pgain = 100_V / 1_m, .igain = in_si(1000.0), .maxoutput = 1_V, .error_previous_target = false}, 1_ms);
+    law block({.pgain = 100_V / 1_m, .igain = in_si(1000.0), .maxoutput = 1_V, .error_previous_target = false},
+              1_ms);
     for (int k = 0; k < 100; ++k) block(law::position(20_mm), 0_mm);
     CHECK(block.limited());
     CHECK(block.now().error_i.value() == doctest::Approx(20e-6)); // one sample of it, before the first limit

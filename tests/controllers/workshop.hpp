@@ -24,7 +24,9 @@ inline const axis_description& axis_of(std::string_view kind) {
         if (a.name == kind) return a;
     throw std::out_of_range(std::string(kind));
 }
-inline double dac(const axis_description& a) { return *a.actuator.dac_range_V / std::exp2(*a.actuator.dac_bits); }
+inline double dac(const axis_description& a) {
+    return *a.actuator.dac_range_V / std::exp2(*a.actuator.dac_bits);
+}
 
 /// Two tones of displacement that begin and end smoothly, and rests between; rounded as in a file.
 inline axis_log asked(double seconds) {
@@ -49,8 +51,7 @@ inline axis_log asked(double seconds) {
 /// The log of an axis under a controller.
 inline axis_log logged(const axis_description& axis, const controller_description& c, double seconds = 2.2) {
     axis_log log = asked(seconds);
-    const auto run =
-        simulate_closed_loop(c, axis, plant_model(axis), machine().sample_period_s, log);
+    const auto run = simulate_closed_loop(c, axis, plant_model(axis), machine().sample_period_s, log);
     log.position = run.position;
     for (double& y : log.position) y = std::round(y * 1e12) / 1e12;
     log.command = run.command;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
 #include "quadrant/diagnosis/plant_model.hpp"
 #include "quadrant/diagnosis/read/machine_keys.hpp"
 #include "quadrant/diagnosis/read_diagnosis.hpp"

@@ -405,10 +405,11 @@ TEST_CASE(
     CHECK(absent.notes.at(0) == "axis x: no controller is described: diagnosed from the command onwards.");
     const auto strange = read_machine(with(controller, R"({"kind": "vendor", "gain": []})"), "m");
     CHECK_FALSE(strange.axes[0].controller);
-    CHECK(strange.notes.at(0) ==
-          "axis x: controller kind \"vendor\" is not known (known: cascade_p_pi, p_velocity, milling_axis, "
-          "linuxcnc_pid, pid, p_pi, sliding_mode, lead_lag, pole_placement, zero_phase, generalized_predictive, "
-          "state_feedback, predictive): diagnosed from the command onwards.");
+    CHECK(
+        strange.notes.at(0) ==
+        "axis x: controller kind \"vendor\" is not known (known: cascade_p_pi, p_velocity, milling_axis, "
+        "linuxcnc_pid, pid, p_pi, sliding_mode, lead_lag, pole_placement, zero_phase, generalized_predictive, "
+        "state_feedback, predictive): diagnosed from the command onwards.");
     CHECK(refused_value(controller + "/kind", "7") == "machine.json: axes.x.controller.kind: must be a string");
     CHECK(refused_value(controller + "/velocity_feedforward", "\"1\"") ==
           "machine.json: axes.x.controller.velocity_feedforward: must be a number");

@@ -92,10 +92,14 @@ const std::vector<one_case> cases{
     {1000000, true, {{"Pgain", 100}, {"Igain", 0.3}, {"Dgain", 0.7}, {"FF1", 1}, {"bias", 0.017}}},
     {250000, true, {{"Pgain", 7}, {"FF0", 0.3}, {"FF1", 0.021}, {"FF2", 0.0013}, {"FF3", 0.00001}}},
     {500000, false, {{"Pgain", 50}, {"Igain", 900}, {"Dgain", 0.4}, {"deadband", 0.01}, {"maxoutput", 2}}},
-    {500000, false, {{"Pgain", 50}, {"Igain", 900}, {"maxerror", 0.02}, {"maxerrorI", 0.0001}, {"maxoutput", 3}}},
+    {500000,
+     false,
+     {{"Pgain", 50}, {"Igain", 900}, {"maxerror", 0.02}, {"maxerrorI", 0.0001}, {"maxoutput", 3}}},
     {333333, true, {{"Pgain", 3}, {"Dgain", 0.4}, {"maxerrorD", 1.5}, {"FF1", 0.1}, {"maxcmdD", 8}}},
     {999999, false, {{"Pgain", 3}, {"FF2", 0.01}, {"maxcmdDD", 300}, {"FF3", 0.0001}, {"maxcmdDDD", 50000}}},
-    {1000000, true, {{"Pgain", -2}, {"Igain", -10}, {"Dgain", -0.1}, {"FF1", -0.1}, {"bias", -0.2}, {"maxoutput", 0.5}}},
+    {1000000,
+     true,
+     {{"Pgain", -2}, {"Igain", -10}, {"Dgain", -0.1}, {"FF1", -0.1}, {"bias", -0.2}, {"maxoutput", 0.5}}},
 };
 
 } // namespace
@@ -112,12 +116,15 @@ int main(int count, char** arguments) {
     };
     for (const one_case& c : cases) {
         void* const component = dlopen(arguments[1], RTLD_NOW | RTLD_LOCAL);
-        const auto start = component ? reinterpret_cast<int (*)()>(dlsym(component, "rtapi_app_main")) : nullptr;
+        const auto start =
+            component ? reinterpret_cast<int (*)()>(dlsym(component, "rtapi_app_main")) : nullptr;
         if (!start || start() != 0 || !calculate) {
             std::fprintf(stderr, "%s\n", component ? "the component does not start" : dlerror());
             return 1;
         }
-        const auto real = [](const char* name) -> volatile double& { return *reals.at(std::string("pid.0.") + name); };
+        const auto real = [](const char* name) -> volatile double& {
+            return *reals.at(std::string("pid.0.") + name);
+        };
         *bits.at("pid.0.enable") = true;
         *bits.at("pid.0.error-previous-target") = c.previous_target;
         std::printf("case %ld error-previous-target %d", c.period, c.previous_target ? 1 : 0);

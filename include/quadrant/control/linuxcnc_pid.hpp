@@ -48,13 +48,13 @@ public:
         gain_of<Command, signal::acceleration, number> ff2{};
         quantity<unit_quotient<typename Command::unit, per_second>, number> ff3{};
         quantity_of<Command, number> bias{};
-        quantity_of<signal::position, number> deadband{};                      ///< >= 0
-        quantity_of<signal::position, number> maxerror{};                      ///< >= 0; 0: no limit, as all below
-        quantity<unit_product<si::length, si::time>, number> maxerror_i{};     ///< of the integral
-        quantity_of<signal::velocity, number> maxerror_d{};                    ///< of the derivative of the error
-        quantity_of<signal::velocity, number> maxcmd_d{};                      ///< of the command's derivatives:
-        quantity_of<signal::acceleration, number> maxcmd_dd{};                 ///< second
-        quantity<per_second, number> maxcmd_ddd{};                             ///< third
+        quantity_of<signal::position, number> deadband{};                  ///< >= 0
+        quantity_of<signal::position, number> maxerror{};                  ///< >= 0; 0: no limit, as all below
+        quantity<unit_product<si::length, si::time>, number> maxerror_i{}; ///< of the integral
+        quantity_of<signal::velocity, number> maxerror_d{};                ///< of the derivative of the error
+        quantity_of<signal::velocity, number> maxcmd_d{};                  ///< of the command's derivatives:
+        quantity_of<signal::acceleration, number> maxcmd_dd{};             ///< second
+        quantity<per_second, number> maxcmd_ddd{};                         ///< third
         quantity_of<Command, number> maxoutput{};
         bool error_previous_target = true;
     };
@@ -93,7 +93,8 @@ public:
         const state& was = state_;
         const position e = seen((given_.error_previous_target ? was.command : command) - feedback);
         state next{was.error_i, command, feedback, {}, {}, 0};
-        if (!(e.value() * Real(was.at_limit) > Real(0))) next.error_i += integral::from_value(e.value() * Real(period_));
+        if (!(e.value() * Real(was.at_limit) > Real(0)))
+            next.error_i += integral::from_value(e.value() * Real(period_));
         next.error_i = limited_to(next.error_i, maxerror_i_);
         const velocity dr = rate<velocity>(command - was.command), dy = rate<velocity>(feedback - was.feedback);
         const velocity error_d = limited_to(velocity(dr - dy), maxerror_d_);
@@ -117,7 +118,8 @@ public:
     void settle(const start& s) noexcept {
         if (!finite(s.reference, s.measured, s.reference_velocity, s.measured_velocity, s.command))
             return out_.raise();
-        const position command_before = s.reference - position::from_value(s.reference_velocity.value() * Real(period_));
+        const position command_before =
+            s.reference - position::from_value(s.reference_velocity.value() * Real(period_));
         const position e = seen((given_.error_previous_target ? command_before : s.reference) - s.measured);
         const velocity d = limited_to(velocity(s.reference_velocity - s.measured_velocity), maxerror_d_),
                        cmd_d = limited_to(s.reference_velocity, maxcmd_d_);

@@ -41,28 +41,25 @@ inline closed_loop_run simulate_closed_loop(const controller_description& c, con
     const double q = axis.encoder.resolution_m;
     const double limit = axis.actuator.limit_V.value_or(std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < n; ++k) {
-        const double reading =
-            s.load + plant.cyclic.at(s.load) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
+        const double reading = s.load + plant.cyclic.at(s.load) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
         out.position[k] = q > 0 ? std::round(reading / q) * q : reading;
         // A tachometer where the log has one; else the velocity follows from what the encoder reads.
         const double velocity = !log.velocity.empty() ? s.load_velocity
                                 : k == 0              ? 0
                                                       : (out.position[k] - out.position[k - 1]) / period;
-        out.command[k] = k == 0 ? log.command[0]
-                                : controller->step(in.asked(static_cast<std::ptrdiff_t>(std::min(k + ahead, n - 1))),
-                                                   {in_si(out.position[k]), in_si(velocity)});
+        out.command[k] =
+            k == 0 ? log.command[0]
+                   : controller->step(in.asked(static_cast<std::ptrdiff_t>(std::min(k + ahead, n - 1))),
+                                      {in_si(out.position[k]), in_si(velocity)});
         if (!added.empty() && k > 0) out.command[k] = std::clamp(out.command[k] + added[k], -limit, limit);
-        const bool lost =
-            plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
+        const bool lost = plant.loss > 0 && k > 0 && static_cast<double>(random() >> 11) * 0x1p-53 < plant.loss;
         applied[k] = lost ? applied[k - 1] : out.command[k];
         const auto past = [&](std::size_t back) { return applied[k >= back ? k - back : 0]; };
         surroundings now{.time = static_cast<double>(k) * period,
-                         .other_acceleration =
-                             log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
+                         .other_acceleration = log.other_acceleration.empty() ? 0 : log.other_acceleration[k]};
         for (int i = 0; i < substeps && first > 0; ++i, now.time += first / substeps)
             older(s, past(whole + 1), now);
-        for (int i = 0; i < substeps; ++i, now.time += (period - first) / substeps)
-            newer(s, past(whole), now);
+        for (int i = 0; i < substeps; ++i, now.time += (period - first) / substeps) newer(s, past(whole), now);
     }
     return out;
 }

@@ -42,8 +42,8 @@ struct loop_columns {
     std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
 
     static loop_columns of(const axis_log& log) {
-        return {log.reference,          log.position, log.command, log.reference_velocity,
-                log.reference_acceleration, log.velocity};
+        return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
+                log.velocity};
     }
 };
 
@@ -107,7 +107,7 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
         loop->settle({.reference = x, .measured = x, .command = asked});
         double last = asked;
         for (std::ptrdiff_t k = from; k <= 0; ++k)
-            last = loop->step(in.asked(std::min(k + ahead, in.rows() - 1)), in.measured(k));
+            last = loop->show(in.asked(std::min(k + ahead, in.rows() - 1)), in.measured(k), asked);
         if (std::isfinite(last)) asked += command - last;
     }
     return loop;
@@ -116,23 +116,33 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
 /// The controller box alone: fed the logged reference and position, it puts out what the described controller would
 /// have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of the encoder is in
 /// the first command by way of the velocity. What that leaves open of the initial integral is a constant offset of the
-/// replay, which a second pass takes from the whole record. Rows whose look-ahead ends behind the log are the logged ones.
+/// replay, which a second pass takes from the whole record. A law that follows from what it applied is told so by the log. Rows
+/// that a controller is only shown, and those whose look-ahead ends behind the log, are the logged ones.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, const loop_columns& log) {
     const auto fresh = made(c, a, period);
     const loop_inputs in(log, period);
     const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
+    const std::size_t shown = fresh->past() > 0 ? fresh->past() - fresh->lead() : 0;
     std::vector<double> out(log.command.begin(), log.command.end());
-    const auto pass = [&](double start) {
-        const auto loop = begun(*fresh, in, start);
-        for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k)
-            out[static_cast<std::size_t>(k)] = loop->step(in.asked(k + ahead), in.measured(k));
+    const auto pass = [&](double offset) {
+        const auto loop = begun(*fresh, in, log.command[0] + offset);
+        for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k) {
+            const auto row = static_cast<std::size_t>(k);
+            if (row < shown) {
+                const bool missing = row + 1 == shown || !loop->fixed_by_last_row();
+                loop->show(in.asked(k + ahead), in.measured(k), log.command[row] + (missing ? offset : 0));
+                continue;
+            }
+            out[row] = loop->step(in.asked(k + ahead), in.measured(k));
+            loop->applied(log.command[row]);
+        }
     };
-    pass(log.command[0]);
+    pass(0);
     if (fresh->remembers()) {
         std::vector<double> offset(out.size());
         for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
-        pass(log.command[0] + quantile(offset, 0.5));
+        pass(quantile(offset, 0.5));
     }
     return out;
 }

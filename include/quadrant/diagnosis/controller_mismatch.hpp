@@ -59,7 +59,8 @@ inline std::vector<searched_key> searched_keys(const controller_description& c, 
                    sized = key.scale != 0 || values[key.name] != 0,
                    one_number = key.form == key_form::number || key.form == key_form::yes_no;
         if (!key.searched || !one_number || !sized || !(there || in_box)) continue;
-        const double scale = key.scale_of.empty() ? key.scale * (key.per_volt ? volt : 1) : values[key.scale_of];
+        const double scale =
+            key.scale_of.empty() ? key.scale * (key.per_volt ? volt : 1) : values[key.scale_of];
         out.push_back({std::string(key.name),
                        [name = std::string(key.name), start = values[key.name]](d& x) -> double& {
                            auto& place = x.values[name];
@@ -123,8 +124,8 @@ inline controller_finding judge_controller(const controller_description& describ
     const auto difference = [&](const std::vector<double>& replayed) {
         std::vector<double> d(replayed.size() - from);
         for (std::size_t k = from; k < replayed.size(); ++k)
-            d[k - from] = but_for_the_sign(replayed[k] - log.command[k], coulomb,
-                                           std::max<std::size_t>(1, k), log);
+            d[k - from] =
+                but_for_the_sign(replayed[k] - log.command[k], coulomb, std::max<std::size_t>(1, k), log);
         return d;
     };
     const auto replay = [&](const controller_description& c) {
@@ -244,8 +245,7 @@ inline controller_finding judge_controller(const controller_description& describ
     }
     out.low = out.value - width;
     out.high = out.value + width;
-    out.mended = !out.key.empty() &&
-                 out.after_rms <= agrees && out.after_rms < 0.5 * out.difference_rms;
+    out.mended = !out.key.empty() && out.after_rms <= agrees && out.after_rms < 0.5 * out.difference_rms;
     if (out.mended)
         for (auto& other : mends)
             if (other.key != out.key) out.alternatives.push_back(std::move(other));

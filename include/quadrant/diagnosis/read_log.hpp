@@ -138,7 +138,8 @@ private:
 
     /// The velocities that the log has columns for.
     void add_motion(axis_log& axis, const log_header::axis_columns& at) {
-        if (at.reference_velocity) axis.reference_velocity = std::move(header_.columns[*at.reference_velocity].values);
+        if (at.reference_velocity)
+            axis.reference_velocity = std::move(header_.columns[*at.reference_velocity].values);
         if (at.reference_acceleration)
             axis.reference_acceleration = std::move(header_.columns[*at.reference_acceleration].values);
         if (at.velocity) axis.velocity = std::move(header_.columns[*at.velocity].values);

@@ -61,7 +61,8 @@ struct parameter_estimate {
     bool on_bound = false; ///< the fit stopped where it was not allowed to go on: the value may lie beyond
 };
 
-/// Another name for the same signal on this record, with the parameters it would have.
+/// Another name for the same signal on this record, with the parameters it would have; or, of the same name, other parameters
+/// that explain the record as well.
 struct reading {
     std::string effect;
     std::vector<parameter_estimate> parameters;

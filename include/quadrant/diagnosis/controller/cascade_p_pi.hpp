@@ -21,16 +21,15 @@ cascade<cascade_p_pi_boxes<Estimator, Notch>> described_cascade(const given_valu
                                                                 const actuator_description& a, double period) {
     using boxes = cascade_p_pi_boxes<Estimator, Notch>;
     const output_stage out = stage_of(a);
-    typename boxes::parameters p{
-        .position_gain = in_si(v["position_gain_per_s"]),
-        .velocity_gain = in_si(v["velocity_gain_V_s_per_m"]),
-        .velocity_integral = in_si(v["velocity_integral_V_per_m"]),
-        .velocity_feedforward = v["velocity_feedforward"],
-        .acceleration_feedforward = in_si(v["acceleration_feedforward_V_s2_per_m"]),
-        .viscous_feedforward = in_si(v["viscous_feedforward_V_s_per_m"]),
-        .coulomb_feedforward = in_si(v["coulomb_feedforward_V"]),
-        .limit = in_si(out.limit),
-        .dac_step = in_si(out.dac_step)};
+    typename boxes::parameters p{.position_gain = in_si(v["position_gain_per_s"]),
+                                 .velocity_gain = in_si(v["velocity_gain_V_s_per_m"]),
+                                 .velocity_integral = in_si(v["velocity_integral_V_per_m"]),
+                                 .velocity_feedforward = v["velocity_feedforward"],
+                                 .acceleration_feedforward = in_si(v["acceleration_feedforward_V_s2_per_m"]),
+                                 .viscous_feedforward = in_si(v["viscous_feedforward_V_s_per_m"]),
+                                 .coulomb_feedforward = in_si(v["coulomb_feedforward_V"]),
+                                 .limit = in_si(out.limit),
+                                 .dac_step = in_si(out.dac_step)};
     if constexpr (std::is_same_v<Estimator, filtered_estimate>)
         p.estimator = {.corner = in_si(v["velocity_filter_Hz"])};
     if constexpr (std::is_same_v<Notch, command_notch>)
@@ -63,10 +62,7 @@ using detail::rule::positive;
 
 inline constexpr std::array<controller_key, 11> cascade_p_pi_keys{{
     {.name = "position_gain_per_s", .says = "P of the position loop", .rule = not_negative, .needed = true},
-    {.name = "velocity_gain_V_s_per_m",
-     .says = "P of the velocity loop",
-     .rule = not_negative,
-     .needed = true},
+    {.name = "velocity_gain_V_s_per_m", .says = "P of the velocity loop", .rule = not_negative, .needed = true},
     {.name = "velocity_integral_V_per_m",
      .says = "I of the velocity loop",
      .rule = not_negative,
@@ -104,8 +100,7 @@ inline constexpr std::array<controller_key, 11> cascade_p_pi_keys{{
 } // namespace controllers
 
 /// Calls f with the cascade that the machine file describes, as a value of its own type.
-template <class F>
-auto with_cascade(const given_values& v, const actuator_description& a, double period, F f) {
+template <class F> auto with_cascade(const given_values& v, const actuator_description& a, double period, F f) {
     using namespace detail;
     const bool notched = v.has_box("notch");
     if (v["velocity_estimator"] == 1)
@@ -121,7 +116,8 @@ namespace controllers {
 inline constexpr controller_kind cascade_p_pi{
     .name = "cascade_p_pi",
     .label = "cascade of P and PI",
-    .law = "u = notch(PI(position_gain (r - y) + velocity_feedforward v_ref - v)) + feedforwards; block `cascade`",
+    .law =
+        "u = notch(PI(position_gain (r - y) + velocity_feedforward v_ref - v)) + feedforwards; block `cascade`",
     .keys = cascade_p_pi_keys,
     .make = [](const given_values& v, const actuator_description& a,
                double period) -> std::unique_ptr<running_controller> {

@@ -55,8 +55,9 @@ private:
 };
 
 /// A law of a feed axis with what stands beside and behind it. The velocity is the measured one, or that of a filter; a
-/// Kalman filter gives the position, too.
-template <class Law> class feed_loop final : public running_controller {
+/// Kalman filter gives the position, too. A law that is `Taught` remembers its commands or estimates from them: the log tells
+/// it what was applied where it begins, and in every row where it cannot run alone.
+template <class Law, bool Taught> class feed_loop final : public running_controller {
     using boxes = feed_control_boxes<Law, known_friction>;
     using estimator = filtered_derivative<signal::position, signal::velocity>;
     using state_filter = kalman<signal::voltage>;
@@ -82,15 +83,34 @@ public:
         axis_measurement<> now = measured;
         if (velocity_) now.velocity = (*velocity_)(measured.position);
         if (states_) {
-            now.velocity = (*states_)(measured.position, control_.wire.command); // z^-1
+            now.velocity = (*states_)(measured.position, in_si(applied_)); // z^-1
             now.position = states_->position();
         }
-        return control_(asked, now).value();
+        return applied_ = control_(asked, now).value();
     }
+    void applied(double command) override {
+        if (told_) tell(command);
+    }
+    double show(const axis_motion<>& asked, const axis_measurement<>& measured, double command) override {
+        const double u = step(asked, measured);
+        if constexpr (Taught) tell(command);
+        return Taught ? command : u;
+    }
+    bool remembers() const override { return !told_; }
+    /// Alone, without an axis that answers, its command grows without bound: it can be replayed only row by row.
+    bool grows() {
+        constexpr int rows = 10000;
+        settle({.command = 1});
+        for (int k = 0; k < rows; ++k)
+            if (!(std::abs(step({}, {})) < 10)) return true;
+        return false;
+    }
+    void told_always(bool yes) { told_ = yes; }
     void settle(const loop_start& row) override {
         control_.settle(in_si(row.measured), in_si(row.command));
         if (velocity_) velocity_->settle(in_si(row.measured));
         if (states_) states_->settle(in_si(row.measured));
+        applied_ = row.command;
     }
     std::size_t past() const override { return past_ + lead(); }
     std::size_t lead() const override {
@@ -104,16 +124,30 @@ public:
     bool faulted() const override { return control_.faulted(); }
 
 private:
+    void tell(double command) {
+        applied_ = command;
+        if constexpr (Taught) {
+            const auto u = quantity_of<signal::voltage>::from_value(command);
+            // Within a step of the converter it is what the law asked for, which the law knows better than the log.
+            if (std::abs(command - control_.wire.limited.value()) > control_.box.dac.given().step.value())
+                control_.box.law.applied(control_.wire.feedback + (u - control_.wire.wanted));
+        }
+    }
+
     feed_control<boxes> control_;
     std::optional<estimator> velocity_;
     std::optional<state_filter> states_;
     std::size_t past_;
+    double applied_ = 0; ///< since the last row [V]
+    bool told_ = false;  ///< by the log, in every row
 };
 
-template <class Law>
+template <class Law, bool Taught>
 std::unique_ptr<running_controller> make_feed_loop(const given_values& v, const actuator_description& a,
                                                    double period, const typename Law::parameters& law) {
-    return std::make_unique<feed_loop<Law>>(v, a, period, law);
+    auto loop = std::make_unique<feed_loop<Law, Taught>>(v, a, period, law);
+    if constexpr (Taught) loop->told_always(feed_loop<Law, Taught>(v, {}, period, law).grows());
+    return loop;
 }
 
 /// What a law believes of the axis.

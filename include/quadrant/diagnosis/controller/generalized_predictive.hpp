@@ -23,7 +23,7 @@ inline constexpr controller_kind generalized_predictive{
     .keys = generalized_predictive_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<generalized_predictive_law<>>(
+            return detail::make_feed_loop<generalized_predictive_law<>, true>(
                 v, a, period,
                 quadrant::generalized_predictive<20>(detail::believed_plant(v),
                                                      predictive_costs<>{.effort = in_si(v["effort_m_per_V"])},

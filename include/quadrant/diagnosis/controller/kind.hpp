@@ -20,15 +20,16 @@ struct controller_key {
     detail::number_rule rule = detail::rule::any_number;
     bool needed = false;
     double otherwise = 0; ///< the value of an absent key; infinite: none, and then it is not searched either
-    bool searched = true; ///< it may be the key that differs from the described one; only numbers and yes_no can
-    double scale = 1;     ///< a sensible size where that search starts from 0; 0: from there it does not start
-    bool per_volt = false;             ///< the scale is in volts: times the volt of the record
-    std::string_view scale_of = {};    ///< the key whose value is the scale
+    bool searched =
+        true;         ///< it may be the key that differs from the described one; only numbers and yes_no can
+    double scale = 1; ///< a sensible size where that search starts from 0; 0: from there it does not start
+    bool per_volt = false;          ///< the scale is in volts: times the volt of the record
+    std::string_view scale_of = {}; ///< the key whose value is the scale
     key_form form = key_form::number;
-    std::string_view old_name = {};    ///< of the last part of the name; read with a note
+    std::string_view old_name = {};             ///< of the last part of the name; read with a note
     std::array<std::string_view, 3> words = {}; ///< of a word: what it may be, the first where it is absent
     std::size_t least = 1, most = 1;            ///< entries of a list
-    std::string_view needed_with = {};          ///< a word key: needed while that has its first word, else not used
+    std::string_view needed_with = {}; ///< a word key: needed while that has its first word, else not used
 
     bool in_box() const { return name.find('.') != name.npos; }
     std::string_view box() const { return in_box() ? name.substr(0, name.find('.')) : std::string_view(); }
@@ -60,15 +61,14 @@ struct controller_kind {
     double (*rounding)(const given_values&, double reference_step, double position_step,
                        double period) = nullptr;
     feedforward_key coulomb{}, viscous{}, acceleration{}; ///< what `compensate` may set
-    bool in_cnc = false;   ///< quadrant-cnc offers it as a law
-    bool motions = false;  ///< it reads velocities: of the log's columns where there are any, else differences
+    bool in_cnc = false;                                  ///< quadrant-cnc offers it as a law
+    bool motions = false; ///< it reads velocities: of the log's columns where there are any, else differences
 
     /// The record of one key; throws std::invalid_argument for another one.
     const controller_key& key(std::string_view key_name) const {
         for (const controller_key& k : keys)
             if (k.name == key_name) return k;
-        throw std::invalid_argument(
-            fmt::format("controller kind {} has no key \"{}\"", name, key_name));
+        throw std::invalid_argument(fmt::format("controller kind {} has no key \"{}\"", name, key_name));
     }
 };
 
@@ -78,9 +78,7 @@ public:
     given_values(const controller_kind& kind, const controller_description& description)
         : kind_(kind), description_(description) {}
 
-    double operator[](std::string_view key) const {
-        return description_.number(key, kind_.key(key).otherwise);
-    }
+    double operator[](std::string_view key) const { return description_.number(key, kind_.key(key).otherwise); }
     bool has(std::string_view key) const { return description_.has(kind_.key(key).name); }
     bool has_box(std::string_view box) const {
         for (const controller_key& k : kind_.keys)

@@ -31,7 +31,7 @@ inline constexpr controller_kind lead_lag{
     .keys = lead_lag_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<quadrant::lead_lag<>>(
+            return detail::make_feed_loop<quadrant::lead_lag<>, true>(
                 v, a, period,
                 design_lead_lag(detail::believed_plant(v),
                                 {in_si(v["crossover_Hz"]), v["phase_margin_deg"], v["integral"]},

@@ -14,7 +14,8 @@ struct linuxcnc_loop {
     output_stage out;
 
     double step(double reference, double measured) {
-        return out(law(in_si(units * reference), quantity_of<signal::position>(in_si(units * measured))).value());
+        return out(
+            law(in_si(units * reference), quantity_of<signal::position>(in_si(units * measured))).value());
     }
     void settle(const loop_start& row) {
         law.settle({in_si(units * row.reference), in_si(units * row.measured),

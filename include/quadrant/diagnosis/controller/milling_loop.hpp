@@ -124,13 +124,24 @@ template <class Observer> class milling_loop final : public running_controller {
 public:
     milling_loop(const given_values& v, const actuator_description& a, double period, Observer observer)
         : axis_{.box = boxes_of(v, stage_of(a), duration::from_value(period), std::move(observer))},
-          past_(std::max<std::size_t>(100, static_cast<std::size_t>(0.05 / period))) {}
+          past_(rows_to_see(v, period)), learns_(v.has_box("memory")) {}
 
-    std::unique_ptr<running_controller> copy() const override {
-        return std::make_unique<milling_loop>(*this);
-    }
+    std::unique_ptr<running_controller> copy() const override { return std::make_unique<milling_loop>(*this); }
     double step(const axis_motion<>& asked, const axis_measurement<>& measured) override {
         return axis_({asked.position, asked.velocity, asked.acceleration}, measured.position).value();
+    }
+    void applied(double command) override {
+        if constexpr (requires(Observer & o, quantity_of<signal::voltage> u) { o.applied(u); }) {
+            const auto u = quantity_of<signal::voltage>::from_value(command);
+            if (u != axis_.wire.command)
+                axis_.box.disturbance.applied(axis_.wire.compensated + (u - axis_.wire.wanted));
+        }
+    }
+    bool fixed_by_last_row() const override { return true; } // its observer takes a constant for a disturbance
+    double show(const axis_motion<>& asked, const axis_measurement<>& measured, double command) override {
+        if (learns_) return running_controller::show(asked, measured, command); // what is tracked is not learnt
+        axis_.track({asked.position, asked.velocity, asked.acceleration}, measured.position, in_si(command));
+        return command;
     }
     void settle(const loop_start& row) override { axis_.settle(in_si(row.measured), in_si(row.command)); }
     std::size_t past() const override { return past_; }
@@ -139,6 +150,12 @@ public:
     bool faulted() const override { return axis_.faulted(); }
 
 private:
+    /// 50 ms, or until what is left of the observer's initial state is a ten-thousandth: (1 + x) exp(-x) at x = 12.
+    static std::size_t rows_to_see(const given_values& v, double period) {
+        const double of_observer =
+            v.has_box("observer") ? 12 / (2 * std::numbers::pi * v["observer.corner_Hz"]) : 0;
+        return std::max<std::size_t>(100, static_cast<std::size_t>(std::max(0.05, of_observer) / period));
+    }
     static boxes boxes_of(const given_values& v, const output_stage& out, duration T, Observer observer) {
         const filtered_derivative<signal::position, signal::velocity> speed(
             {.corner = in_si(v["velocity_filter_Hz"])}, T);
@@ -165,6 +182,7 @@ private:
 
     milling_axis<boxes> axis_;
     std::size_t past_;
+    bool learns_;
 };
 
 } // namespace quadrant::diagnosis::detail

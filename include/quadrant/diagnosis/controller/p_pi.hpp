@@ -5,29 +5,27 @@
 
 namespace quadrant::diagnosis::controllers {
 
-inline constexpr auto p_pi_keys =
-    detail::joined(std::array<controller_key, 5>{{
-                       {.name = "position_gain_per_s",
-                        .says = "P of the position loop",
-                        .rule = detail::rule::not_negative,
-                        .needed = true},
-                       {.name = "gain_V_s_per_m",
-                        .says = "P of the velocity loop",
-                        .rule = detail::rule::not_negative,
-                        .needed = true},
-                       {.name = "integral_gain_V_per_m",
-                        .says = "I of the velocity loop",
-                        .rule = detail::rule::not_negative,
-                        .scale_of = "gain_V_s_per_m"},
-                       {.name = "velocity_weight",
-                        .says = "share of the reference velocity in the demand",
-                        .otherwise = 1},
-                       {.name = "acceleration_gain_V_s2_per_m",
-                        .says = "times the reference acceleration",
-                        .scale = 0.01,
-                        .per_volt = true},
-                   }},
-                   feed_law_keys);
+inline constexpr auto p_pi_keys = detail::joined(
+    std::array<controller_key, 5>{{
+        {.name = "position_gain_per_s",
+         .says = "P of the position loop",
+         .rule = detail::rule::not_negative,
+         .needed = true},
+        {.name = "gain_V_s_per_m",
+         .says = "P of the velocity loop",
+         .rule = detail::rule::not_negative,
+         .needed = true},
+        {.name = "integral_gain_V_per_m",
+         .says = "I of the velocity loop",
+         .rule = detail::rule::not_negative,
+         .scale_of = "gain_V_s_per_m"},
+        {.name = "velocity_weight", .says = "share of the reference velocity in the demand", .otherwise = 1},
+        {.name = "acceleration_gain_V_s2_per_m",
+         .says = "times the reference acceleration",
+         .scale = 0.01,
+         .per_volt = true},
+    }},
+    feed_law_keys);
 
 /// P on position, PI on the measured velocity: block `p_pi`.
 inline constexpr controller_kind p_pi{
@@ -37,7 +35,7 @@ inline constexpr controller_kind p_pi{
     .keys = p_pi_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<quadrant::p_pi<>>(
+            return detail::make_feed_loop<quadrant::p_pi<>, false>(
                 v, a, period,
                 {.position_gain = in_si(v["position_gain_per_s"]),
                  .gain = in_si(v["gain_V_s_per_m"]),

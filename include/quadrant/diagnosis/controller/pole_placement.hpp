@@ -6,20 +6,17 @@
 
 namespace quadrant::diagnosis::controllers {
 
-inline constexpr auto pole_placement_keys =
-    detail::joined(believed_plant_keys,
-                   std::array<controller_key, 3>{{
-                       {.name = "natural_Hz",
-                        .says = "of the pair of poles of the loop",
-                        .rule = detail::rule::positive,
-                        .needed = true},
-                       {.name = "damping", .says = "of that pair", .rule = detail::rule::positive, .otherwise = 1},
-                       {.name = "observer_Hz",
-                        .says = "of the other poles",
-                        .rule = detail::rule::positive,
-                        .needed = true},
-                   }},
-                   feed_law_keys);
+inline constexpr auto pole_placement_keys = detail::joined(
+    believed_plant_keys,
+    std::array<controller_key, 3>{{
+        {.name = "natural_Hz",
+         .says = "of the pair of poles of the loop",
+         .rule = detail::rule::positive,
+         .needed = true},
+        {.name = "damping", .says = "of that pair", .rule = detail::rule::positive, .otherwise = 1},
+        {.name = "observer_Hz", .says = "of the other poles", .rule = detail::rule::positive, .needed = true},
+    }},
+    feed_law_keys);
 
 inline rst_poles poles_of(const given_values& v) {
     return {in_si(v["natural_Hz"]), v["damping"], in_si(v["observer_Hz"])};
@@ -33,9 +30,8 @@ inline constexpr controller_kind pole_placement{
     .keys = pole_placement_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<quadrant::pole_placement<>>(
-                v, a, period,
-                place_rst(detail::believed_plant(v), poles_of(v), duration::from_value(period)));
+            return detail::make_feed_loop<quadrant::pole_placement<>, true>(
+                v, a, period, place_rst(detail::believed_plant(v), poles_of(v), duration::from_value(period)));
         },
     .in_cnc = true,
     .motions = true};
@@ -48,7 +44,7 @@ inline constexpr controller_kind zero_phase{
     .keys = pole_placement_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<zero_phase_tracking<>>(
+            return detail::make_feed_loop<zero_phase_tracking<>, true>(
                 v, a, period,
                 zero_phase_rst(detail::believed_plant(v), poles_of(v), duration::from_value(period)));
         },

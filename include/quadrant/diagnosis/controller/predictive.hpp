@@ -8,8 +8,8 @@ namespace quadrant::diagnosis {
 namespace detail {
 
 inline constexpr std::size_t longest_horizon = 32;
-inline constexpr number_rule whole_horizon{
-    "must be a whole number from 1 to 32", [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }};
+inline constexpr number_rule whole_horizon{"must be a whole number from 1 to 32",
+                                           [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }};
 
 } // namespace detail
 
@@ -56,21 +56,25 @@ inline constexpr controller_kind predictive{
                double period) -> std::unique_ptr<running_controller> {
         using law = quadrant::predictive<detail::longest_horizon>;
         using position = quantity_of<signal::position>;
-        auto loop = std::make_unique<detail::feed_loop<law>>(
-            v, a, period,
-            law::parameters{.plant = detail::believed_plant(v),
-                            .weights = bryson_weights<signal::voltage>(
-                                position::from_value(v["position_error_m"]),
-                                quantity_of<signal::velocity>::from_value(v["velocity_error_m_per_s"]),
-                                quantity_of<signal::voltage>::from_value(v["increment_V"])),
-                            .horizon = static_cast<std::size_t>(v["horizon"])});
-        if (v.has_box("kalman")) // of a mass of 1: volts and accelerations are all that counts
-            loop->estimate_by({.mass = in_si(1.0),
-                               .force_constant = in_si(v["plant_gain_m_per_s2_V"]),
-                               .viscous = in_si(v["plant_damping_per_s"]),
-                               .encoder_noise = in_si(v["kalman.encoder_noise_m"]),
-                               .drift = in_si(v["plant_gain_m_per_s2_V"] * v["kalman.drift_V"])},
-                              period);
+        const law::parameters p{.plant = detail::believed_plant(v),
+                                .weights = bryson_weights<signal::voltage>(
+                                    position::from_value(v["position_error_m"]),
+                                    quantity_of<signal::velocity>::from_value(v["velocity_error_m_per_s"]),
+                                    quantity_of<signal::voltage>::from_value(v["increment_V"])),
+                                .horizon = static_cast<std::size_t>(v["horizon"])};
+        const auto made = [&](const actuator_description& out) {
+            auto loop = std::make_unique<detail::feed_loop<law, true>>(v, out, period, p);
+            if (v.has_box("kalman")) // of a mass of 1: volts and accelerations are all that counts
+                loop->estimate_by({.mass = in_si(1.0),
+                                   .force_constant = in_si(v["plant_gain_m_per_s2_V"]),
+                                   .viscous = in_si(v["plant_damping_per_s"]),
+                                   .encoder_noise = in_si(v["kalman.encoder_noise_m"]),
+                                   .drift = in_si(v["plant_gain_m_per_s2_V"] * v["kalman.drift_V"])},
+                                  period);
+            return loop;
+        };
+        auto loop = made(a);
+        loop->told_always(made({})->grows());
         return loop;
     },
     .motions = true};

@@ -31,7 +31,7 @@ inline constexpr controller_kind sliding_mode{
     .keys = sliding_mode_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<quadrant::sliding_mode<>>(
+            return detail::make_feed_loop<quadrant::sliding_mode<>, false>(
                 v, a, period,
                 {.plant = detail::believed_plant(v),
                  .sliding = in_si(v["sliding_per_s"]),

@@ -35,7 +35,7 @@ inline constexpr controller_kind state_feedback{
     .keys = state_feedback_keys,
     .make =
         [](const given_values& v, const actuator_description& a, double period) {
-            return detail::make_feed_loop<quadrant::state_feedback<>>(
+            return detail::make_feed_loop<quadrant::state_feedback<>, true>(
                 v, a, period,
                 {.plant = detail::believed_plant(v),
                  .position_gain = in_si(v["position_gain_V_per_m"]),

@@ -99,8 +99,8 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s, std::move(causes));
         a.compensations = ways.take();
         for (const std::string& effect : ways.without_key())
-            a.others.push_back(
-                {effect, fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
+            a.others.push_back({effect, fmt::format("a feedforward, for which controller kind {} has no key",
+                                                    controller.kind)});
         if (!axis.controller) {
             out.notes.push_back(
                 fmt::format("axis {}: no controller is described: nothing is forecast", a.name));

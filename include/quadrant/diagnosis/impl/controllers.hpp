@@ -17,12 +17,21 @@
 namespace quadrant::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::span<const controller_kind* const> controller_kinds() {
-    static constexpr std::array<const controller_kind*, 13> all{
-        &controllers::cascade_p_pi,   &controllers::p_velocity, &controllers::milling_axis,
-        &controllers::linuxcnc_pid,   &controllers::pid,        &controllers::p_pi,
-        &controllers::sliding_mode,   &controllers::lead_lag,   &controllers::pole_placement,
-        &controllers::zero_phase,     &controllers::generalized_predictive,
-        &controllers::state_feedback, &controllers::predictive};
+    static constexpr const controller_kind* all[] = {
+        &controllers::cascade_p_pi,
+        &controllers::p_velocity,
+        &controllers::milling_axis,
+        &controllers::linuxcnc_pid,
+        &controllers::pid,
+        &controllers::p_pi,
+        &controllers::sliding_mode,
+        &controllers::lead_lag,
+        &controllers::pole_placement,
+        &controllers::zero_phase,
+        &controllers::generalized_predictive,
+        &controllers::state_feedback,
+        &controllers::predictive,
+    };
     return all;
 }
 

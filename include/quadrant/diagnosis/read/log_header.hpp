@@ -100,12 +100,9 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                                                    in_quotes(name), axis_name));
             axis.kind = kind;
         }
-        (suffix.role == column_role::reference                ? axis.reference
-         : suffix.role == column_role::position               ? axis.position
-         : suffix.role == column_role::reference_velocity     ? axis.reference_velocity
-         : suffix.role == column_role::reference_acceleration ? axis.reference_acceleration
-         : suffix.role == column_role::velocity               ? axis.velocity
-                                                              : axis.command) = index;
+        (suffix.role == column_role::reference  ? axis.reference
+         : suffix.role == column_role::position ? axis.position
+                                                : axis.command) = index;
         if (suffix.role == column_role::command) {
             axis.command_unit = suffix.unit;
             axis.command_at = cells.offset();
@@ -113,6 +110,11 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
         out.columns[index].used = true;
     };
 
+    struct motion_column {
+        std::size_t index, offset;
+        const column_suffix* suffix;
+    };
+    std::vector<motion_column> motions; ///< joined when it is known which axes there are
     while (cells.next()) {
         if (cells.broken())
             refuse(cells.offset(), "a quote is not closed before the comma or the end of the line");
@@ -137,9 +139,10 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                 fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
-        else if (purpose == log_purpose::record || suffix->role == column_role::reference ||
-                 suffix->role == column_role::reference_velocity ||
-                 suffix->role == column_role::reference_acceleration)
+        else if (suffix->role == column_role::reference_velocity ||
+                 suffix->role == column_role::reference_acceleration || suffix->role == column_role::velocity)
+            motions.push_back({index, cells.offset(), &*suffix});
+        else if (purpose == log_purpose::record || suffix->role == column_role::reference)
             join_axis(*suffix, index);
     }
 
@@ -159,6 +162,23 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
             refuse(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "
                                                 "{0}_cmd_{2}",
                                                 name, name_of(*axis.kind), force));
+    }
+    for (const motion_column& m : motions) {
+        log_column& column = out.columns[m.index];
+        const auto axis = out.axes.find(column.name.substr(0, column.name.size() - m.suffix->text.size()));
+        if (axis == out.axes.end()) {
+            out.notes.push_back(
+                fmt::format("column {} belongs to no axis of the log and is ignored", in_quotes(column.name)));
+            continue;
+        }
+        if ((m.suffix->unit == "rad") != (axis->second.kind == axis_kind::rotary))
+            refuse(m.offset, fmt::format("{}: axis {} is {}", in_quotes(column.name), axis->first,
+                                         name_of(*axis->second.kind)));
+        if (m.suffix->role == column_role::velocity && purpose == log_purpose::motion) continue;
+        (m.suffix->role == column_role::velocity             ? axis->second.velocity
+         : m.suffix->role == column_role::reference_velocity ? axis->second.reference_velocity
+                                                             : axis->second.reference_acceleration) = m.index;
+        column.used = true;
     }
     out.time = *time;
     return out;
