@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: controller_docs DOCS      writes the tables of DOCS/controllers.md, and DOCS/schema/controllers.schema.json
+// usage: controller_docs DOCS      writes the tables of DOCS/controllers.md, and
+// DOCS/schema/controllers.schema.json
 #include "page.hpp"
 #include "schema.hpp"
 

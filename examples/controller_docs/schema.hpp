@@ -46,8 +46,8 @@ inline json schema_of(const controller_key& key) {
     return out;
 }
 
-/// Where a kind is described: in a machine file of either sort of axis, or in a file of quadrant-cnc, where the drive says
-/// what the law believes of the plant.
+/// Where a kind is described: in a machine file of either sort of axis, or in a file of quadrant-cnc, where the
+/// drive says what the law believes of the plant.
 struct place {
     const char* prefix;
     const char* named_by;

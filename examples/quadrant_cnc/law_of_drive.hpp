@@ -26,8 +26,8 @@ inline std::array<std::pair<const char*, double>, 2> plant_keys_of(const axis_de
     return {{{"plant_gain_m_per_s2_V", gain}, {"plant_damping_per_s", damping}}};
 }
 
-/// Puts the drive's dry friction into its law, in volts. The viscous part stays out: laws that know the plant drive it already,
-/// those that do not meet it in their integral.
+/// Puts the drive's dry friction into its law, in volts. The viscous part stays out: laws that know the plant
+/// drive it already, those that do not meet it in their integral.
 inline void feed_friction_forward(axis_description& a, const friction_feedforward_description& f) {
     auto& values = a.law.values;
     if (const auto* d = std::get_if<ball_screw_description>(&a.drive)) {

@@ -34,7 +34,7 @@ inline axis_log asked(double seconds) {
     log.name = "x";
     const double T = machine().sample_period_s;
     for (int k = 0; k < static_cast<int>(seconds / T); ++k) {
-        const double t = k * T, in = std::fmod(t, 1.1);
+        const double t = std::max(0.0, k * T - 0.02), in = std::fmod(t, 1.1); // it begins at rest
         const double window = in < 1.0 ? std::pow(std::sin(std::numbers::pi * in), 2) : 0;
         const double x = window * (0.02 * std::sin(2 * std::numbers::pi * 1.7 * in) +
                                    0.002 * std::sin(2 * std::numbers::pi * 9.0 * in) +

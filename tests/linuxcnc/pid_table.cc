@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: pid_table PID_SO     Loads LinuxCNC's component pid without a real-time system and prints what it answers: for each
-// case a line with its period in nanoseconds and its pins, then a line with command, feedback and output for each sample, every
-// number exact (%a). The few calls of HAL that the component makes are answered here.
+// usage: pid_table PID_SO     Loads LinuxCNC's component pid without a real-time system and prints what it
+// answers: for each case a line with its period in nanoseconds and its pins, then a line with command, feedback
+// and output for each sample, every number exact (%a). The few calls of HAL that the component makes are
+// answered here.
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>

@@ -8,20 +8,23 @@
 
 namespace quadrant {
 
-/// The stock component `pid` of LinuxCNC as a control law: a machine that runs under it is simulated and replayed with the
-/// same command, bit for bit in double.
-///   e = dead zone(limit(command - feedback)),  i += e T,  de = dr - dy,  dr, ddr, dddr: differences of the command
+/// The stock component `pid` of LinuxCNC as a control law: a machine that runs under it is simulated and
+/// replayed with the same command, bit for bit in double.
+///   e = dead zone(limit(command - feedback)),  i += e T,  de = dr - dy
+///   dr, ddr, dddr: differences of the command, each behind its own limit; dy: that of the feedback
 ///   u = limit((bias + Pgain e + Igain i + Dgain de) + (command FF0 + dr FF1 + ddr FF2 + dddr FF3))
-/// The derivative part has neither limit nor dead zone of the error in it. The integral rests while the last output was at
-/// its limit and the error points there. Each limit of 0 is none. T counts whole nanoseconds, as in HAL.
+/// The derivative part has neither limit nor dead zone of the error in it. The integral rests while the last
+/// output was at its limit and the error points there. Each limit of 0 is none. T counts whole nanoseconds, as
+/// in HAL.
 /// Source: [LinuxCNC] man page pid(9); checked against the component (tests/linuxcnc/pid_table.sh).
-/// Ports: those of `axis_law`, of which position reference and measured position are read (the pins command and feedback).
-/// With error_previous_target the error is that against the command of the sample before.
-/// State: the integral, last command and feedback, the derivatives of the command, which limit the output is at. `reset`: as
-/// the component when it is loaded; `settle(x, u)`: at rest at x, held by u as far as the integral can; `settle(start)`: in the
-/// middle of an even motion, the next sample after the one that start describes.
-/// Range: gains finite, limits and dead zone finite and >= 0. The pins enable, index-enable, command-deriv, feedback-deriv and the
-/// automatic tuning are not modelled.
+/// Ports: those of `axis_law`, of which position reference and measured position are read (the pins command and
+/// feedback). With error_previous_target the error is that against the command of the sample before.
+/// State: the integral, last command and feedback, the derivatives of the command, which limit the output is
+/// at. `reset`: as the component when it is loaded; `settle(x, u)`: at rest at x, held by u as far as the
+/// integral can; `settle(start)`: in the middle of an even motion, the next sample after the one that start
+/// describes.
+/// Range: gains finite, limits and dead zone finite and >= 0. The pins enable, index-enable, command-deriv,
+/// feedback-deriv and the automatic tuning are not modelled.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "linuxcnc_pid.<field> = ...: must ..." for each field and the period.
 /// Cost: 12 multiplications, 64 bytes of state. With an anti-windup that learns what was applied: `pid`.

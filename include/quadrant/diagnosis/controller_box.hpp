@@ -36,7 +36,8 @@ inline std::unique_ptr<running_controller> made(const controller_description& c,
     return kind.make(given_values(kind, c), a, period);
 }
 
-/// What a controller saw and did: columns of a log, of one length. Those that are empty are differences of the positions.
+/// What a controller saw and did: columns of a log, of one length. Those that are empty are differences of the
+/// positions.
 struct loop_columns {
     std::span<const double> reference, position, command;
     std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
@@ -89,8 +90,9 @@ private:
     double period_;
 };
 
-/// Puts a controller into the middle of a motion, as new: row 0 of a log is its past, and `command` is what it gave there. One
-/// that has to run first is run through an even motion that ends at row 0, twice: the second time with what the first missed.
+/// Puts a controller into the middle of a motion, as new: row 0 of a log is its past, and `command` is what it
+/// gave there. One that has to run first is run through an even motion that ends at row 0, twice: the second
+/// time with what the first missed.
 inline std::unique_ptr<running_controller> begun(const running_controller& fresh, const loop_inputs& in,
                                                  double command) {
     auto loop = fresh.copy();
@@ -113,11 +115,12 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
     return loop;
 }
 
-/// The controller box alone: fed the logged reference and position, it puts out what the described controller would
-/// have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of the encoder is in
-/// the first command by way of the velocity. What that leaves open of the initial integral is a constant offset of the
-/// replay, which a second pass takes from the whole record. A law that follows from what it applied is told so by the log. Rows
-/// that a controller is only shown, and those whose look-ahead ends behind the log, are the logged ones.
+/// The controller box alone: fed the logged reference and position, it puts out what the described controller
+/// would have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of
+/// the encoder is in the first command by way of the velocity. What that leaves open of the initial integral is
+/// a constant offset of the replay, which a second pass takes from the whole record. A law that follows from
+/// what it applied is told so by the log. Rows that a controller is only shown, and those whose look-ahead ends
+/// behind the log, are the logged ones.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, const loop_columns& log) {
     const auto fresh = made(c, a, period);

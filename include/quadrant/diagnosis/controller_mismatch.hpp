@@ -10,8 +10,8 @@
 
 namespace quadrant::diagnosis {
 
-/// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is not the
-/// one described. Which key differs is found by fitting one at a time, on this box alone.
+/// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is
+/// not the one described. Which key differs is found by fitting one at a time, on this box alone.
 struct controller_finding {
     std::vector<double> replayed; ///< the described controller on the logged r and y
     double difference_rms = 0;    ///< against the logged command
@@ -73,8 +73,8 @@ inline std::vector<searched_key> searched_keys(const controller_description& c, 
     return out;
 }
 
-/// A difference at row k without what the sign of the reference's velocity makes of it where rounding of the column decides that
-/// sign: by one or two Coulomb feedforwards the command may then be off.
+/// A difference at row k without what the sign of the reference's velocity makes of it where rounding of the
+/// column decides that sign: by one or two Coulomb feedforwards the command may then be off.
 inline double but_for_the_sign(double difference, double coulomb_feedforward, std::size_t k,
                                const axis_log& log) {
     if (std::abs(log.reference[k] - log.reference[k - 1]) > log.reference_step) return difference;

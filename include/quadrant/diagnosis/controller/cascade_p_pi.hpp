@@ -138,8 +138,7 @@ inline constexpr controller_kind cascade_p_pi{
         },
     .coulomb = {"coulomb_feedforward_V"},
     .viscous = {"viscous_feedforward_V_s_per_m"},
-    .acceleration = {"acceleration_feedforward_V_s2_per_m"},
-    .in_cnc = true};
+    .acceleration = {"acceleration_feedforward_V_s2_per_m"}};
 
 } // namespace controllers
 

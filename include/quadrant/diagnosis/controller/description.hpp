@@ -14,7 +14,8 @@ namespace quadrant::diagnosis {
 struct loop_start {
     double reference = 0, measured = 0, reference_velocity = 0, measured_velocity = 0, command = 0;
 };
-/// A controller as it runs: one sample, reference and measured position in, command out; or, with a row to start from, that.
+/// A controller as it runs: one sample, reference and measured position in, command out; or, with a row to
+/// start from, that.
 using running_loop = std::function<double(const loop_start*, double reference, double measured)>;
 
 /// A number of a controller of your own that may be found to be another.
@@ -35,9 +36,10 @@ struct own_control {
     }
 };
 
-/// A controller as a machine file describes it: its kind, and the values under the keys of that kind (controller/kinds.hpp).
-/// A key is the file's linear one, dotted where it stands in a box inside: "notch.frequency_Hz". A number has one value, a
-/// list several; of a word the value is its place among the words of the key, of true or false it is 1 or 0.
+/// A controller as a machine file describes it: its kind, and the values under the keys of that kind
+/// (controller/kinds.hpp). A key is the file's linear one, dotted where it stands in a box inside:
+/// "notch.frequency_Hz". A number has one value, a list several; of a word the value is its place among the
+/// words of the key, of true or false it is 1 or 0.
 struct controller_description {
     std::string kind = "cascade_p_pi";
     std::map<std::string, std::vector<double>, std::less<>> values{}; ///< what is given; no more

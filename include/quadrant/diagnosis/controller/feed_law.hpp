@@ -54,9 +54,9 @@ private:
     std::optional<feedforward> law_;
 };
 
-/// A law of a feed axis with what stands beside and behind it. The velocity is the measured one, or that of a filter; a
-/// Kalman filter gives the position, too. A law that is `Taught` remembers its commands or estimates from them: the log tells
-/// it what was applied where it begins, and in every row where it cannot run alone.
+/// A law of a feed axis with what stands beside and behind it. The velocity is the measured one, or that of a
+/// filter; a Kalman filter gives the position, too. A law that is `Taught` remembers its commands or estimates
+/// from them: the log tells it what was applied where it begins, and in every row where it cannot run alone.
 template <class Law, bool Taught> class feed_loop final : public running_controller {
     using boxes = feed_control_boxes<Law, known_friction>;
     using estimator = filtered_derivative<signal::position, signal::velocity>;
@@ -97,7 +97,8 @@ public:
         return Taught ? command : u;
     }
     bool remembers() const override { return !told_; }
-    /// Alone, without an axis that answers, its command grows without bound: it can be replayed only row by row.
+    /// Alone, without an axis that answers, its command grows without bound: it can be replayed only row by
+    /// row.
     bool grows() {
         constexpr int rows = 10000;
         settle({.command = 1});
@@ -128,7 +129,8 @@ private:
         applied_ = command;
         if constexpr (Taught) {
             const auto u = quantity_of<signal::voltage>::from_value(command);
-            // Within a step of the converter it is what the law asked for, which the law knows better than the log.
+            // Within a step of the converter it is what the law asked for, which the law knows better than the
+            // log.
             if (std::abs(command - control_.wire.limited.value()) > control_.box.dac.given().step.value())
                 control_.box.law.applied(control_.wire.feedback + (u - control_.wire.wanted));
         }

@@ -29,7 +29,6 @@ inline constexpr controller_kind generalized_predictive{
                                                      predictive_costs<>{.effort = in_si(v["effort_m_per_V"])},
                                                      duration::from_value(period)));
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

@@ -8,7 +8,8 @@
 /// Controllers in JSON: in a machine file under `kind`, in a file of quadrant-cnc under `law`.
 namespace quadrant::diagnosis::detail {
 
-/// The place of a key in a box of a machine file; a dotted one is that of a box inside, which is made where it is missing.
+/// The place of a key in a box of a machine file; a dotted one is that of a box inside, which is made where it
+/// is missing.
 inline nlohmann::ordered_json& place_in(nlohmann::ordered_json& box, std::string_view key) {
     nlohmann::ordered_json* place = &box;
     for (std::size_t dot = 0; (dot = key.find('.')) != key.npos; key.remove_prefix(dot + 1))

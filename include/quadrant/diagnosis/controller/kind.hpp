@@ -13,8 +13,8 @@ namespace quadrant::diagnosis {
 /// What stands under a key of a controller.
 enum class key_form : unsigned char { number, list, word, yes_no };
 
-/// One key of a controller kind. `name` is linear, and dotted in a box inside the controller; such a key is needed where its
-/// box is there. A rotary axis has the same key in its own words.
+/// One key of a controller kind. `name` is linear, and dotted in a box inside the controller; such a key is
+/// needed where its box is there. A rotary axis has the same key in its own words.
 struct controller_key {
     std::string_view name, says; ///< and what it means, for the docs
     detail::number_rule rule = detail::rule::any_number;
@@ -43,9 +43,10 @@ struct feedforward_key {
 
 class given_values;
 
-/// A kind of controller: all that is known of it, once. Reader and writer of machine files, their schema, the replay, the search
-/// of the key that differs, the simulation of the closed loop, what `compensate` may set and quadrant-cnc follow from it.
-/// A new kind is a file beside this one and a line in impl/controllers.hpp: docs/howto/add_a_controller_kind.md.
+/// A kind of controller: all that is known of it, once. Reader and writer of machine files, their schema, the
+/// replay, the search of the key that differs, the simulation of the closed loop, what `compensate` may set and
+/// quadrant-cnc follow from it. A new kind is a file beside this one and a line in impl/controllers.hpp:
+/// docs/howto/add_a_controller_kind.md.
 struct controller_kind {
     std::string_view name, label; ///< in files; in words
     std::string_view law;         ///< its equation or the page of its block, for the docs
@@ -53,15 +54,15 @@ struct controller_kind {
     /// The controller as new. Throws what its blocks throw for values that none can have.
     std::unique_ptr<running_controller> (*make)(const given_values&, const actuator_description&,
                                                 double period) = nullptr;
-    /// What the rules of single keys cannot say: refuse(key, message) throws, note(text) goes to the reader's notes.
+    /// What the rules of single keys cannot say: refuse(key, message) throws, note(text) goes to the reader's
+    /// notes.
     void (*examine)(const given_values&, const std::function<void(std::string_view, std::string)>& refuse,
                     const std::function<void(std::string)>& note) = nullptr;
-    /// The largest command that the rounding of the columns explains, where it is known in closed form. Otherwise the columns
-    /// are perturbed. The steps are those of reference and position.
+    /// The largest command that the rounding of the columns explains, where it is known in closed form.
+    /// Otherwise the columns are perturbed. The steps are those of reference and position.
     double (*rounding)(const given_values&, double reference_step, double position_step,
                        double period) = nullptr;
     feedforward_key coulomb{}, viscous{}, acceleration{}; ///< what `compensate` may set
-    bool in_cnc = false;                                  ///< quadrant-cnc offers it as a law
     bool motions = false; ///< it reads velocities: of the log's columns where there are any, else differences
 
     /// The record of one key; throws std::invalid_argument for another one.

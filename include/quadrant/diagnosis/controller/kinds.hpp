@@ -14,7 +14,8 @@ inline const controller_kind* find_controller_kind(std::string_view name) {
         if (kind->name == name) return kind;
     return nullptr;
 }
-/// The record of a description's kind; throws std::invalid_argument for a kind, or a key of it, that is not known.
+/// The record of a description's kind; throws std::invalid_argument for a kind, or a key of it, that is not
+/// known.
 inline const controller_kind& kind_of(const controller_description& c) {
     const controller_kind* kind = find_controller_kind(c.kind);
     if (!kind) throw std::invalid_argument(fmt::format("controller kind \"{}\" is not known", c.kind));

@@ -37,7 +37,6 @@ inline constexpr controller_kind lead_lag{
                                 {in_si(v["crossover_Hz"]), v["phase_margin_deg"], v["integral"]},
                                 duration::from_value(period)));
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

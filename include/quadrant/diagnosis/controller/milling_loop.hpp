@@ -10,7 +10,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A box that a machine file may have or not. Without it a notch passes on what comes in, another box gives nothing.
+/// A box that a machine file may have or not. Without it a notch passes on what comes in, another box gives
+/// nothing.
 template <class Box, bool passes> class optional_box {
 public:
     using input = typename Box::input;
@@ -54,7 +55,8 @@ private:
 using slip_feedforward = maxwell_slip<4, signal::velocity, signal::voltage>;
 using learning_memory = repetitive<signal::position, 1 << 15, 3>;
 
-/// The boxes of a `milling_axis` with feedforwards of their own and a notch, friction and memory that may be absent.
+/// The boxes of a `milling_axis` with feedforwards of their own and a notch, friction and memory that may be
+/// absent.
 template <class Observer> struct described_milling_boxes {
     using velocity_notch = optional_box<notch<signal::velocity>, true>;
 
@@ -150,7 +152,8 @@ public:
     bool faulted() const override { return axis_.faulted(); }
 
 private:
-    /// 50 ms, or until what is left of the observer's initial state is a ten-thousandth: (1 + x) exp(-x) at x = 12.
+    /// 50 ms, or until what is left of the observer's initial state is a ten-thousandth: (1 + x) exp(-x) at x =
+    /// 12.
     static std::size_t rows_to_see(const given_values& v, double period) {
         const double of_observer =
             v.has_box("observer") ? 12 / (2 * std::numbers::pi * v["observer.corner_Hz"]) : 0;

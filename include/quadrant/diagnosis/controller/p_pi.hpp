@@ -45,7 +45,6 @@ inline constexpr controller_kind p_pi{
                  .limit = in_si(detail::stage_of(a).limit)});
         },
     .acceleration = {"acceleration_gain_V_s2_per_m"},
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

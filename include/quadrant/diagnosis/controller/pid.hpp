@@ -45,7 +45,6 @@ inline constexpr controller_kind pid{
             if (v.has("derivative_corner_Hz")) p.derivative_corner = in_si(v["derivative_corner_Hz"]);
             return detail::make_feed_loop<quadrant::pid<>, false>(v, a, period, p);
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

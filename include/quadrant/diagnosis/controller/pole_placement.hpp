@@ -33,7 +33,6 @@ inline constexpr controller_kind pole_placement{
             return detail::make_feed_loop<quadrant::pole_placement<>, true>(
                 v, a, period, place_rst(detail::believed_plant(v), poles_of(v), duration::from_value(period)));
         },
-    .in_cnc = true,
     .motions = true};
 
 /// The same feedback with zero phase error tracking: block `rst`, designed by `zero_phase_rst`.
@@ -48,7 +47,6 @@ inline constexpr controller_kind zero_phase{
                 v, a, period,
                 zero_phase_rst(detail::believed_plant(v), poles_of(v), duration::from_value(period)));
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

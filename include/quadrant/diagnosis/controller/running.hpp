@@ -19,14 +19,16 @@ public:
     virtual std::unique_ptr<running_controller> copy() const = 0;
     /// The command of one row [V]. `asked` is the motion that is due lead() rows later.
     virtual double step(const axis_motion<>& asked, const axis_measurement<>& measured) = 0;
-    /// Puts it into the middle of a motion: the row is its past. A kind that past() is not 0 for takes it as rest.
+    /// Puts it into the middle of a motion: the row is its past. A kind that past() is not 0 for takes it as
+    /// rest.
     virtual void settle(const loop_start& row) = 0;
-    /// How many rows it has to see before its filters are where they would be: so many of an even motion before row 0 of a
-    /// log, and as many of the log itself, whose commands are not compared. 0: settle(row) knows.
+    /// How many rows it has to see before its filters are where they would be: so many of an even motion before
+    /// row 0 of a log, and as many of the log itself, whose commands are not compared. 0: settle(row) knows.
     virtual std::size_t past() const { return 0; }
     /// What the log says was applied of the last command: for a law whose state follows from that.
     virtual void applied(double) {}
-    /// Whether a constant that is missing in its commands is shown in the last row only, which fixes its integral.
+    /// Whether a constant that is missing in its commands is shown in the last row only, which fixes its
+    /// integral.
     virtual bool fixed_by_last_row() const { return false; }
     /// A row that it sees while its command is known. Returns the command that it has for the row from now on.
     virtual double show(const axis_motion<>& asked, const axis_measurement<>& measured, double command) {

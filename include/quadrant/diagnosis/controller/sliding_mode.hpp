@@ -39,7 +39,6 @@ inline constexpr controller_kind sliding_mode{
                  .adaptation = in_si(v["adaptation_V_per_m"]),
                  .limit = in_si(detail::stage_of(a).limit)});
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers

@@ -43,7 +43,6 @@ inline constexpr controller_kind state_feedback{
                  .encoder_noise = in_si(v["encoder_noise_m"]),
                  .drift = in_si(v["drift_V"])});
         },
-    .in_cnc = true,
     .motions = true};
 
 } // namespace quadrant::diagnosis::controllers
