@@ -131,7 +131,7 @@ TEST_CASE(
     CHECK(x["actuator"]["lag_s"] == 0.001);
     CHECK(x["process"]["force_N"].dump() == "[3.0,1.0]");
     CHECK(x["controller"]["notch"]["frequency_Hz"] == 300);
-    CHECK(x["controller"]["notch"]["damping"] == 0.06);
+    CHECK(x["controller"]["notch"]["width"] == 0.06);
     CHECK(out.machine["axes"]["y"]["plant"].dump() == R"({"force_constant_N_per_A":80.0,"mass_kg":50})");
 }
 
