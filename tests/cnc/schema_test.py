@@ -94,7 +94,7 @@ for good in [law(law="pid", gain_V_per_m=7e4, derivative_gain_V_s_per_m=300, der
              law(law="state_feedback", position_gain_V_per_m=5e4, velocity_gain_V_s_per_m=400, encoder_noise_m=4e-7, drift_V=10),
              law(law="linuxcnc_pid", units_per_m=1000, Pgain=70, Igain=800, Dgain=0.3),
              law(law="milling_axis", position_gain_per_s=40, velocity_gain_V_s_per_m=150, velocity_filter_Hz=100),
-             law(law="predictive", position_error_m=1e-5, velocity_error_m_per_s=0.01, increment_V=0.05),
+             law(law="predictive", position_error_m=1e-5, velocity_error_m_per_s=0.01, increment_V=0.05, horizon=20),
              lambda m, x: x.update(friction_feedforward={"scale": 0.9, "width_m_per_s": 0.002}),
              lambda m, x: m["trajectory"].update(start_m=[0, 0, 0], corner_tolerance_m=0, profile="cubic_acceleration"),
              lambda m, x: x["drive"].update(current_limit_A=20, lead_error=1e-5, table_mass_kg=200, compliance_m_per_N=1e-9),
