@@ -3,6 +3,7 @@
 #include "families.hpp"
 #include "trial_axis.hpp"
 
+#include <quadrant/control/linuxcnc_pid.hpp>
 #include <quadrant/control/p_pi.hpp>
 #include <quadrant/control/pid.hpp>
 #include <quadrant/control/pole_placement.hpp>
@@ -49,6 +50,21 @@ picture draw_pid() {
     return of("A PID after a step of 50 um, and a force of 500 N from 200 ms on, with position weight 1 and 0",
               {over("", "position [um]", {a.place, b.place, asked(step_and_push)}),
                over("time [ms]", "command [V]", {a.command, b.command})});
+}
+picture draw_linuxcnc_pid() {
+    linuxcnc_pid<>::parameters p{.pgain = 70e3 * 1_V / 1_m,
+                                 .igain = 800e3 * 1_V / (1_m * 1_s),
+                                 .dgain = 300_V / 1_mps,
+                                 .ff1 = 0.04_V / 1_mmps,
+                                 .ff2 = 1.6_V / 1_mps2,
+                                 .error_previous_target = false};
+    auto previous = p;
+    previous.error_previous_target = true;
+    const record a = ran("error-previous-target 0", trial_axis<linuxcnc_pid<>>(p), move_and_push),
+                 b = ran("error-previous-target 1", trial_axis<linuxcnc_pid<>>(previous), move_and_push);
+    return of("LinuxCNC's pid along a move of 20 mm, and a force of 500 N from 400 ms on, with both errors",
+              {over("", "position [um]", {a.place, b.place, asked(move_and_push)}),
+               over("time [ms]", "error [um]", {a.error, b.error})});
 }
 picture draw_p_pi() {
     auto p = place_p_pi(G, {.natural = 20_Hz, .position = 0.25}, T);
@@ -131,6 +147,7 @@ picture draw_axis_law() {
 family laws() {
     return {{"proportional_integral", draw_proportional_integral},
             {"pid", draw_pid},
+            {"linuxcnc_pid", draw_linuxcnc_pid},
             {"p_pi", draw_p_pi},
             {"sliding_mode", draw_sliding_mode},
             {"predictive", draw_predictive},

@@ -2,8 +2,9 @@
 // An axis of the virtual machine: drive and control law as the file says, each known to the other by its ports only.
 #include "axis.hpp"
 
-#include "control_side.hpp"
 #include "drive_side.hpp"
+
+#include <quadrant/diagnosis/controller_box.hpp>
 
 namespace quadrant_cnc {
 
@@ -13,7 +14,11 @@ class assembled final : public axis {
 public:
     assembled(const axis_description& a, double period, std::uint64_t seed)
         : drive_(std::visit([&](const auto& d) { return make_drive(d, a.sensor, period, seed); }, a.drive)),
-          control_(std::visit(make_control{a, period}, a.law)) {
+          control_(quadrant::diagnosis::made(a.law,
+                                             {.limit_V = a.command.limit_V,
+                                              .dac_bits = a.command.dac_bits,
+                                              .dac_range_V = a.command.dac_range_V},
+                                             period)) {
         if (const auto* screw = std::get_if<ball_screw_description>(&a.drive)) {
             limit_ = std::min(screw->amplifier_A_per_V * a.command.limit_V,
                               screw->current_limit_A.value_or(unlimited));
@@ -25,11 +30,11 @@ public:
     }
     axis_sample step(const axis_motion<>& asked) noexcept override {
         const axis_measurement<> now = drive_->measured();
-        axis_sample s{.reading = now.position.value(), .place = drive_->place()};
-        const volts u = control_->step(asked, now);
-        drive_->step(u);
+        axis_sample s{
+            .reading = now.position.value(), .velocity = now.velocity.value(), .place = drive_->place()};
+        s.command = control_->step(asked, now);
+        drive_->step(volts::from_value(s.command));
         s.reference = control_->due();
-        s.command = u.value();
         s.effort = shown_ * drive_->effort();
         s.limited = control_->limited() || drive_->limited();
         s.faulted = control_->faulted() || drive_->faulted();
@@ -37,14 +42,14 @@ public:
     }
     void settle(double at) noexcept override {
         drive_->settle(at);
-        control_->settle(at);
+        control_->settle({.reference = at, .measured = at});
     }
     std::size_t lead() const noexcept override { return control_->lead(); }
     double effort_limit() const noexcept override { return limit_; }
 
 private:
     std::unique_ptr<drive_side> drive_;
-    std::unique_ptr<control_side> control_;
+    std::unique_ptr<quadrant::diagnosis::running_controller> control_;
     double limit_ = unlimited, shown_ = 1;
 };
 
@@ -57,14 +62,6 @@ std::unique_ptr<axis> make_axis(const axis_description& a, double period, std::u
 const char* effort_unit(const axis_description& a) {
     const auto* motor = std::get_if<linear_motor_description>(&a.drive);
     return motor && !motor->amplifier_A_per_V ? "V" : "A";
-}
-
-plant_of_axis plant_of(const axis_description& a) {
-    if (const auto* d = std::get_if<ball_screw_description>(&a.drive))
-        return {d->amplifier_A_per_V * d->torque_constant_Nm_per_A * pitch_per_radian(*d) / d->inertia_kg_m2,
-                d->viscous_Nm_s_per_rad / d->inertia_kg_m2};
-    const auto& m = std::get<linear_motor_description>(a.drive);
-    return {m.force_constant_N_per_V / m.mass_kg, m.viscous_N_s_per_m / m.mass_kg};
 }
 
 } // namespace quadrant_cnc

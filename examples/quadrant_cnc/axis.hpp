@@ -11,8 +11,8 @@ namespace quadrant_cnc {
 
 /// What an axis did in one servo period; SI.
 struct axis_sample {
-    double reference = 0, reading = 0, command = 0; ///< of this sample: what a log holds
-    double place = 0;                               ///< where the table was when it was read
+    double reference = 0, reading = 0, velocity = 0, command = 0; ///< of this sample: what a log holds
+    double place = 0;                                             ///< where the table was when it was read
     double effort = 0; ///< current [A], or command of the motor [V], until the next sample
     bool limited = false, faulted = false;
 };
@@ -33,10 +33,5 @@ std::unique_ptr<axis> make_axis(const axis_description& a, double period, std::u
 
 /// "A", or "V" where the file does not tell what a volt makes.
 const char* effort_unit(const axis_description& a);
-/// Acceleration per volt [m/(s^2 V)] and damping [1/s] of the drive, friction left out.
-struct plant_of_axis {
-    double gain, damping;
-};
-plant_of_axis plant_of(const axis_description& a);
 
 } // namespace quadrant_cnc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/machine.hpp>
+#include <quadrant/diagnosis/controller/kinds.hpp>
 
 #include <array>
 #include <limits>
@@ -58,40 +58,6 @@ struct friction_feedforward_description {
     double scale = 1, width_m_per_s = 1e-3;
 };
 
-struct pid_description {
-    double gain_V_per_m = 0, integral_gain_V_per_m_s = 0, derivative_gain_V_s_per_m = 0;
-    std::optional<double> derivative_corner_Hz;
-    double position_weight = 1, velocity_weight = 1;
-};
-struct p_pi_description {
-    double position_gain_per_s = 0, gain_V_s_per_m = 0, integral_gain_V_per_m = 0, velocity_weight = 1,
-           acceleration_gain_V_s2_per_m = 0;
-};
-/// What a law that knows the plant believes of it; absent: what the drive is.
-struct believed_plant {
-    std::optional<double> plant_gain_m_per_s2_V, plant_damping_per_s;
-};
-struct sliding_mode_description : believed_plant {
-    double sliding_per_s = 0, gain_V_s_per_m = 0, adaptation_V_per_m = 0;
-};
-/// Pole placement, and zero phase error tracking around the same feedback.
-struct poles_description : believed_plant {
-    double natural_Hz = 0, damping = 1, observer_Hz = 0;
-    bool zero_phase = false;
-};
-struct lead_lag_description : believed_plant {
-    double crossover_Hz = 0, phase_margin_deg = 45, integral = 0.1;
-};
-struct predictive_description : believed_plant { ///< generalized predictive, 20 periods ahead
-    double effort_m_per_V = 0;
-};
-struct state_feedback_description : believed_plant {
-    double position_gain_V_per_m = 0, velocity_gain_V_s_per_m = 0, encoder_noise_m = 0, drift_V = 0;
-};
-using law_description = std::variant<pid_description, p_pi_description, sliding_mode_description,
-                                     quadrant::diagnosis::controller_description, poles_description,
-                                     lead_lag_description, predictive_description, state_feedback_description>;
-
 struct axis_description {
     std::size_t axis = 0; ///< 0, 1, 2 is x, y, z
     std::string path;     ///< of its keys, for messages
@@ -100,10 +66,11 @@ struct axis_description {
     std::variant<ball_screw_description, linear_motor_description> drive;
     sensor_description sensor;
     command_description command;
-    law_description law;
-    std::optional<friction_feedforward_description> friction_feedforward;
+    quadrant::diagnosis::controller_description law; ///< whole: what the file leaves to the drive is in it
 
     const char* name() const { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
+    /// Its law reads the velocities of trajectory and tachometer: whoever replays it needs them.
+    bool motion_is_logged() const { return quadrant::diagnosis::kind_of(law).motions; }
     double dac_step() const {
         return command.dac_bits ? *command.dac_range_V / double(1ULL << *command.dac_bits) : 0;
     }

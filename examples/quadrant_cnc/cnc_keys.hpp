@@ -48,7 +48,6 @@ inline constexpr std::array ball_screw_keys{
 inline constexpr std::array<std::string_view, 2> ball_screw_other_keys{"kind", "friction"};
 inline constexpr std::array<std::string_view, 2> directions{"forward", "backward"};
 inline constexpr names_1 kind_key{"kind"};
-inline constexpr names_1 law_key{"law"};
 
 inline constexpr std::array friction_keys{
     key<friction_side>{"static_Nm", not_negative, &friction_side::static_Nm, true},
@@ -88,66 +87,6 @@ inline constexpr std::array friction_feedforward_keys{
     key<forward>{"scale", not_negative, &forward::scale},
     key<forward>{"width_m_per_s", positive, &forward::width_m_per_s},
 };
-
-inline constexpr std::array<std::string_view, 9> law_names{
-    "pid",        "p_pi",     "sliding_mode",           "cascade_p_pi",  "pole_placement",
-    "zero_phase", "lead_lag", "generalized_predictive", "state_feedback"};
-inline constexpr std::array<std::string_view, 3> cascade_other_keys{"law", "velocity_estimator", "notch"};
-
-inline constexpr std::array pid_keys{
-    key<pid_description>{"gain_V_per_m", not_negative, &pid_description::gain_V_per_m, true},
-    key<pid_description>{"integral_gain_V_per_m_s", not_negative, &pid_description::integral_gain_V_per_m_s},
-    key<pid_description>{"derivative_gain_V_s_per_m", not_negative,
-                         &pid_description::derivative_gain_V_s_per_m},
-    key<pid_description>{"derivative_corner_Hz", positive, &pid_description::derivative_corner_Hz},
-    key<pid_description>{"position_weight", any_number, &pid_description::position_weight},
-    key<pid_description>{"velocity_weight", any_number, &pid_description::velocity_weight},
-};
-inline constexpr std::array p_pi_keys{
-    key<p_pi_description>{"position_gain_per_s", not_negative, &p_pi_description::position_gain_per_s, true},
-    key<p_pi_description>{"gain_V_s_per_m", not_negative, &p_pi_description::gain_V_s_per_m, true},
-    key<p_pi_description>{"integral_gain_V_per_m", not_negative, &p_pi_description::integral_gain_V_per_m},
-    key<p_pi_description>{"velocity_weight", any_number, &p_pi_description::velocity_weight},
-    key<p_pi_description>{"acceleration_gain_V_s2_per_m", any_number,
-                          &p_pi_description::acceleration_gain_V_s2_per_m},
-};
-/// The two keys of `believed_plant` and those of the law.
-template <class Law, std::size_t N> constexpr auto with_plant(const key<Law> (&own)[N]) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-        return std::array<key<Law>, N + 2>{
-            key<Law>{"plant_gain_m_per_s2_V", positive, &Law::plant_gain_m_per_s2_V},
-            key<Law>{"plant_damping_per_s", not_negative, &Law::plant_damping_per_s}, own[I]...};
-    }
-    (std::make_index_sequence<N>());
-}
-using sliding = sliding_mode_description;
-inline constexpr auto sliding_mode_keys = with_plant<sliding>({
-    {"sliding_per_s", positive, &sliding::sliding_per_s, true},
-    {"gain_V_s_per_m", not_negative, &sliding::gain_V_s_per_m, true},
-    {"adaptation_V_per_m", not_negative, &sliding::adaptation_V_per_m},
-});
-using poles = poles_description;
-inline constexpr auto poles_keys = with_plant<poles>({
-    {"natural_Hz", positive, &poles::natural_Hz, true},
-    {"damping", positive, &poles::damping},
-    {"observer_Hz", positive, &poles::observer_Hz, true},
-});
-using lead = lead_lag_description;
-inline constexpr auto lead_lag_keys = with_plant<lead>({
-    {"crossover_Hz", positive, &lead::crossover_Hz, true},
-    {"phase_margin_deg", positive, &lead::phase_margin_deg},
-    {"integral", positive, &lead::integral},
-});
-inline constexpr auto predictive_keys = with_plant<predictive_description>({
-    {"effort_m_per_V", positive, &predictive_description::effort_m_per_V, true},
-});
-using states = state_feedback_description;
-inline constexpr auto state_feedback_keys = with_plant<states>({
-    {"position_gain_V_per_m", positive, &states::position_gain_V_per_m, true},
-    {"velocity_gain_V_s_per_m", not_negative, &states::velocity_gain_V_s_per_m, true},
-    {"encoder_noise_m", positive, &states::encoder_noise_m, true},
-    {"drift_V", positive, &states::drift_V, true},
-});
 
 inline constexpr std::array<std::string_view, 5> cnc_file_keys{"schema", "servo_period_s", "seed", "trajectory",
                                                                "axes"};

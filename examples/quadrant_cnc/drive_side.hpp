@@ -15,8 +15,6 @@ namespace quadrant_cnc {
 using namespace quadrant;
 using volts = quantity_of<signal::voltage>;
 
-inline double pitch_per_radian(const ball_screw_description& d) { return d.pitch_m / (2 * std::numbers::pi); }
-
 /// The machine's side of an axis, whatever its drive.
 struct drive_side {
     virtual ~drive_side() = default;

@@ -93,11 +93,7 @@ inline quadrant::diagnosis::machine_description gap_machine(const cnc_descriptio
         g.actuator.limit_V = a.command.limit_V;
         g.actuator.dac_bits = a.command.dac_bits;
         g.actuator.dac_range_V = a.command.dac_range_V;
-        if (const auto* c = std::get_if<quadrant::diagnosis::controller_description>(&a.law))
-            g.controller = *c;
-        else
-            note("its control law has no words in a machine file: quadrant-gap will take it from the command "
-                 "onwards");
+        g.controller = a.law;
         out.axes.push_back(std::move(g));
     }
     return out;

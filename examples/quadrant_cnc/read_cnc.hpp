@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "cnc_keys.hpp"
+#include "law_of_drive.hpp"
 
+#include <quadrant/diagnosis/controller/json.hpp>
 #include <quadrant/diagnosis/read/text.hpp>
 
 namespace quadrant_cnc {
@@ -82,12 +84,7 @@ private:
             qd::read_numbers(*tachometer, tachometer_keys, {}, a.sensor);
         read_command(node.need("command"), a.command);
         read_law(node.need("control").object(), a);
-        if (const auto friction = node.find("friction_feedforward")) {
-            a.friction_feedforward.emplace();
-            qd::read_numbers(*friction, friction_feedforward_keys, {}, *a.friction_feedforward);
-            if (std::holds_alternative<quadrant::diagnosis::controller_description>(a.law))
-                friction->refuse("cascade_p_pi has its own: control.coulomb_feedforward_V");
-        }
+        if (const auto friction = node.find("friction_feedforward")) read_friction_feedforward(*friction, a);
         out_.axes.push_back(std::move(a));
     }
 
@@ -119,43 +116,33 @@ private:
             node.refuse("dac_bits and dac_range_V need each other");
     }
 
+    /// The law by its kind's record. What it believes of the plant is the drive where the file does not say it.
     void read_law(const qd::json_node& node, axis_description& a) const {
-        const auto as = [&](auto law, const auto& keys, qd::key_names others) {
-            qd::read_numbers(node, keys, others, law);
-            a.law = law;
-        };
-        const std::size_t law = choice(node.need("law"), law_names);
-        switch (law) {
-        case 0:
-            return as(pid_description{}, pid_keys, law_key);
-        case 1:
-            return as(p_pi_description{}, p_pi_keys, law_key);
-        case 2:
-            return as(sliding_mode_description{}, sliding_mode_keys, law_key);
-        case 3:
-            break;
-        case 4:
-        case 5: {
-            poles_description d;
-            d.zero_phase = law == 5;
-            return as(d, poles_keys, law_key);
-        }
-        case 6:
-            return as(lead_lag_description{}, lead_lag_keys, law_key);
-        case 7:
-            return as(predictive_description{}, predictive_keys, law_key);
-        default:
-            return as(state_feedback_description{}, state_feedback_keys, law_key);
-        }
-        quadrant::diagnosis::controller_description c; // the keys are those of the gap's machine file
-        qd::read_numbers(node, qd::controller_keys_of_file, cascade_other_keys, c);
-        using estimator = quadrant::diagnosis::controller_description::estimator;
-        if (const auto e = node.find("velocity_estimator"))
-            c.velocity_estimator = estimator(choice(*e, {"filtered_derivative", "two_sample_mean"}));
-        if (c.velocity_estimator == estimator::filtered_derivative) node.need("velocity_filter_Hz");
-        if (const auto notch = node.find("notch"))
-            qd::read_numbers(*notch, qd::notch_keys, {}, c.notch.emplace());
-        a.law = c;
+        const auto name = node.need("law");
+        const auto* kind = quadrant::diagnosis::find_controller_kind(name.text());
+        if (!kind)
+            name.refuse(fmt::format("{} is none of {}", qd::in_quotes(name.text()), qd::names_of_kinds()));
+        nlohmann::json whole = *node.value;
+        for (const auto& [key, value] : plant_keys_of(a))
+            if (has_key(*kind, key) && !whole.contains(key)) whole[key] = value;
+        const qd::json_node filled{&whole, node.path, node.file};
+        a.law = qd::read_controller(*kind, filled, out_.servo_period_s, "law", [](const std::string&) {});
+    }
+    static bool has_key(const quadrant::diagnosis::controller_kind& kind, std::string_view name) {
+        return std::any_of(kind.keys.begin(), kind.keys.end(),
+                           [&](const auto& key) { return key.name == name; });
+    }
+
+    void read_friction_feedforward(const qd::json_node& node, axis_description& a) const {
+        const auto& kind = quadrant::diagnosis::kind_of(a.law);
+        if (!has_key(kind, "friction.scale"))
+            node.refuse(kind.coulomb.key.empty()
+                            ? fmt::format("law {} feeds no friction of the drive forward", kind.name)
+                            : fmt::format("{} has its own: control.{}", kind.name, kind.coulomb.key));
+        if (a.law.has("friction.width_m_per_s")) node.refuse("contradicts control.friction: give one of them");
+        friction_feedforward_description f;
+        qd::read_numbers(node, friction_feedforward_keys, {}, f);
+        feed_friction_forward(a, f);
     }
 
     template <class Names> static std::size_t choice(const qd::json_node& node, const Names& names) {

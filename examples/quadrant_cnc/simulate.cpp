@@ -119,16 +119,21 @@ private:
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             one& a = axes_[i];
             const trajectory::motion& m = waiting_.ago(a.wait).axis[a.axis];
+            const trajectory::motion& now = due.axis[a.axis];
             const axis_sample s = a.box->step({m.position, m.velocity, m.acceleration});
             if (s.faulted)
                 throw diagnosis::bad_input(
                     cnc_.file, fmt::format("{}: the simulation leaves all numbers at {:.6g} s, line {} of {}",
                                            cnc_.axes[i].path, t, line_, program_.file()));
             place[int(a.axis)] = s.place;
-            const trajectory::motion& now = due.axis[a.axis];
             take(i, now, now.position.value() - s.place, s, t);
             if (log_) {
                 log_->number(s.reference, 12);
+                if (cnc_.axes[i].motion_is_logged()) {
+                    log_->number(now.velocity.value(), 12);
+                    log_->number(now.acceleration.value(), 12);
+                    log_->number(s.velocity, 12);
+                }
                 log_->number(s.reading, 11);
                 log_->number(s.command, 8);
             }
@@ -184,8 +189,12 @@ run_outcome simulate(const cnc_description& cnc, const std::string& path_file, l
 
 std::string log_header(const cnc_description& cnc) {
     std::string out = "t_s";
-    for (const axis_description& a : cnc.axes)
-        for (const char* column : {"ref_m", "pos_m", "cmd_V"}) out += fmt::format(",{}_{}", a.name(), column);
+    for (const axis_description& a : cnc.axes) {
+        out += fmt::format(",{}_ref_m", a.name());
+        if (a.motion_is_logged())
+            out += fmt::format(",{0}_ref_m_per_s,{0}_ref_m_per_s2,{0}_vel_m_per_s", a.name());
+        out += fmt::format(",{0}_pos_m,{0}_cmd_V", a.name());
+    }
     return out;
 }
 

@@ -86,9 +86,12 @@ inline std::string summary_of(const diagnosis_result& d, const cause& c) {
                                     voice(named(c.confusable_with, "or")), probability(c.group_probability)),
                         4);
     for (const reading& r : c.readings)
-        text += wrapped(
-            fmt::format("as {}: {}", voice(name_of_effect(r.effect)), listed(lines_of(r.parameters, voice))),
-            6);
+        text +=
+            wrapped(fmt::format("{}: {}",
+                                r.effect == c.effect ? "this record is explained as well by"
+                                                     : fmt::format("as {}", voice(name_of_effect(r.effect))),
+                                listed(lines_of(r.parameters, voice))),
+                    6);
     if (!c.exciting_motion.empty()) text += wrapped("shown by: " + c.exciting_motion, 4);
     if (const effect* known = effect_named(c.effect))
         text += wrapped(fmt::format("what to do: {}", voice(known->remedy)), 4);

@@ -26,6 +26,7 @@
 #include "control/generalized_predictive.hpp"
 #include "control/lead_lag.hpp"
 #include "control/limiter.hpp"
+#include "control/linuxcnc_pid.hpp"
 #include "control/p_pi.hpp"
 #include "control/pid.hpp"
 #include "control/pole_placement.hpp"

@@ -48,7 +48,7 @@ nc 'G1 X90 F3000\nX93';             refuses 'p.nc:4: the jerk limit cannot be me
 printf 'G21 F100\nG1 Z1\n' >p.nc
 sed '/"z": {/,$d; s/3000/3000/' "$mill" | sed '$s/},/}/' >cnc.json
 printf '}}\n' >>cnc.json;           refuses 'p.nc:2: the machine has no axis z' p.nc
-edit 's/"pid"/"pdi"/';              refuses 'cnc.json: axes.x.control.law: "pdi" is none of pid,' "$paths/circle.nc"
+edit 's/"pid"/"pdi"/';              refuses 'cnc.json: axes.x.control.law: "pdi" is none of cascade_p_pi,' "$paths/circle.nc"
 edit 's/inertia_kg_m2/inertia_kg/'; refuses 'cnc.json: axes.x.drive.inertia_kg: unknown key; did you mean inertia_kg_m2?' "$paths/circle.nc"
 edit 's/trapezoidal/constant/';     refuses 'cnc.json: trajectory.jerk_m_per_s3: only trapezoidal and cubic' "$paths/circle.nc"
 edit 's/"law": "pid".*}/"law": "lead_lag", "crossover_Hz": 400}/'; refuses 'cnc.json: axes.x: design_lead_lag.' "$paths/circle.nc"

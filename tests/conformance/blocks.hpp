@@ -92,6 +92,17 @@ inline const std::tuple blocks{
                                      .velocity_weight = p(0.9)},
                                     T);
           }},
+    entry{"linuxcnc_pid", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<linuxcnc_pid<R>>({.pgain = p(701_V / 1_m),
+                                              .igain = p(8000.0 * 1_V / (1_m * 1_s)),
+                                              .dgain = p(3.1_V / 1_mps),
+                                              .ff0 = p(2_V / 1_m),
+                                              .ff1 = p(0.3_V / 1_mps),
+                                              .ff2 = p(0.01_V / 1_mps2),
+                                              .error_previous_target = false},
+                                             T);
+          }},
     entry{"sliding_mode", 0.125,
           []<class R>(values<R>& p) {
               return law_on<sliding_mode<R>>({.plant = {p(0.63_mps2 / 1_V), p(2.5 / 1_s)},

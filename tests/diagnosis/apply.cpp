@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
 #include "quadrant/diagnosis/plant_model.hpp"
 #include "quadrant/diagnosis/read/machine_keys.hpp"
 #include "quadrant/diagnosis/read_diagnosis.hpp"
@@ -21,7 +22,7 @@ const char* const machine_text = R"({
                     "stribeck_velocity_m_per_s": 0.0022},
           "encoder": {"resolution_m": 2.5e-7},
           "controller": {"kind": "cascade_p_pi", "position_gain_per_s": 150, "velocity_gain_V_s_per_m": 60,
-                         "velocity_filter_Hz": 150, "notch": {"frequency_Hz": 330, "damping": 0.06}}}
+                         "velocity_filter_Hz": 150, "notch": {"frequency_Hz": 330, "width": 0.06}}}
   }
 })";
 
@@ -130,7 +131,7 @@ TEST_CASE(
     CHECK(x["actuator"]["lag_s"] == 0.001);
     CHECK(x["process"]["force_N"].dump() == "[3.0,1.0]");
     CHECK(x["controller"]["notch"]["frequency_Hz"] == 300);
-    CHECK(x["controller"]["notch"]["damping"] == 0.06);
+    CHECK(x["controller"]["notch"]["width"] == 0.06);
     CHECK(out.machine["axes"]["y"]["plant"].dump() == R"({"force_constant_N_per_A":80.0,"mass_kg":50})");
 }
 
@@ -237,7 +238,8 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
                 fill(box, std::string(key.key()), std::vector<double>{0.25, 0.75});
         }
     for (const auto& key : detail::actuator_keys) fill(x["actuator"], key.name, next += 0.001);
-    for (const auto& key : detail::controller_keys_of_file) fill(x["controller"], key.name, next += 0.001);
+    for (const auto& key : controllers::cascade_p_pi.keys)
+        if (!key.in_box() && key.form == key_form::number) fill(x["controller"], std::string(key.name), next += 0.001);
     for (const auto& t : detail::tolerance_names()) x["tolerance"][std::string(t.name)] = next += 0.001;
     x["actuator"]["dac_bits"] = 16;
     x["controller"]["velocity_estimator"] = "two_sample_mean";

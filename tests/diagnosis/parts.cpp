@@ -3,6 +3,7 @@
 
 #include <quadrant/diagnosis/causes.hpp>
 #include <quadrant/diagnosis/closed_loop.hpp>
+#include <quadrant/diagnosis/controller/cascade_p_pi.hpp>
 #include <quadrant/diagnosis/places.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/linear_motor.hpp>
@@ -273,7 +274,7 @@ TEST_CASE("own controller: the stock cascade behind it is replayed and simulated
     auto axis = workshop::described(real).axes[0];
     for (const double integral : {300.0, 0.0}) {
         auto& stock = *axis.controller;
-        stock.velocity_integral_V_per_m = integral;
+        stock.set("velocity_integral_V_per_m", integral);
         const auto own = with_cascade(stock, axis.actuator, workshop::period,
                                       [](const auto& loop) { return own_controller(loop); });
         const auto replay = [&](const controller_description& c) {

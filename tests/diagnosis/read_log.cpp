@@ -84,13 +84,19 @@ TEST_CASE("read_log: unknown columns are ignored with a note, whatever they hold
     CHECK(log.notes[1] == "log.csv: column \"\" is not one of the format's and is ignored.");
 }
 
-TEST_CASE("read_log: the optional columns get a note that they are not used") {
-    const auto log = read("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_m_per_s,x_acc_m_per_s2,x_force_N\n"
-                          "0.0,0,0,0,1,2,3\n0.1,0,1,0,1,2,3\n");
+TEST_CASE("read_log: the velocities of reference and axis are read; other optional columns get a note") {
+    const auto log = read("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_m_per_s,x_acc_m_per_s2,x_force_N,x_ref_m_per_s,"
+                          "x_ref_m_per_s2,y_vel_m_per_s\n"
+                          "0.0,0,0,0,1,2,3,4,5,6\n0.1,0,1,0,1.5,2,3,4.5,5.5,6\n");
+    CHECK(log.axes.at(0).velocity == std::vector{1, 1.5});
+    CHECK(log.axes[0].reference_velocity == std::vector{4, 4.5});
+    CHECK(log.axes[0].reference_acceleration == std::vector{5, 5.5});
     REQUIRE(log.notes.size() == 3);
-    CHECK(log.notes[0] == "log.csv: column \"x_vel_m_per_s\" is not used by this version.");
-    CHECK(log.notes[1] == "log.csv: column \"x_acc_m_per_s2\" is not used by this version.");
-    CHECK(log.notes[2] == "log.csv: column \"x_force_N\" is not used by this version.");
+    CHECK(log.notes[0] == "log.csv: column \"x_acc_m_per_s2\" is not used by this version.");
+    CHECK(log.notes[1] == "log.csv: column \"x_force_N\" is not used by this version.");
+    CHECK(log.notes[2] == "log.csv: column \"y_vel_m_per_s\" belongs to no axis of the log and is ignored.");
+    CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_V,x_vel_rad_per_s\n") ==
+          "log.csv:1:29: \"x_vel_rad_per_s\": axis x is linear");
 }
 
 TEST_CASE(

@@ -36,7 +36,7 @@ def validator(name):
 def keys_of_the_reader():
     """Box of the machine file -> keys of the controller that read/machine_keys.hpp knows. Those of effects are generated (docs.effects)."""
     text = (root / "include/quadrant/diagnosis/read/machine_keys.hpp").read_text(encoding="utf-8")
-    tables = {"notch": ("notch_keys",), "cascade_p_pi": ("controller_keys_of_file", "controller_other_keys")}
+    tables = {}
     return {box: {key for table in names for key in re.findall(r'"(\w+)"', re.search(rf"\b{table}\{{(.*?)\n?\}};", text, re.S)[1])}
             for box, names in tables.items()}
 
@@ -134,10 +134,19 @@ good_machine = {
                   "cogging_period_m": 0.03, "cogging_N": [1, 2], "cogging_phase_rad": [0, 1]},
         "actuator": {"dac_bits": 16, "dac_range_V": 20},
         "controller": {"kind": "cascade_p_pi", "position_gain_per_s": 1, "velocity_gain_V_s_per_m": 1,
-                       "velocity_filter_Hz": 100, "notch": {"frequency_Hz": 300, "damping": 0.1}}}}}
+                       "velocity_filter_Hz": 100, "notch": {"frequency_Hz": 300, "width": 0.1}}}}}
 x = ["axes", "x"]
 accept(machine, good_machine, "the machine of this test")
 accept(machine, changed(good_machine, x + ["controller"], {"kind": "vendor", "any": []}), "an unknown controller")
+accept(machine, changed(good_machine, x + ["controller", "notch"], {"frequency_Hz": 300, "damping": 0.1}), "the old name of a key")
+refuse(machine, changed(good_machine, x + ["controller", "notch", "damping"], 0.1), "a key under both of its names")
+every_kind = load(root / "tests" / "controllers" / "machines.json")
+for kind, axis in every_kind["axes"].items():
+    way = ["axes", kind, "controller"]
+    refuse(machine, changed(every_kind, way + ["colour"], 1), f"{kind} with an unknown key")
+    for key, value in axis["controller"].items():
+        if key != "kind":
+            refuse(machine, changed(every_kind, way + [key], {"is": "none"}), f"{kind} with {key} of another form")
 accept(machine, changed(changed(good_machine, x + ["controller", "velocity_estimator"], "two_sample_mean"),
                         x + ["controller", "velocity_filter_Hz"], ...), "two_sample_mean without a filter")
 for path, to in [
@@ -149,7 +158,7 @@ for path, to in [
         (x + ["tolerance"], {"mass": -0.1}), (x + ["tolerance"], {"mass_kg": 0.1}), (x + ["encoder"], {"resolution_m": -1}),
         (x + ["actuator", "dac_range_V"], ...), (x + ["actuator", "dac_bits"], 15.5), (x + ["controller", "kind"], ...),
         (x + ["controller", "velocity_filter_Hz"], ...), (x + ["controller", "velocity_feedforward"], "1"),
-        (x + ["controller", "gain"], 1), (x + ["controller", "notch", "damping"], ...)]:
+        (x + ["controller", "gain"], 1), (x + ["controller", "notch", "width"], ...)]:
     refuse(machine, changed(good_machine, path, to), f"machine with {'.'.join(path)} = {to}")
 
 every_effect = copy.deepcopy(good_machine)
@@ -180,12 +189,13 @@ def rotary(value):
     return value
 
 
+accept(machine, every_kind | {"axes": {name: rotary(axis) for name, axis in every_kind["axes"].items()}}, "rotary axes with every controller kind")
 of_an_angle = changed(every_effect, x, rotary(every_effect["axes"]["x"]))
 accept(machine, of_an_angle, "a rotary machine with every effect")
 refuse(machine, changed(of_an_angle, x + ["plant", "coulomb_N"], 1), "a rotary plant with newtons")
 refuse(machine, changed(of_an_angle, x + ["encoder", "resolution_m"], 1), "a rotary encoder with metres")
 refuse(machine, changed(every_effect, x + ["plant", "coulomb_Nm"], 1), "a linear plant with newton metres")
-for box in ("plant", "tolerance", "encoder", "actuator", "process", "cascade_p_pi", "axis"):
+for box in ("plant", "tolerance", "encoder", "actuator", "process", "axis"):
     checked += 1
     of_line = machine.schema["$defs"][box]["properties"]
     if rotary(dict.fromkeys(of_line)).keys() != machine.schema["$defs"]["rotary_" + box]["properties"].keys():

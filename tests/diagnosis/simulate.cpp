@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/apply.hpp"
+#include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
 #include "quadrant/diagnosis/controller_box.hpp"
 #include "quadrant/diagnosis/diagnose.hpp"
 #include "quadrant/diagnosis/own_effect.hpp"

@@ -200,16 +200,16 @@ inline quadrant::diagnosis::machine_description described(const machine& m) {
         {"mass", 0.02}, {"force_constant", 0.01}, {"viscous", 0.1}, {"coulomb", 0.05}, {"static", 0.05}};
     a.encoder.resolution_m = count;
     a.actuator = {.limit_V = limit, .dac_bits = 16, .dac_range_V = 20};
-    controller_description c;
-    c.position_gain_per_s = m.control.position_gain;
-    c.velocity_gain_V_s_per_m = m.control.velocity_gain;
-    c.velocity_integral_V_per_m = m.control.integral;
-    c.velocity_filter_Hz = m.control.filter_Hz;
-    c.velocity_feedforward = m.control.velocity_feedforward;
-    c.acceleration_feedforward_V_s2_per_m = m.control.acceleration_feedforward;
-    c.viscous_feedforward_V_s_per_m = m.control.viscous_feedforward;
-    c.coulomb_feedforward_V = m.control.coulomb_feedforward;
-    a.controller = c;
+    a.controller = controller_description{
+        .kind = "cascade_p_pi",
+        .values = {{"position_gain_per_s", {m.control.position_gain}},
+                   {"velocity_gain_V_s_per_m", {m.control.velocity_gain}},
+                   {"velocity_integral_V_per_m", {m.control.integral}},
+                   {"velocity_filter_Hz", {m.control.filter_Hz}},
+                   {"velocity_feedforward", {m.control.velocity_feedforward}},
+                   {"acceleration_feedforward_V_s2_per_m", {m.control.acceleration_feedforward}},
+                   {"viscous_feedforward_V_s_per_m", {m.control.viscous_feedforward}},
+                   {"coulomb_feedforward_V", {m.control.coulomb_feedforward}}}};
     machine_description out;
     out.sample_period_s = period;
     out.axes.push_back(a);

@@ -79,7 +79,10 @@ inline std::string causes(const diagnosis_result& d) {
             more += fmt::format("On this record it cannot be told apart from {}.",
                                 escape(voice(named(c.confusable_with, "or"))));
         for (const reading& r : c.readings)
-            more += fmt::format("<br>As {}: {}.", escape(voice(name_of_effect(r.effect))),
+            more += fmt::format("<br>{}: {}.",
+                                r.effect == c.effect
+                                    ? "This record is explained as well by"
+                                    : fmt::format("As {}", escape(voice(name_of_effect(r.effect)))),
                                 escape(listed(lines_of(r.parameters, voice))));
         if (!c.exciting_motion.empty())
             more += fmt::format("{}Shown by: {}.", more.empty() ? "" : "<br>", escape(c.exciting_motion));

@@ -45,7 +45,7 @@ inline ordered_json machine_file(const drawn_machine& m) {
         control["acceleration_feedforward_V_s2_per_m"] = c.acceleration_feedforward;
         control["viscous_feedforward_V_s_per_m"] = c.viscous_feedforward;
         control["coulomb_feedforward_V"] = c.coulomb_feedforward;
-        if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"damping", c.notch_damping}};
+        if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"width", c.notch_damping}};
         axes[a.name] = {{"plant", plant},
                         {"tolerance",
                          {{"mass", t.mass},

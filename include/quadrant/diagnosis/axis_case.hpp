@@ -96,13 +96,13 @@ public:
     controller_description mended() const {
         controller_description c = *axis.controller;
         if (controller->mended)
-            for (const auto& key : detail::controller_keys(c))
+            for (const auto& key : detail::searched_keys(c))
                 if (controller->key == key.key) key.of(c) = controller->value;
         return c;
     }
     /// What a controller commands otherwise than logged, as a force on the axis [N].
     std::vector<double> command_difference(const axis_log& l, const controller_description& c) const {
-        auto d = replay_controller(c, axis.actuator, record.period, l.reference, l.position, l.command);
+        auto d = replay_controller(c, axis.actuator, record.period, loop_columns::of(l));
         for (std::size_t k = 0; k < d.size(); ++k)
             d[k] = (d[k] - l.command[k]) * axis.plant.force_constant_N_per_V;
         return d;

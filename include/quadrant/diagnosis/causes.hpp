@@ -277,6 +277,8 @@ inline std::optional<cause> controller_cause(const axis_case& c) {
     if (!c.controller->key.empty())
         out.parameters.push_back(
             {c.controller->key, {{c.controller->value, c.controller->low, c.controller->high}}});
+    for (const auto& other : c.controller->alternatives)
+        out.readings.push_back({out.effect, {{other.key, {{other.value, other.value, other.value}}}}});
     return out;
 }
 

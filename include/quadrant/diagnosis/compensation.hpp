@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "compensation_result.hpp"
+#include "controller/kinds.hpp"
 #include "effect/effect.hpp"
 
 #include <fmt/format.h>
@@ -10,11 +11,7 @@ namespace quadrant::diagnosis {
 namespace detail {
 
 inline void set_keys(controller_description& c, const std::vector<key_value>& keys) {
-    for (const key_value& k : keys) {
-        if (k.key == "coulomb_feedforward_V") c.coulomb_feedforward_V = k.values[0];
-        if (k.key == "viscous_feedforward_V_s_per_m") c.viscous_feedforward_V_s_per_m = k.values[0];
-        if (k.key == "acceleration_feedforward_V_s2_per_m") c.acceleration_feedforward_V_s2_per_m = k.values[0];
-    }
+    for (const key_value& k : keys) c.values[k.key] = k.values;
 }
 
 inline std::vector<key_value> settings_of(const level_block::parameters& p) {
@@ -55,17 +52,21 @@ class compensations_of {
 public:
     compensations_of(const plant_model& p, const controller_description& c, double period,
                      std::vector<std::string> causes)
-        : p_(p), c_(c), period_(period), causes_(std::move(causes)), volts_(1 / p.force_constant) {}
+        : p_(p), c_(c), kind_(kind_of(c)), period_(period), causes_(std::move(causes)),
+          volts_(1 / p.force_constant) {}
 
     std::vector<compensation> take() {
         dry_friction();
         if (auto own = those({"viscous_friction"}); !own.empty())
-            by_keys("viscous_feedforward", own, {viscous()});
+            by_keys("viscous_feedforward", own, viscous());
         if (auto own = those({"mass", "force_constant"}); !own.empty()) {
-            std::vector<key_value> keys{{"acceleration_feedforward_V_s2_per_m", {p_.mass * volts_}}};
+            auto keys = fed(kind_.acceleration, p_.mass * volts_);
+            const auto add = [&](const std::vector<key_value>& more) {
+                keys.insert(keys.end(), more.begin(), more.end());
+            };
             const bool gain = own.back() == "force_constant"; // then what is paid already is paid in wrong coin
-            if (gain && c_.viscous_feedforward_V_s_per_m != 0) keys.push_back(viscous());
-            if (gain && c_.coulomb_feedforward_V != 0 && those(dry).empty()) keys.push_back(coulomb());
+            if (gain && already(kind_.viscous)) add(viscous());
+            if (gain && already(kind_.coulomb) && those(dry).empty()) add(coulomb());
             by_keys("acceleration_feedforward", own, keys);
         }
         by_block("friction by direction", "asymmetric_friction", "constant and proportional",
@@ -87,6 +88,8 @@ public:
         together();
         return std::move(out_);
     }
+    /// The causes for which the kind of the controller has no key.
+    const std::vector<std::string>& without_key() const { return without_key_; }
 
 private:
     std::vector<std::string> those(const std::vector<std::string>& names) const {
@@ -95,17 +98,23 @@ private:
             if (std::find(causes_.begin(), causes_.end(), name) != causes_.end()) out.push_back(name);
         return out;
     }
-    key_value viscous() const {
-        return {"viscous_feedforward_V_s_per_m", {p_.friction.viscous_slope * volts_}};
+    /// A feedforward of so much command as the keys of the kind have it; nothing where it has no such key.
+    std::vector<key_value> fed(const feedforward_key& f, double amount) const {
+        if (f.key.empty()) return {};
+        return {{std::string(f.key), {f.over.empty() ? amount : amount / given_values(kind_, c_)[f.over]}}};
     }
-    key_value coulomb() const { return {"coulomb_feedforward_V", {p_.friction.coulomb * volts_}}; }
+    bool already(const feedforward_key& f) const {
+        return !f.key.empty() && given_values(kind_, c_)[f.key] != 0;
+    }
+    std::vector<key_value> viscous() const { return fed(kind_.viscous, p_.friction.viscous_slope * volts_); }
+    std::vector<key_value> coulomb() const { return fed(kind_.coulomb, p_.friction.coulomb * volts_); }
 
     void dry_friction() {
         const auto own = those(dry);
         if (own.empty() || !(p_.friction.coulomb + p_.friction.excess > 0)) return;
-        by_keys("coulomb_feedforward", own, {coulomb()});
-        const std::vector<key_value> instead{{"coulomb_feedforward_V", {0}}};
-        if (p_.friction.excess > 0)
+        const auto instead = fed(kind_.coulomb, 0);
+        if (!instead.empty()) by_keys("coulomb_feedforward", own, coulomb());
+        if (p_.friction.excess > 0 || instead.empty())
             out_.push_back({.name = "friction_feedforward",
                             .effects = own,
                             .block = "friction_feedforward<stribeck>",
@@ -122,6 +131,10 @@ private:
         ways_ = out_.size();
     }
     void by_keys(const char* name, std::vector<std::string> effects, std::vector<key_value> keys) {
+        if (keys.empty()) {
+            without_key_.insert(without_key_.end(), effects.begin(), effects.end());
+            return;
+        }
         out_.push_back({.name = name, .effects = std::move(effects), .keys = std::move(keys)});
     }
     void by_block(const char* name, const char* effect, const char* block, compensated_forces forces,
@@ -158,11 +171,13 @@ private:
                                                      "presliding_friction"};
     const plant_model& p_;
     const controller_description& c_;
+    const controller_kind& kind_;
     double period_;
     std::vector<std::string> causes_;
     double volts_;
     std::size_t ways_ = 0; ///< of paying dry friction: the first of out_
     std::vector<compensation> out_;
+    std::vector<std::string> without_key_;
 };
 
 } // namespace detail

@@ -1,123 +1,159 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../compose/cascade_p_pi.hpp"
-#include "../filter/two_sample_derivative.hpp"
+#include "controller/kinds.hpp"
+#include "log.hpp"
 #include "own_controller.hpp"
 #include "signals.hpp"
 
-#include <limits>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace quadrant::diagnosis {
 
 namespace detail {
 
-using filtered_estimate = filtered_derivative<signal::position, signal::velocity>;
-using two_sample_estimate = two_sample_derivative<signal::position, signal::velocity>;
-using no_notch = through<signal::voltage>;
-using command_notch = notch<signal::voltage>;
-
-template <class Estimator, class Notch>
-cascade<cascade_p_pi_boxes<Estimator, Notch>> described(const controller_description& c,
-                                                        const actuator_description& a, double period) {
-    using boxes = cascade_p_pi_boxes<Estimator, Notch>;
-    typename boxes::parameters p{
-        .position_gain = gain_of<signal::velocity, signal::position>::from_value(c.position_gain_per_s),
-        .velocity_gain = gain_of<signal::voltage, signal::velocity>::from_value(c.velocity_gain_V_s_per_m),
-        .velocity_integral =
-            gain_rate_of<signal::voltage, signal::velocity>::from_value(c.velocity_integral_V_per_m),
-        .velocity_feedforward = c.velocity_feedforward,
-        .acceleration_feedforward =
-            gain_of<signal::voltage, signal::acceleration>::from_value(c.acceleration_feedforward_V_s2_per_m),
-        .viscous_feedforward =
-            gain_of<signal::voltage, signal::velocity>::from_value(c.viscous_feedforward_V_s_per_m),
-        .coulomb_feedforward = quantity_of<signal::voltage>::from_value(c.coulomb_feedforward_V),
-        .limit = quantity_of<signal::voltage>::from_value(
-            a.limit_V.value_or(std::numeric_limits<double>::infinity()))};
-    if constexpr (std::is_same_v<Estimator, filtered_estimate>)
-        p.estimator = {.corner = frequency::from_value(c.velocity_filter_Hz)};
-    if constexpr (std::is_same_v<Notch, command_notch>)
-        p.notch = {.centre = frequency::from_value(c.notch->frequency_Hz), .damping = c.notch->damping};
-    if (a.dac_bits && a.dac_range_V)
-        p.dac_step = quantity_of<signal::voltage>::from_value(*a.dac_range_V / std::exp2(*a.dac_bits));
-    return {.box = {p, duration::from_value(period)}};
-}
-
-/// A controller of the user's own on the ports of a cascade, behind it the limit and the DAC that the machine file describes.
-struct own_axis {
-    using volts = quantity_of<signal::voltage>;
+/// A controller of the user's own, behind it the limit and the DAC that the machine file describes.
+struct own_loop {
     running_loop loop;
-    double limit, dac_step;
-    own_axis(const own_control& own, const actuator_description& a)
-        : loop(own.made()), limit(a.limit_V.value_or(std::numeric_limits<double>::infinity())),
-          dac_step(a.dac_bits && a.dac_range_V ? *a.dac_range_V / std::exp2(*a.dac_bits) : 0) {}
+    output_stage out;
 
-    volts operator()(quantity_of<signal::position> reference, quantity_of<signal::position> measured) {
-        const double u = std::clamp(loop(nullptr, reference.value(), measured.value()), -limit, limit);
-        return volts::from_value(dac_step > 0 ? std::round(u / dac_step) * dac_step : u);
-    }
+    double step(double reference, double measured) { return out(loop(nullptr, reference, measured)); }
     void settle(const loop_start& row) { loop(&row, 0, 0); }
+    bool remembers() const { return true; }
+    bool limited() const { return false; }
+    bool faulted() const { return false; }
 };
 
 } // namespace detail
 
-/// Calls f with the cascade that the machine file describes, as a value of its own type.
-template <class F>
-auto with_cascade(const controller_description& c, const actuator_description& a, double period, F f) {
-    using namespace detail;
-    if (c.velocity_estimator == controller_description::estimator::two_sample_mean)
-        return c.notch ? f(described<two_sample_estimate, command_notch>(c, a, period))
-                       : f(described<two_sample_estimate, no_notch>(c, a, period));
-    return c.notch ? f(described<filtered_estimate, command_notch>(c, a, period))
-                   : f(described<filtered_estimate, no_notch>(c, a, period));
+/// The controller that is described, as new: of the machine file's kind, or the user's own.
+inline std::unique_ptr<running_controller> made(const controller_description& c, const actuator_description& a,
+                                                double period) {
+    if (c.own)
+        return std::make_unique<detail::positions_only<detail::own_loop>>(
+            detail::own_loop{c.own->made(), detail::stage_of(a)});
+    const controller_kind& kind = kind_of(c);
+    return kind.make(given_values(kind, c), a, period);
 }
 
-/// Calls f with the controller that is described: the machine file's cascade, or the user's own.
-template <class F>
-auto with_controller(const controller_description& c, const actuator_description& a, double period, F f) {
-    return c.own ? f(detail::own_axis(*c.own, a)) : with_cascade(c, a, period, f);
+/// What a controller saw and did: columns of a log, of one length. Those that are empty are differences of the
+/// positions.
+struct loop_columns {
+    std::span<const double> reference, position, command;
+    std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
+
+    static loop_columns of(const axis_log& log) {
+        return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
+                log.velocity};
+    }
+};
+
+/// The inputs of a controller row by row. Before row 0 both motions were even, as from row 0 to row 1.
+class loop_inputs {
+public:
+    loop_inputs(const loop_columns& columns, double period) : c_(columns), period_(period) {}
+
+    axis_motion<> asked(std::ptrdiff_t k) const {
+        return {in_si(along(c_.reference, k)), in_si(reference_velocity(k)), in_si(reference_acceleration(k))};
+    }
+    /// The position that was read, and the velocity that was measured or follows from it.
+    axis_measurement<> measured(std::ptrdiff_t k) const {
+        const double v = c_.velocity.empty() ? difference(c_.position, k) : c_.velocity[row(k)];
+        return {in_si(along(c_.position, k)), in_si(v)};
+    }
+    loop_start start(double command) const {
+        return {.reference = c_.reference[0],
+                .measured = c_.position[0],
+                .reference_velocity = (c_.reference[1] - c_.reference[0]) / period_,
+                .measured_velocity = (c_.position[1] - c_.position[0]) / period_,
+                .command = command};
+    }
+    std::ptrdiff_t rows() const { return static_cast<std::ptrdiff_t>(c_.reference.size()); }
+
+private:
+    std::size_t row(std::ptrdiff_t k) const { return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, k)); }
+    double along(std::span<const double> x, std::ptrdiff_t k) const {
+        return k >= 0 ? x[row(k)] : x[0] + static_cast<double>(k) * (x[1] - x[0]);
+    }
+    double difference(std::span<const double> x, std::ptrdiff_t k) const {
+        return k > 0 ? (x[row(k)] - x[row(k - 1)]) / period_ : (x[1] - x[0]) / period_;
+    }
+    double reference_velocity(std::ptrdiff_t k) const {
+        return c_.reference_velocity.empty() ? difference(c_.reference, k) : c_.reference_velocity[row(k)];
+    }
+    double reference_acceleration(std::ptrdiff_t k) const {
+        if (!c_.reference_acceleration.empty()) return k < 0 ? 0 : c_.reference_acceleration[row(k)];
+        return k > 0 ? (reference_velocity(k) - reference_velocity(k - 1)) / period_ : 0;
+    }
+
+    loop_columns c_;
+    double period_;
+};
+
+/// Puts a controller into the middle of a motion, as new: row 0 of a log is its past, and `command` is what it
+/// gave there. One that has to run first is run through an even motion that ends at row 0, twice: the second
+/// time with what the first missed.
+inline std::unique_ptr<running_controller> begun(const running_controller& fresh, const loop_inputs& in,
+                                                 double command) {
+    auto loop = fresh.copy();
+    if (loop->past() == 0) {
+        loop->settle(in.start(command));
+        return loop;
+    }
+    const auto ahead = static_cast<std::ptrdiff_t>(loop->lead());
+    const auto from = -static_cast<std::ptrdiff_t>(loop->past());
+    double asked = command;
+    for (int round = 0; round < 2; ++round) {
+        loop = fresh.copy();
+        const double x = in.measured(from).position.value();
+        loop->settle({.reference = x, .measured = x, .command = asked});
+        double last = asked;
+        for (std::ptrdiff_t k = from; k <= 0; ++k)
+            last = loop->show(in.asked(std::min(k + ahead, in.rows() - 1)), in.measured(k), asked);
+        if (std::isfinite(last)) asked += command - last;
+    }
+    return loop;
 }
 
-/// Puts a controller into the middle of a motion: row 0 of a log is its past, the differences to row 1 its velocities,
-/// the command of row 0 fixes the integral (a controller without one starts with none).
-template <class Controller>
-void start_at_row_0(Controller& axis, double r0, double r1, double y0, double y1, double u0, double period) {
-    settle_at(axis, {.reference = r0,
-                     .measured = y0,
-                     .reference_velocity = (r1 - r0) / period,
-                     .measured_velocity = (y1 - y0) / period,
-                     .command = u0});
+/// The controller box alone: fed the logged reference and position, it puts out what the described controller
+/// would have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of
+/// the encoder is in the first command by way of the velocity. What that leaves open of the initial integral is
+/// a constant offset of the replay, which a second pass takes from the whole record. A law that follows from
+/// what it applied is told so by the log. Rows that a controller is only shown, and those whose look-ahead ends
+/// behind the log, are the logged ones.
+inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
+                                             double period, const loop_columns& log) {
+    const auto fresh = made(c, a, period);
+    const loop_inputs in(log, period);
+    const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
+    const std::size_t shown = fresh->past() > 0 ? fresh->past() - fresh->lead() : 0;
+    std::vector<double> out(log.command.begin(), log.command.end());
+    const auto pass = [&](double offset) {
+        const auto loop = begun(*fresh, in, log.command[0] + offset);
+        for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k) {
+            const auto row = static_cast<std::size_t>(k);
+            if (row < shown) {
+                const bool missing = row + 1 == shown || !loop->fixed_by_last_row();
+                loop->show(in.asked(k + ahead), in.measured(k), log.command[row] + (missing ? offset : 0));
+                continue;
+            }
+            out[row] = loop->step(in.asked(k + ahead), in.measured(k));
+            loop->applied(log.command[row]);
+        }
+    };
+    pass(0);
+    if (fresh->remembers()) {
+        std::vector<double> offset(out.size());
+        for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
+        pass(quantile(offset, 0.5));
+    }
+    return out;
 }
-
-/// The controller box alone: fed the logged reference and position, it puts out what the described controller would
-/// have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of the encoder is in
-/// the first command by way of the velocity. What that leaves open of the initial integral is a constant offset of the
-/// replay, which a second pass takes from the whole record.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, std::span<const double> reference,
                                              std::span<const double> position,
                                              std::span<const double> command) {
-    return with_controller(c, a, period, [&](const auto& described) {
-        std::vector<double> out(reference.size());
-        const auto pass = [&](double start) {
-            auto axis = described;
-            start_at_row_0(axis, reference[0], reference[1], position[0], position[1], start, period);
-            out[0] = command[0];
-            for (std::size_t k = 1; k < out.size(); ++k)
-                out[k] = axis(quantity_of<signal::position>::from_value(reference[k]),
-                              quantity_of<signal::position>::from_value(position[k]))
-                             .value();
-        };
-        pass(command[0]);
-        if (c.own || c.velocity_integral_V_per_m != 0) {
-            std::vector<double> offset(out.size());
-            for (std::size_t k = 0; k < out.size(); ++k) offset[k] = command[k] - out[k];
-            pass(command[0] + quantile(offset, 0.5));
-        }
-        return out;
-    });
+    return replay_controller(c, a, period, loop_columns{reference, position, command});
 }
 
 } // namespace quadrant::diagnosis

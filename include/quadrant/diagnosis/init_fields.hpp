@@ -58,7 +58,8 @@ inline constexpr std::array init_fields{
                "feedforward of Coulomb friction", 1e-6, 1e3},
     init_field{"notch-frequency", "controller", "notch.frequency_Hz", "Hz", "notch behind the velocity loop", 1,
                5e3},
-    init_field{"notch-damping", "controller", "notch.damping", "", "its width", 1e-3, 2},
+    init_field{"notch-width", "controller", "notch.width", "", "relative width between its -3 dB points", 1e-3,
+               2},
 };
 
 } // namespace quadrant::diagnosis

@@ -15,6 +15,8 @@ struct axis_log {
     std::vector<double> reference;  ///< position reference [m]
     std::vector<double> position;   ///< position as the controller read it [m]
     std::vector<double> command;    ///< controller output of that row, after limit and DAC
+    std::vector<double> reference_velocity{}, reference_acceleration{}; ///< empty: differences of the reference
+    std::vector<double> velocity{}; ///< as the controller read it [m/s]; empty: differences of the position
     std::vector<double>
         other_acceleration{};  ///< of the axis that may be coupled to this one [m/s^2]; empty: alone
     double reference_step = 0; ///< half of the last written digit bounds the rounding of the column; 0: exact

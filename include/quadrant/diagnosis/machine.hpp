@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "axis_words.hpp"
+#include "controller/description.hpp"
 #include "own_law.hpp"
 
-#include <functional>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -51,52 +50,6 @@ struct tolerance_description {
         const auto found = given.find(key);
         return found == given.end() ? unstated : found->second;
     }
-};
-
-/// One notch of the controller: its centre [Hz] and the width of its denominator, over the centre.
-struct notch_description {
-    double frequency_Hz = 0, damping = 0;
-};
-
-/// The last row before the next call of a controller that begins in the middle of a motion, SI.
-struct loop_start {
-    double reference = 0, measured = 0, reference_velocity = 0, measured_velocity = 0, command = 0;
-};
-/// A controller as it runs: one sample, reference and measured position in, command out; or, with a row to start from, that.
-using running_loop = std::function<double(const loop_start*, double reference, double measured)>;
-
-/// A number of a controller of your own that may be found to be another.
-struct own_key {
-    std::string key;
-    double value = 0;
-    double scale = 1; ///< a sensible size when the value is 0
-};
-
-/// What no machine file can say: a controller as code (own_controller.hpp).
-struct own_control {
-    std::vector<own_key> keys;
-    std::function<running_loop(std::span<const double> values)> make; ///< as new, from the values of the keys
-    running_loop made() const {
-        std::vector<double> values;
-        for (const own_key& k : keys) values.push_back(k.value);
-        return make(values);
-    }
-};
-
-/// The controller kind `cascade_p_pi` of FORMAT.md.
-struct controller_description {
-    enum class estimator { filtered_derivative, two_sample_mean };
-    double position_gain_per_s = 0;
-    double velocity_gain_V_s_per_m = 0;
-    double velocity_integral_V_per_m = 0;
-    estimator velocity_estimator = estimator::filtered_derivative;
-    double velocity_filter_Hz = 0; ///< of the filtered derivative
-    double velocity_feedforward = 0;
-    double acceleration_feedforward_V_s2_per_m = 0;
-    double viscous_feedforward_V_s_per_m = 0;
-    double coulomb_feedforward_V = 0;
-    std::optional<notch_description> notch;
-    std::optional<own_control> own{}; ///< in its place, with the numbers above unused; in no file
 };
 
 /// What amplifier and converter do to a command on its way to the motor.

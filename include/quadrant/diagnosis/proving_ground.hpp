@@ -81,13 +81,13 @@ private:
         const double crossover = std::min(0.5 / scale_.response(), 0.35 / dead_time);
         const double gain = crossover * p.mass_kg / p.force_constant_N_per_V;
         controller_description c;
-        c.position_gain_per_s = crossover / 4;
-        c.velocity_gain_V_s_per_m = gain;
-        c.velocity_integral_V_per_m = gain * crossover / 5;
-        c.velocity_filter_Hz = std::min(0.25 / period_, 8 * crossover / (2 * std::numbers::pi));
-        c.velocity_feedforward = 1;
-        c.acceleration_feedforward_V_s2_per_m = p.mass_kg / p.force_constant_N_per_V;
-        c.viscous_feedforward_V_s_per_m = p.viscous_N_s_per_m / p.force_constant_N_per_V;
+        c.set("position_gain_per_s", crossover / 4);
+        c.set("velocity_gain_V_s_per_m", gain);
+        c.set("velocity_integral_V_per_m", gain * crossover / 5);
+        c.set("velocity_filter_Hz", std::min(0.25 / period_, 8 * crossover / (2 * std::numbers::pi)));
+        c.set("velocity_feedforward", 1);
+        c.set("acceleration_feedforward_V_s2_per_m", p.mass_kg / p.force_constant_N_per_V);
+        c.set("viscous_feedforward_V_s_per_m", p.viscous_N_s_per_m / p.force_constant_N_per_V);
         return c;
     }
 

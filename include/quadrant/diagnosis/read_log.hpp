@@ -107,6 +107,7 @@ private:
         for (auto& [name, at] : header_.axes) {
             if (purpose_ == log_purpose::motion) {
                 out.axes.push_back(planned(name, *at.kind, header_.columns[*at.reference]));
+                add_motion(out.axes.back(), at);
                 continue;
             }
             auto &reference = header_.columns[*at.reference], &position = header_.columns[*at.position],
@@ -128,10 +129,20 @@ private:
                                 .position_step = position.step.step(),
                                 .command_step = command.step.step(),
                                 .kind = *at.kind});
+            add_motion(out.axes.back(), at);
         }
         if (std::all_of(out.axes.begin(), out.axes.end(), [](const axis_log& a) { return a.still; }))
             throw bad_input(file_, "no axis moves");
         return out;
+    }
+
+    /// The velocities that the log has columns for.
+    void add_motion(axis_log& axis, const log_header::axis_columns& at) {
+        if (at.reference_velocity)
+            axis.reference_velocity = std::move(header_.columns[*at.reference_velocity].values);
+        if (at.reference_acceleration)
+            axis.reference_acceleration = std::move(header_.columns[*at.reference_acceleration].values);
+        if (at.velocity) axis.velocity = std::move(header_.columns[*at.velocity].values);
     }
 
     /// An axis that follows its reference without being asked for anything.

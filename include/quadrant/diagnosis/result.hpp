@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report draws. Fields
-/// named in m and N are in rad and N m for a rotary axis; keys and sentences are in its own words already.
+/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report
+/// draws. Fields named in m and N are in rad and N m for a rotary axis; keys and sentences are in its own words
+/// already.
 namespace quadrant::diagnosis {
 
 /// Ordered from the best to the worst: the verdict of several axes is the largest.
@@ -35,8 +36,8 @@ struct estimate {
     double value = 0, low = 0, high = 0; ///< 95 % interval
 };
 
-/// How far simulation and machine are apart on one axis: positions and command in closed loop, force along the motion that
-/// was logged.
+/// How far simulation and machine are apart on one axis: positions and command in closed loop, force along the
+/// motion that was logged.
 struct gap_numbers {
     double position_rms_m = 0, position_peak_m = 0; ///< closed-loop simulation against the log
     double command_rms_V = 0;                       ///< the same
@@ -61,13 +62,15 @@ struct parameter_estimate {
     bool on_bound = false; ///< the fit stopped where it was not allowed to go on: the value may lie beyond
 };
 
-/// Another name for the same signal on this record, with the parameters it would have.
+/// Another name for the same signal on this record, with the parameters it would have; or, of the same name,
+/// other parameters that explain the record as well.
 struct reading {
     std::string effect;
     std::vector<parameter_estimate> parameters;
 };
 
-/// An effect that explains a part of the gap: how probable, with which numbers, and what is left of the gap with it.
+/// An effect that explains a part of the gap: how probable, with which numbers, and what is left of the gap
+/// with it.
 struct cause {
     std::string axis, effect;
     bool described = false; ///< the machine file has a value for it, another one than found; else it has none

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "controller/json.hpp"
 #include "read/machine_keys.hpp"
 
 namespace quadrant::diagnosis {
@@ -30,23 +31,6 @@ inline nlohmann::ordered_json effects_json(std::string_view box, const axis_desc
             out[key] = values;
     });
     return out;
-}
-
-inline nlohmann::ordered_json controller_json(const controller_description& c) {
-    nlohmann::ordered_json out = {{"kind", "cascade_p_pi"}};
-    if (c.velocity_estimator == controller_description::estimator::two_sample_mean)
-        out["velocity_estimator"] = "two_sample_mean";
-    out.update(numbers_json(controller_keys_of_file, c));
-    if (c.notch) out["notch"] = numbers_json(notch_keys, *c.notch);
-    return out;
-}
-
-/// The place of a key in a box of a machine file; a dotted one is that of a box inside, which is made where it is missing.
-inline nlohmann::ordered_json& place_in(nlohmann::ordered_json& box, std::string_view key) {
-    nlohmann::ordered_json* place = &box;
-    for (std::size_t dot = 0; (dot = key.find('.')) != key.npos; key.remove_prefix(dot + 1))
-        place = &(*place)[std::string(key.substr(0, dot))];
-    return (*place)[std::string(key)];
 }
 
 /// The keys of a box as an axis of this kind has them.

@@ -81,6 +81,7 @@ private:
                 throw bad_input(
                     file_,
                     fmt::format("axes.{}.controller: is missing; the diagnosis is of another machine", c.axis));
+            if (box == "controller") rename_old_keys(out_.machine["axes"][c.axis][box]);
             set(c.axis, box, key, value_of(p), c.effect);
         }
     }

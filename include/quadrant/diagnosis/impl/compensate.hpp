@@ -97,9 +97,11 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 causes.push_back(c.effect);
         }
         const controller_description controller = axis.controller.value_or(controller_description());
-        a.compensations =
-            detail::compensations_of(forecast.plant(), controller, machine.sample_period_s, std::move(causes))
-                .take();
+        detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s, std::move(causes));
+        a.compensations = ways.take();
+        for (const std::string& effect : ways.without_key())
+            a.others.push_back({effect, fmt::format("a feedforward, for which controller kind {} has no key",
+                                                    controller.kind)});
         if (!axis.controller) {
             out.notes.push_back(
                 fmt::format("axis {}: no controller is described: nothing is forecast", a.name));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../controller/json.hpp"
 #include "../read/key_place.hpp"
 #include "../read/machine_keys.hpp"
 #include "../read_machine.hpp"
@@ -69,7 +70,10 @@ private:
         const axis_kind other = axis.kind == axis_kind::rotary ? axis_kind::linear : axis_kind::rotary;
         for (const auto& [box, content] : axis.value->items()) {
             if (!content.is_object()) continue;
-            const auto mine = keys_of_box(box, axis.kind), others = keys_of_box(box, other);
+            const auto keys_of = [&, box = std::string_view(box)](axis_kind kind) {
+                return box == "controller" ? keys_of_controller(content, kind) : keys_of_box(box, kind);
+            };
+            const auto mine = keys_of(axis.kind), others = keys_of(other);
             for (const auto& [key, value] : content.items())
                 for (std::size_t i = 0; i < others.size(); ++i) {
                     if (others[i] != key || mine[i] == key) continue;
@@ -84,6 +88,17 @@ private:
                     throw bad_input(top_.file, message);
                 }
         }
+    }
+
+    /// The keys of a controller outside its boxes, as an axis of this kind has them.
+    static std::vector<std::string> keys_of_controller(const nlohmann::json& content, axis_kind of) {
+        std::vector<std::string> out;
+        const auto kind = content.find("kind");
+        if (kind == content.end() || !kind->is_string()) return out;
+        if (const controller_kind* known = find_controller_kind(kind->get_ref<const std::string&>()))
+            for (const controller_key& key : known->keys)
+                if (!key.in_box()) out.push_back(key_of(key.name, of));
+        return out;
     }
 
     void read_box(const json_node& node, std::string_view box, axis_description& axis) {
@@ -126,38 +141,14 @@ private:
     }
 
     void read_controller(const json_node& node, axis_description& axis) {
-        const std::string& kind = node.object().need("kind").text();
-        if (kind != "cascade_p_pi")
-            return note(axis, fmt::format("controller kind {} is not known: diagnosed from the command onwards",
-                                          in_quotes(kind)));
-        auto& controller = axis.controller.emplace();
-        read_numbers(node, controller_keys_of_file, controller_other_keys, controller);
-
-        using estimator = controller_description::estimator;
-        if (const auto given = node.find("velocity_estimator")) {
-            const std::string& text = given->text();
-            if (text != "filtered_derivative" && text != "two_sample_mean")
-                given->refuse("must be \"filtered_derivative\" or \"two_sample_mean\"");
-            controller.velocity_estimator =
-                text == "two_sample_mean" ? estimator::two_sample_mean : estimator::filtered_derivative;
-        }
-        const auto filter = node.find("velocity_filter_Hz");
-        if (controller.velocity_estimator == estimator::filtered_derivative) {
-            node.need("velocity_filter_Hz");
-            need_below_nyquist(*filter);
-        } else if (filter) {
-            note(axis, "velocity_filter_Hz is not used by the velocity estimator two_sample_mean");
-        }
-        if (const auto notch = node.find("notch")) {
-            read_numbers(*notch, notch_keys, {}, controller.notch.emplace());
-            need_below_nyquist(notch->need("frequency_Hz"));
-        }
-    }
-
-    void need_below_nyquist(const json_node& frequency) const {
-        const double nyquist = 0.5 / out_.sample_period_s;
-        if (frequency.value->get<double>() >= nyquist)
-            frequency.refuse(fmt::format("must lie below half the sampling rate ({:.6g} Hz)", nyquist));
+        const std::string& name = node.object().need("kind").text();
+        const controller_kind* kind = find_controller_kind(name);
+        if (!kind)
+            return note(axis, fmt::format("controller kind {} is not known (known: {}): diagnosed from the "
+                                          "command onwards",
+                                          in_quotes(name), names_of_kinds()));
+        axis.controller = detail::read_controller(*kind, node, out_.sample_period_s, "kind",
+                                                  [&](const std::string& text) { note(axis, text); });
     }
 
     void note_what_is_assumed(const axis_description& axis) {

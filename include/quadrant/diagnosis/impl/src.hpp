@@ -2,6 +2,7 @@
 #pragma once
 #include "apply.hpp"
 #include "compensate.hpp"
+#include "controllers.hpp"
 #include "diagnose.hpp"
 #include "effect_list.hpp"
 #include "forecast.hpp"

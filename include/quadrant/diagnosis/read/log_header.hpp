@@ -24,6 +24,7 @@ struct log_column {
 struct log_header {
     struct axis_columns {
         std::optional<std::size_t> reference, position, command;
+        std::optional<std::size_t> reference_velocity, reference_acceleration, velocity; ///< need not be there
         std::string command_unit;
         std::size_t command_at = 0; ///< in the header line
         std::optional<axis_kind> kind;
@@ -34,7 +35,15 @@ struct log_header {
     std::vector<std::string> notes;
 };
 
-enum class column_role { reference, position, command, not_used_yet };
+enum class column_role {
+    reference,
+    position,
+    command,
+    reference_velocity,
+    reference_acceleration,
+    velocity,
+    not_used_yet
+};
 
 struct column_suffix {
     std::string_view text;
@@ -50,10 +59,14 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_cmd_A", column_role::command, "A"},
     column_suffix{"_cmd_N", column_role::command, "N"},
     column_suffix{"_cmd_Nm", column_role::command, "Nm"},
-    column_suffix{"_vel_m_per_s", column_role::not_used_yet},
+    column_suffix{"_ref_m_per_s", column_role::reference_velocity, "m"},
+    column_suffix{"_ref_m_per_s2", column_role::reference_acceleration, "m"},
+    column_suffix{"_vel_m_per_s", column_role::velocity, "m"},
+    column_suffix{"_ref_rad_per_s", column_role::reference_velocity, "rad"},
+    column_suffix{"_ref_rad_per_s2", column_role::reference_acceleration, "rad"},
+    column_suffix{"_vel_rad_per_s", column_role::velocity, "rad"},
     column_suffix{"_acc_m_per_s2", column_role::not_used_yet},
     column_suffix{"_force_N", column_role::not_used_yet},
-    column_suffix{"_vel_rad_per_s", column_role::not_used_yet},
     column_suffix{"_acc_rad_per_s2", column_role::not_used_yet},
     column_suffix{"_torque_Nm", column_role::not_used_yet},
 };
@@ -97,6 +110,11 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
         out.columns[index].used = true;
     };
 
+    struct motion_column {
+        std::size_t index, offset;
+        const column_suffix* suffix;
+    };
+    std::vector<motion_column> motions; ///< joined when it is known which axes there are
     while (cells.next()) {
         if (cells.broken())
             refuse(cells.offset(), "a quote is not closed before the comma or the end of the line");
@@ -121,6 +139,9 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                 fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
+        else if (suffix->role == column_role::reference_velocity ||
+                 suffix->role == column_role::reference_acceleration || suffix->role == column_role::velocity)
+            motions.push_back({index, cells.offset(), &*suffix});
         else if (purpose == log_purpose::record || suffix->role == column_role::reference)
             join_axis(*suffix, index);
     }
@@ -141,6 +162,23 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
             refuse(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "
                                                 "{0}_cmd_{2}",
                                                 name, name_of(*axis.kind), force));
+    }
+    for (const motion_column& m : motions) {
+        log_column& column = out.columns[m.index];
+        const auto axis = out.axes.find(column.name.substr(0, column.name.size() - m.suffix->text.size()));
+        if (axis == out.axes.end()) {
+            out.notes.push_back(
+                fmt::format("column {} belongs to no axis of the log and is ignored", in_quotes(column.name)));
+            continue;
+        }
+        if ((m.suffix->unit == "rad") != (axis->second.kind == axis_kind::rotary))
+            refuse(m.offset, fmt::format("{}: axis {} is {}", in_quotes(column.name), axis->first,
+                                         name_of(*axis->second.kind)));
+        if (m.suffix->role == column_role::velocity && purpose == log_purpose::motion) continue;
+        (m.suffix->role == column_role::velocity             ? axis->second.velocity
+         : m.suffix->role == column_role::reference_velocity ? axis->second.reference_velocity
+                                                             : axis->second.reference_acceleration) = m.index;
+        column.used = true;
     }
     out.time = *time;
     return out;

@@ -6,31 +6,6 @@
 /// (effect_keys.hpp).
 namespace quadrant::diagnosis::detail {
 
-inline constexpr std::array controller_keys_of_file{
-    number_key<controller_description>{"position_gain_per_s", rule::not_negative,
-                                       &controller_description::position_gain_per_s, true},
-    number_key<controller_description>{"velocity_gain_V_s_per_m", rule::not_negative,
-                                       &controller_description::velocity_gain_V_s_per_m, true},
-    number_key<controller_description>{"velocity_integral_V_per_m", rule::not_negative,
-                                       &controller_description::velocity_integral_V_per_m},
-    number_key<controller_description>{"velocity_filter_Hz", rule::positive,
-                                       &controller_description::velocity_filter_Hz},
-    number_key<controller_description>{"velocity_feedforward", rule::any_number,
-                                       &controller_description::velocity_feedforward},
-    number_key<controller_description>{"acceleration_feedforward_V_s2_per_m", rule::any_number,
-                                       &controller_description::acceleration_feedforward_V_s2_per_m},
-    number_key<controller_description>{"viscous_feedforward_V_s_per_m", rule::any_number,
-                                       &controller_description::viscous_feedforward_V_s_per_m},
-    number_key<controller_description>{"coulomb_feedforward_V", rule::any_number,
-                                       &controller_description::coulomb_feedforward_V},
-};
-inline constexpr std::array<std::string_view, 3> controller_other_keys{"kind", "velocity_estimator", "notch"};
-
-inline constexpr std::array notch_keys{
-    number_key<notch_description>{"frequency_Hz", rule::positive, &notch_description::frequency_Hz, true},
-    number_key<notch_description>{"damping", rule::positive, &notch_description::damping, true},
-};
-
 /// Keys of the actuator that belong to no effect: what the controller itself does to its command.
 inline constexpr std::array actuator_keys{
     number_key<actuator_description>{"limit_V", rule::positive, &actuator_description::limit_V},
@@ -50,7 +25,6 @@ inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind
         for (const std::string_view name : names) out.push_back(key_of(name, kind));
     };
     if (box == "actuator") add(actuator_other_keys);
-    if (box == "controller") add(names_of(controller_keys_of_file));
     if (box == "tolerance")
         for (const tolerance_name& t : tolerance_names()) out.push_back(key_of(t.name, kind));
     return out;
