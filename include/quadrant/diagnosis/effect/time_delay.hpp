@@ -12,7 +12,7 @@ inline constexpr effect time_delay{.name = "time_delay",
                                    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
                                        const double t = s.record.period;
                                        std::vector<std::vector<parameter>> out;
-                                       // The lower end, inside one period, and a delay to which the loop responds.
+                                       // Inside one period, and one to which the loop responds.
                                        for (double extra : {0.1 * t, 0.4 * s.record.scale.response()})
                                            out.push_back(
                                                {{.key = "delay_s",
