@@ -14,7 +14,7 @@
 /// curve, and with the model that the plant itself has; each without and with the disturbance observer.
 namespace thesis {
 
-struct none {
+struct no_friction_model {
     using box = absent<signal::velocity, signal::voltage>;
     static box::parameters of(const axis&) { return {}; }
 };

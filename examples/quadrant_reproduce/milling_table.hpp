@@ -102,7 +102,7 @@ template <class Friction, class Observer, class Memory> struct configuration {
         return p;
     }
 };
-using uncompensated = configuration<none, no_observer, no_memory>; ///< (i)
+using uncompensated = configuration<no_friction_model, no_observer, no_memory>; ///< (i)
 using compensated = configuration<gms_model, observer, no_memory>; ///< (ii)
 using learning = configuration<gms_model, observer, memory>;       ///< (iii)
 

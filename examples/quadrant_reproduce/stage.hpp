@@ -78,19 +78,19 @@ inline kalman<signal::voltage>::parameters filter_of(const machine& m, const tun
 }
 
 /// Friction compensation: fed forward from the reference, or that corrected by what the axis is behind.
-struct none {
+struct no_feedforward {
     using forward = absent<signal::velocity, signal::voltage>;
     using observer = absent<signal::velocity, signal::voltage>;
     static forward::parameters forward_of(const machine&) { return {}; }
     static observer::parameters observer_of(const machine&) { return {}; }
 };
-struct fed_forward : none {
+struct fed_forward : no_feedforward {
     using forward = lugre<signal::velocity, signal::voltage>;
     static forward::parameters forward_of(const machine& m) {
         return friction_of<signal::voltage>(m, m.force_constant);
     }
 };
-struct observed : none {
+struct observed : no_feedforward {
     using observer = lugre_observer<signal::voltage>;
     static observer::parameters observer_of(const machine& m) {
         return {friction_of<signal::voltage>(m, m.force_constant), 30.0 / 1_s};

@@ -107,7 +107,7 @@ class Similarity:
 def similarities(axes):
     for factor in ("0.001", "0.01", "10", "100", "1000"):
         yield Similarity(f"lengths x {factor}", length=factor)
-    for factor in ("0.4", "4", "10"):
+    for factor in ("0.1", "4", "10"):
         yield Similarity(f"time x {factor}", time=factor)
     for factor in ("0.001", "0.002", "1000"):
         yield Similarity(f"volts x {factor}", volt=factor)
@@ -120,7 +120,7 @@ def similarities(axes):
         yield Similarity("axes exchanged", axes=dict(zip(axes, reversed(axes))))
     yield Similarity("renamed", axes={a: f"feed{len(axes) - i}" for i, a in enumerate(axes)})
     yield Similarity("rotary", rotary=True)
-    yield Similarity("small, fast, weak, turned over and elsewhere", length="0.001", time="0.4", force="0.001",
+    yield Similarity("small, fast, weak, turned over and elsewhere", length="0.001", time="0.1", force="0.001",
                      volt="0.002", sign=-1, offset="0.7", begin="1000")
 
 

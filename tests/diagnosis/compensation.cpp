@@ -51,9 +51,12 @@ const compensation& of(const compensated_axis& a, const std::string& name) {
 }
 
 /// Error of a log, and the mean of its peaks after reversals, by arithmetic of its own.
+/// Without the first block, as in the forecast.
 double error_rms(const axis_log& log) {
+    const auto plant = workshop::described({}).axes[0].plant;
+    const double block = scales_of(plant, log, workshop::period, workshop::count).block() / workshop::period;
+    const std::size_t skip = 5 * static_cast<std::size_t>(std::lround(block / 5));
     double sum = 0;
-    const std::size_t skip = 100;
     for (std::size_t k = skip; k < log.position.size(); ++k)
         sum += (log.reference[k] - log.position[k]) * (log.reference[k] - log.position[k]);
     return std::sqrt(sum / static_cast<double>(log.position.size() - skip));

@@ -24,7 +24,7 @@ TEST_CASE("stage: 30 cm in 1 s peaks at the published 1.127 m/s and is there at 
 }
 TEST_CASE("stage: 500 um without compensation settle long after the set time, with it before; no error of a "
           "count stays") {
-    const figures bare = short_move<none>(real), with = short_move<fed_forward>(real),
+    const figures bare = short_move<no_feedforward>(real), with = short_move<fed_forward>(real),
                   seen = short_move<observed>(real);
     CHECK(bare.settling > 0.4);
     CHECK(with.settling < 0.2);
@@ -42,8 +42,8 @@ TEST_CASE(
         return m;
     };
     const machine more = with_friction(1.33), less = with_friction(0.67);
-    CHECK(short_move<fed_forward>(more).max_error < 0.5 * short_move<none>(more).max_error);
-    CHECK(short_move<fed_forward>(less).max_error < short_move<none>(less).max_error);
+    CHECK(short_move<fed_forward>(more).max_error < 0.5 * short_move<no_feedforward>(more).max_error);
+    CHECK(short_move<fed_forward>(less).max_error < short_move<no_feedforward>(less).max_error);
 }
 TEST_CASE("stage: along 10 um steps the axis stands within a count of every target") {
     double worst = 0;

@@ -77,10 +77,11 @@ inline experiment circle() {
         "measured this on its machine; "
         "it prints no simulation of it.",
         0.10,
-        {{id + "none", [=] { return circle_case<none, no_observer>(id + "none", "none", 25); }},
+        {{id + "none", [=] { return circle_case<no_friction_model, no_observer>(id + "none", "none", 25); }},
          {id + "static", [=] { return circle_case<static_curve, no_observer>(id + "static", "static", 7); }},
          {id + "gms", [=] { return circle_case<gms_model, no_observer>(id + "gms", "GMS", 6); }},
-         {id + "dob", [=] { return circle_case<none, observer>(id + "dob", "observer alone", 7); }},
+         {id + "dob",
+          [=] { return circle_case<no_friction_model, observer>(id + "dob", "observer alone", 7); }},
          {id + "dob_static",
           [=] { return circle_case<static_curve, observer>(id + "dob_static", "and static", 5); }},
          {id + "dob_gms", [=] { return circle_case<gms_model, observer>(id + "dob_gms", "and GMS", 3); }}}};

@@ -16,7 +16,7 @@ std::optional<double> error_under_push(const thesis::axis& a, typename Observer:
                                        double hertz) {
     using namespace quadrant;
     using namespace quadrant::literals;
-    using loop_type = milling_axis<milling_axis_boxes<thesis::none::box, typename Observer::box>>;
+    using loop_type = milling_axis<milling_axis_boxes<thesis::no_friction_model::box, typename Observer::box>>;
     using motor_type = linear_motor<coulomb_viscous<>>;
     auto controller = thesis::controller_of<decltype(loop_type::box)>(a);
     controller.plant_pole = a.A; // friction in it

@@ -98,8 +98,8 @@ inline experiment friction() {
     e.cases = {
         {of(x, ".none"),
          [=] {
-             auto out =
-                 friction_case<none, no_observer>(x, of(x, ".none"), "none", {15, 15, 21.8, 16.8, digit}, 2.5);
+             auto out = friction_case<no_friction_model, no_observer>(x, of(x, ".none"), "none",
+                                                                      {15, 15, 21.8, 16.8, digit}, 2.5);
              out.pictures.push_back(hysteresis(x));
              return out;
          }},
@@ -115,7 +115,8 @@ inline experiment friction() {
          }},
         {of(y, ".none"),
          [=] {
-             auto out = friction_case<none, no_observer>(y, of(y, ".none"), "none", {31, 35, 30.4, 20.9}, 2.5);
+             auto out = friction_case<no_friction_model, no_observer>(y, of(y, ".none"), "none",
+                                                                      {31, 35, 30.4, 20.9}, 2.5);
              out.pictures.push_back(hysteresis(y));
              return out;
          }},

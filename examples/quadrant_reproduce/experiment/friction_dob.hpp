@@ -20,7 +20,7 @@ inline experiment friction_dob() {
         0.10,
         {{id + "x.none",
           [=] {
-              return friction_case<none, observer>(x, id + "x.none", "observer alone", {{}, 7, {}, {}}, 2.5);
+              return friction_case<no_friction_model, observer>(x, id + "x.none", "observer alone", {{}, 7, {}, {}}, 2.5);
           }},
          {id + "x.static",
           [=] {
@@ -33,7 +33,7 @@ inline experiment friction_dob() {
           }},
          {id + "y.none",
           [=] {
-              return friction_case<none, observer>(y, id + "y.none", "observer alone", {{}, 11, {}, {}}, 2.5);
+              return friction_case<no_friction_model, observer>(y, id + "y.none", "observer alone", {{}, 11, {}, {}}, 2.5);
           }},
          {id + "y.static",
           [=] {

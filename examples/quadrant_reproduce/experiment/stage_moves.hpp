@@ -44,8 +44,8 @@ inline outcome stage_long_move(const std::string& id, double length, double time
     const double end = time + 2;
     const auto with = stage::usual<stage::fed_forward>(stage::real, stage::believed, stage::tight, length, time,
                                                        end),
-               without =
-                   stage::usual<stage::none>(stage::real, stage::believed, stage::tight, length, time, end);
+               without = stage::usual<stage::no_feedforward>(stage::real, stage::believed, stage::tight, length,
+                                                             time, end);
     outcome out;
     out.rows = {{id, "peak_speed", "m/s", with.peak_speed, {}, published_speed, {}, ""},
                 {id, "settling_time", "s", with.settling, {}, time, {}, "published: at the set time"},
@@ -55,9 +55,9 @@ inline outcome stage_long_move(const std::string& id, double length, double time
                 {id, "max_error_uncompensated", "um", without.max_error, {}, {}, {}, ""}};
     const std::string caption = "Reference minus axis; current; speed over position.";
     out.pictures = {
-        stage_picture(
-            title, caption,
-            stage_run<stage::none>("no friction compensation", stage::tight, length, time, time + 0.2)),
+        stage_picture(title, caption,
+                      stage_run<stage::no_feedforward>("no friction compensation", stage::tight, length, time,
+                                                       time + 0.2)),
         stage_picture(title, caption,
                       stage_run<stage::fed_forward>("LuGre", stage::tight, length, time, time + 0.2))};
     return out;
@@ -99,8 +99,9 @@ inline experiment stage_moves() {
          {"stage.move_20mm", [] { return stage_long_move("stage.move_20mm", 0.02, 0.5, {}, "2 cm in 0.5 s"); }},
          {"stage.move_500um.none",
           [] {
-              return stage_short_move<stage::none>("stage.move_500um.none", "no friction compensation",
-                                                   "published: long, stick-slip over the last 50 um");
+              return stage_short_move<stage::no_feedforward>("stage.move_500um.none",
+                                                             "no friction compensation",
+                                                             "published: long, stick-slip over the last 50 um");
           }},
          {"stage.move_500um.lugre",
           [] {

@@ -210,6 +210,7 @@ inline std::vector<cause> plant_causes(const axis_case& c,
         named.exciting_motion = e.exciting_motion;
         named.parameters = estimates(c.best(), e, c.record.score);
         plant_model as_given = c.models.given().fit.plant, nothing_described;
+        nothing_described.friction.contact.length = c.record.scale.give();
         for (const parameter& p : c.best().fit.parameters)
             if (p.key == named.parameters.front().key && p.of(as_given) != p.of(nothing_described))
                 named.described = true;
