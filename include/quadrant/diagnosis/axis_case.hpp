@@ -20,7 +20,9 @@ public:
               const std::vector<std::string>& excluded, const rules& r, const progress& tell)
         : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
           resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
-          record(in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions)),
+          record(for_machine(
+              in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions),
+              a)),
           models(record, a, excluded, r, tell) {
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
@@ -28,7 +30,9 @@ public:
         if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
         controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
-        if (holdout) second = in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second);
+        if (holdout)
+            second = for_machine(
+                in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second), axis);
         path = models.run();
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         noise = models.noise(path.back());

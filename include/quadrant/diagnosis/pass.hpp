@@ -15,6 +15,7 @@ struct pass_input {
         double delay = 0; ///< [s]
     };
     double period = 0;
+    std::size_t substeps = 1; ///< of each part of a period with one command
     std::size_t rows = 0;
     const double *position = nullptr, *command = nullptr;
     const double* other_acceleration = nullptr; ///< null: none
@@ -64,17 +65,16 @@ public:
     void begin(const pass_input& in, std::size_t k) {
         if (!delay_.split) return;
         if (delay_.all_late)
-            older_.advance(state_, command(in, k, 1), now_);
+            advance(older_, state_, command(in, k, 1), delay_.late, in.substeps);
         else {
             auto moved = state_;
-            older_.advance(moved, command(in, k, 1), now_);
+            advance(older_, moved, command(in, k, 1), delay_.late, in.substeps);
             state_.take(greater(delay_.late, Real(0)), moved);
         }
-        now_.time = now_.time + delay_.late;
     }
     /// The rest of it.
     void end(const pass_input& in, std::size_t k) {
-        newer_.advance(state_, command(in, k, 0), now_);
+        advance(newer_, state_, command(in, k, 0), Real(in.period) - delay_.late, in.substeps);
         if (in.acceleration)
             keep(in, in.acceleration, k, (newer_.load_velocity(state_) - before_) * Real(1 / in.period));
     }
@@ -104,11 +104,25 @@ private:
                      axis::side_by_side(
                          in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; })) {}
     lane_group(const pass_input& in, const delay& d, const typename axis::parameters& boxes)
-        : delay_(d),
-          older_(boxes, select(greater(d.late, Real(0)), d.late, Real(in.period)), already_checked()),
-          newer_(boxes, Real(in.period) - d.late, already_checked()),
+        : delay_(d), older_(boxes, select(greater(d.late, Real(0)), d.late, Real(in.period)) * part(in),
+                            already_checked()),
+          newer_(boxes, (Real(in.period) - d.late) * part(in), already_checked()),
           state_(axis::state::at(newer_.position_of(Real(in.position[0])))) {}
 
+    static Real part(const pass_input& in) { return Real(1 / static_cast<double>(in.substeps)); }
+    /// Through a part of the period of this length.
+    void advance(const axis& a, typename axis::state& s, const Real& u, const Real& length, std::size_t steps) {
+        if (steps == 1) {
+            a.advance(s, u, now_);
+            now_.time = now_.time + length;
+            return;
+        }
+        const Real step = length * Real(1 / static_cast<double>(steps));
+        for (std::size_t i = 0; i < steps; ++i) {
+            a.advance(s, u, now_);
+            now_.time = now_.time + step;
+        }
+    }
     Real command(const pass_input& in, std::size_t k, std::size_t more) const {
         const auto row = [&](std::size_t back) { return in.command[k >= back ? k - back : 0]; };
         if (delay_.same) return Real(row(delay_.whole[0] + more));

@@ -29,6 +29,7 @@ struct predictor {
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
     double resolution = 0;                        ///< step of the position [m]
+    std::size_t substeps = 1;                     ///< of a period, see substeps_of()
 
     /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the mean acceleration that the model gives the encoder over each
     /// period [m/s^2].
@@ -114,6 +115,7 @@ private:
             a[i] = acceleration[i].data();
         }
         pass_all({.period = period,
+                  .substeps = substeps,
                   .rows = position.size(),
                   .position = position.data(),
                   .command = u.data(),

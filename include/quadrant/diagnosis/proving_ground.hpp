@@ -56,8 +56,8 @@ public:
     double gain(const planned_motion& m, const confusable& truth, const confusable& other, bool whole) const {
         const axis_log log = record(truth.model.fit.plant, m);
         if (log.position.empty()) return 0;
-        const axis_record r =
-            prepare(log, period_, resolution_, scales_of(axis_.plant, log, period_, resolution_));
+        const axis_record r = for_machine(
+            prepare(log, period_, resolution_, scales_of(axis_.plant, log, period_, resolution_)), axis_);
         const candidate own = refitted(r, truth.model, whole ? 30 : first_look);
         candidate best = refitted(r, other.model, whole ? 30 : first_look);
         if (whole) {

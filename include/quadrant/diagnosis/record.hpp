@@ -82,6 +82,17 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
 }
 
 /// `scale`: of this log, or of the one that it is compared with.
+/// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in a sub-step, in ten
+/// at most. A contact of one spring, which stands for what no record shows, needs none.
+inline std::size_t substeps_of(const plant_model& described, double period) {
+    const auto& f = described.friction;
+    if (f.contact.elements < 2) return 1;
+    double stiffness = 0;
+    for (std::size_t i = 0; i < f.contact.elements; ++i) stiffness += f.stiffness(i);
+    return static_cast<std::size_t>(
+        std::clamp(std::ceil(10 * period * std::sqrt(stiffness / described.mass)), 1.0, 10.0));
+}
+
 inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
     axis_record r{.period = period,
                   .reference = log.reference,
@@ -110,6 +121,12 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     for (std::size_t k = s.skip; k + s.block <= log.position.size(); k += s.block)
         s.segment_of_block.push_back(r.segment[k + s.block / 2]);
     s.segments = r.segments;
+    return r;
+}
+
+/// The record with its observer stepping as finely as the described machine needs.
+inline axis_record for_machine(axis_record r, const axis_description& a) {
+    r.observer.substeps = substeps_of(plant_model(a, r.scale.give()), r.period);
     return r;
 }
 

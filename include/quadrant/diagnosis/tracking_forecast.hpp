@@ -22,7 +22,7 @@ public:
         const double count = observed_count(log.position, log.position_step);
         const double resolution = std::max({axis.encoder.resolution_m, log.position_step, count});
         const axis_record record =
-            prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution));
+            for_machine(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), axis);
         scale_ = record.scale;
         skip_ = record.score.skip;
         plant_ = restarted(plant_model(axis, scale_.give()), record);

@@ -12,7 +12,8 @@ namespace detail {
 inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period) {
     const double resolution = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
-    const axis_record record = prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution));
+    const axis_record record =
+        for_machine(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), axis);
     const plant_model plant = restarted(plant_model(axis, record.scale.give()), record);
     const std::vector<double> all(record.segments, 1.0);
     const auto scored_rms = [&](const std::vector<double>& x) {
