@@ -18,11 +18,15 @@ struct judged_machine {
 
 namespace detail {
 
+/// In double throughout: Boost.Math's long double tables are filled when a program starts, and valgrind, which has no long double,
+/// ends it there.
+using binomial = boost::math::binomial_distribution<
+    double, boost::math::policies::policy<boost::math::policies::promote_double<false>>>;
+
 struct share {
     std::size_t hits = 0, of = 0;
     void add(bool hit) { ++of, hits += hit; }
     ordered_json json() const {
-        using binomial = boost::math::binomial_distribution<>;
         ordered_json out{{"right", hits}, {"of", of}};
         if (of == 0) return out;
         const double n = static_cast<double>(of), k = static_cast<double>(hits);
@@ -36,8 +40,7 @@ struct share {
 /// One-sided upper 95 % bound of a probability that showed `hits` times.
 inline double upper_bound(std::size_t hits, std::size_t of) {
     if (of == 0 || hits == of) return 1;
-    return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
-                                                                       static_cast<double>(hits), 0.05);
+    return binomial::find_upper_bound_on_p(static_cast<double>(of), static_cast<double>(hits), 0.05);
 }
 
 } // namespace detail
