@@ -51,7 +51,7 @@ inline axis_log asked(double seconds) {
 /// The log of an axis under a controller.
 inline axis_log logged(const axis_description& axis, const controller_description& c, double seconds = 2.2) {
     axis_log log = asked(seconds);
-    const auto run = simulate_closed_loop(c, axis, plant_model(axis), machine().sample_period_s, log);
+    const auto run = simulate_closed_loop(c, axis, plant_model(axis, 2e-7), machine().sample_period_s, log);
     log.position = run.position;
     for (double& y : log.position) y = std::round(y * 1e12) / 1e12;
     log.command = run.command;
@@ -68,8 +68,9 @@ inline axis_log cropped(const axis_log& log, std::size_t from) {
 
 inline controller_finding judged(const axis_description& axis, const controller_description& c,
                                  const axis_log& log) {
+    const double period = machine().sample_period_s, count = axis.encoder.resolution_m;
     return judge_controller(c, axis.actuator, log,
-                            prepare(log, machine().sample_period_s, axis.encoder.resolution_m));
+                            prepare(log, period, count, scales_of(axis.plant, log, period, count)));
 }
 
 } // namespace controllers_workshop

@@ -65,7 +65,7 @@ TEST_CASE("quadratic drag: a machine whose file has it is not blamed for it, als
 }
 TEST_CASE("quadratic drag: a machine file holds it, with a tolerance, for linear and rotary axes") {
     const auto machine = read_machine(file_with(40), "m.json");
-    CHECK(plant_model(machine.axes[0]).own.empty() == false);
+    CHECK(plant_model(machine.axes[0], 2e-7).own.empty() == false);
     CHECK(machine.axes[0].tolerance.of("quadratic") == 0.05);
     CHECK(to_json(machine)["axes"]["x"]["plant"][key] == 40);
     const auto turning = to_json(read_machine(file_with(40, true), "m.json"));

@@ -21,8 +21,8 @@ const reading slow{.peak_speed = 0.01, .cycles = 2.5};
 } // namespace
 
 TEST_CASE("thesis.friction: 100 mm/s without friction feedforward: 21.8 um (x), 30.4 um (y)") {
-    check(run<none>(x, fast), 21.8);
-    check(run<none>(y, fast), 30.4);
+    check(run<no_friction_model>(x, fast), 21.8);
+    check(run<no_friction_model>(y, fast), 30.4);
 }
 TEST_CASE("thesis.friction: 100 mm/s with the static curve: 5.0 um (x), 10.6 um (y)") {
     check(run<static_curve>(x, fast), 5.0);
@@ -33,8 +33,8 @@ TEST_CASE("thesis.friction: 100 mm/s with the GMS model: 0.94 um (x), 1.3 um (y)
     check(run<gms_model>(y, fast), 1.3);
 }
 TEST_CASE("thesis.friction: 10 mm/s: none 16.8 and 20.9 um, static 9.7 and 20.4 um") {
-    check(run<none>(x, slow), 16.8);
-    check(run<none>(y, slow), 20.9);
+    check(run<no_friction_model>(x, slow), 16.8);
+    check(run<no_friction_model>(y, slow), 20.9);
     check(run<static_curve>(x, slow), 9.7);
     check(run<static_curve>(y, slow), 20.4);
 }
@@ -71,10 +71,11 @@ TEST_CASE("thesis.friction_dob: at 100 mm/s the observer leaves less than 0.4 of
           "and with GMS") {
     for (const axis* a : {&x, &y}) {
         CAPTURE(a->name);
-        const lag alone = run<none, observer>(*a, fast), with_static = run<static_curve, observer>(*a, fast),
+        const lag alone = run<no_friction_model, observer>(*a, fast),
+                  with_static = run<static_curve, observer>(*a, fast),
                   with_gms = run<gms_model, observer>(*a, fast);
         CHECK_FALSE((alone.diverged || with_static.diverged || with_gms.diverged));
-        CHECK(alone.glitch < 0.4 * run<none>(*a, fast).glitch);
+        CHECK(alone.glitch < 0.4 * run<no_friction_model>(*a, fast).glitch);
         CHECK(with_static.glitch < alone.glitch);
         CHECK(with_gms.glitch < 0.25 * with_static.glitch);
     }

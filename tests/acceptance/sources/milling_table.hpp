@@ -41,13 +41,13 @@ inline motor::parameters machine(const thesis::axis& a, const variant& v) {
 
 inline diagnosis::controller_description controller(const thesis::axis& a) {
     diagnosis::controller_description c;
-    c.position_gain_per_s = thesis::position_gain.value();
-    c.velocity_gain_V_s_per_m = a.kp.value();
-    c.velocity_integral_V_per_m = a.ki.value();
-    c.velocity_filter_Hz = thesis::estimator_corner.value();
-    c.velocity_feedforward = 1;
-    c.acceleration_feedforward_V_s2_per_m = 1 / a.B.value();
-    c.viscous_feedforward_V_s_per_m = a.A_gms.value() / a.B.value();
+    c.set("position_gain_per_s", thesis::position_gain.value());
+    c.set("velocity_gain_V_s_per_m", a.kp.value());
+    c.set("velocity_integral_V_per_m", a.ki.value());
+    c.set("velocity_filter_Hz", thesis::estimator_corner.value());
+    c.set("velocity_feedforward", 1);
+    c.set("acceleration_feedforward_V_s2_per_m", 1 / a.B.value());
+    c.set("viscous_feedforward_V_s_per_m", a.A_gms.value() / a.B.value());
     return c;
 }
 
@@ -109,14 +109,14 @@ inline std::vector<row> run(const thesis::axis& a, const motor::parameters& p, c
         });
     }
     const auto c = controller(a);
-    cascade_p_pi_boxes<>::parameters given{.position_gain = thesis::position_gain,
-                                           .velocity_gain = a.kp,
-                                           .velocity_integral = a.ki,
-                                           .estimator = {thesis::estimator_corner},
-                                           .acceleration_feedforward =
-                                               c.acceleration_feedforward_V_s2_per_m * 1_V / 1_mps2,
-                                           .viscous_feedforward = c.viscous_feedforward_V_s_per_m * 1_V / 1_mps,
-                                           .limit = 10_V};
+    cascade_p_pi_boxes<>::parameters given{
+        .position_gain = thesis::position_gain,
+        .velocity_gain = a.kp,
+        .velocity_integral = a.ki,
+        .estimator = {thesis::estimator_corner},
+        .acceleration_feedforward = c.number("acceleration_feedforward_V_s2_per_m") * 1_V / 1_mps2,
+        .viscous_feedforward = c.number("viscous_feedforward_V_s_per_m") * 1_V / 1_mps,
+        .limit = 10_V};
     cascade<cascade_p_pi_boxes<>> loop{.box = {given, thesis::period}};
     return run(p, m, of_x, [&](const axis_motion<>& r, auto reading, bool first) {
         if (first) loop.settle({.reference = r.position, .measured = reading});
