@@ -16,39 +16,43 @@ namespace gap {
 
 using quadrant::diagnosis::plant_description;
 
-/// A friction law that has one Stribeck velocity for both directions, nearest to the screw's: levels at rest and at speed as
-/// they are, the velocity by least squares over the range in which the curve changes.
-inline void add_friction(plant_description& p, const ball_screw_description& d, double way) {
-    const auto& f = d.forward;
-    const auto& b = d.backward;
-    const double coulomb = 0.5 * (f.coulomb_Nm + b.coulomb_Nm) / way,
-                 at_rest = 0.5 * (f.static_Nm + b.static_Nm) / way;
-    if (coulomb == 0 && at_rest == 0) return;
-    p.coulomb_N = coulomb;
-    if (f.coulomb_Nm != b.coulomb_Nm)
-        p.coulomb_asymmetry = (f.coulomb_Nm - b.coulomb_Nm) / (f.coulomb_Nm + b.coulomb_Nm);
-    if (!(at_rest > coulomb)) return;
-    const auto mean = [&](double w) {
-        const auto side = [w](const friction_side& s) {
-            return s.static_Nm * std::exp(-w / s.fall_rad_per_s) +
-                   s.coulomb_Nm * (1 - std::exp(-w / s.rise_rad_per_s));
-        };
-        return 0.5 * (side(f) + side(b)) / way;
-    };
-    const double fastest =
-        5 * std::max({f.fall_rad_per_s, f.rise_rad_per_s, b.fall_rad_per_s, b.rise_rad_per_s});
-    double best = HUGE_VAL;
+/// Stribeck velocity in one direction, by least squares over the range in which the screw's curve changes.
+inline double stribeck_velocity(const friction_side& s) {
+    const double fastest = 5 * std::max(s.fall_rad_per_s, s.rise_rad_per_s);
+    double best = HUGE_VAL, out = s.fall_rad_per_s;
     for (int i = 1; i <= 400; ++i) {
         const double velocity = fastest * i / 400;
         double squares = 0;
         for (int k = 0; k <= 200; ++k) {
             const double w = fastest * k / 200;
-            const double off = coulomb + (at_rest - coulomb) * std::exp(-w / velocity) - mean(w);
+            const double screw = s.static_Nm * std::exp(-w / s.fall_rad_per_s) +
+                                 s.coulomb_Nm * (1 - std::exp(-w / s.rise_rad_per_s));
+            const double off = s.coulomb_Nm + (s.static_Nm - s.coulomb_Nm) * std::exp(-w / velocity) - screw;
             squares += off * off;
         }
-        if (squares < best) best = squares, p.stribeck_velocity_m_per_s = velocity * way;
+        if (squares < best) best = squares, out = velocity;
     }
+    return out;
+}
+
+/// The Stribeck law nearest to the screw's, by direction: levels at rest and at speed as they are.
+inline void add_friction(plant_description& p, const ball_screw_description& d, double way) {
+    const auto& f = d.forward;
+    const auto& b = d.backward;
+    const auto asymmetry = [](double to, double fro) -> std::optional<double> {
+        return to == fro ? std::nullopt : std::optional((to - fro) / (to + fro));
+    };
+    const double coulomb = 0.5 * (f.coulomb_Nm + b.coulomb_Nm) / way,
+                 at_rest = 0.5 * (f.static_Nm + b.static_Nm) / way;
+    if (coulomb == 0 && at_rest == 0) return;
+    p.coulomb_N = coulomb;
+    p.coulomb_asymmetry = asymmetry(f.coulomb_Nm, b.coulomb_Nm);
+    if (!(at_rest > coulomb)) return;
     p.static_N = at_rest;
+    p.static_asymmetry = asymmetry(f.static_Nm, b.static_Nm);
+    const double to = stribeck_velocity(f), fro = stribeck_velocity(b);
+    p.stribeck_velocity_m_per_s = 0.5 * (to + fro) * way;
+    p.stribeck_velocity_asymmetry = asymmetry(to, fro);
 }
 
 } // namespace gap

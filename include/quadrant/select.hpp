@@ -108,6 +108,7 @@ template <class Value>
 constexpr void set_where(bool where, Value& to, const std::type_identity_t<Value>& from) noexcept {
     if (where) to = from;
 }
+/// The same, lane by lane.
 template <class Mask, class Value>
 requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
     const Mask& where, Value& to, const std::type_identity_t<Value>& from) noexcept {
@@ -116,6 +117,7 @@ requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
     else
         to = select(where, from, to);
 }
+/// The same for each entry of an array.
 template <class Mask, class Value, std::size_t N>
 requires(!std::is_same_v<Mask, bool>) constexpr void set_where(
     const Mask& where, std::array<Value, N>& to,

@@ -42,7 +42,9 @@ expected=$(sed -n 's/.*"shrink": \([0-9.e+-]*\).*/\1/p' expected.json)
 awk "BEGIN { d = $expected - (1 - $after / $before); exit !(d < 0.1 && d > -0.1) }"
 printf 't_s,x_pos_m\n0,1\n0.0005,1\n' >no_reference.csv
 "$program" forecast --quiet --machine "$data/machine.json" --diagnosis found.json --motion planned.csv --json again.json --at-least 1
-grep -q '"shrink": 0.0' again.json # nothing is that sure: nothing corrected, nothing gained
+# ... and with nothing but the calibrated values it is far smaller.
+shrinks=$(sed -n 's/.*"shrink": \([0-9.e+-]*\).*/\1/p' again.json)
+awk "BEGIN { exit !($shrinks < 0.3 * $expected) }" # nothing is that sure: nothing corrected, nothing gained
 rm again.json
 refuses 'column x_pos_m is missing' simulate --machine better.json --log planned.csv
 refuses 'no axis: columns such as x_ref_m' forecast --machine "$data/machine.json" --diagnosis found.json --motion no_reference.csv

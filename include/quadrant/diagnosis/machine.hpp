@@ -25,7 +25,9 @@ struct plant_description {
     std::optional<double> coulomb_N;
     std::optional<double> static_N, stribeck_velocity_m_per_s;
     std::optional<double> viscous_asymmetry, coulomb_asymmetry; ///< relative: level times (1 + a sign v)
-    std::optional<double> constant_force_N;                     ///< added to the motor's force
+    std::optional<double> static_asymmetry,
+        stribeck_velocity_asymmetry;        ///< the same; absent: the excess and vs are symmetric
+    std::optional<double> constant_force_N; ///< added to the motor's force
     std::optional<double> cogging_period_m;
     std::vector<double> cogging_N, cogging_phase_rad; ///< one entry a harmonic
     std::optional<double> presliding_length_m;        ///< deflection at 1 - 1/e of the Coulomb level

@@ -121,6 +121,8 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     typed(f.stribeck_velocity, p.friction.stribeck_velocity);
     typed(f.viscous, p.friction.viscous_slope);
     f.asymmetry = p.friction.coulomb_asymmetry;
+    f.excess_asymmetry = p.friction.excess_asymmetry;
+    f.velocity_asymmetry = p.friction.velocity_asymmetry;
     f.viscous_asymmetry = p.friction.viscous_asymmetry;
     typed(f.attraction, p.friction.contact.attraction);
     typed(f.damping, p.friction.contact.damping);

@@ -25,12 +25,13 @@ struct plant_model {
     double mass = 0; ///< all that moves, the mode's part too [kg]
     /// Friction that opposes the motion: Stribeck curve, asymmetry, contact, change over place and time.
     struct friction_box {
-        double viscous_slope = 0;     ///< [N s/m]
-        double coulomb = 0;           ///< [N]
-        double excess = 0;            ///< static minus Coulomb level [N]
-        double stribeck_velocity = 1; ///< [m/s]
-        double viscous_asymmetry = 0; ///< relative, signed
-        double coulomb_asymmetry = 0; ///< relative, signed
+        double viscous_slope = 0;                            ///< [N s/m]
+        double coulomb = 0;                                  ///< [N]
+        double excess = 0;                                   ///< static minus Coulomb level [N]
+        double stribeck_velocity = 1;                        ///< [m/s]
+        double viscous_asymmetry = 0;                        ///< relative, signed
+        double coulomb_asymmetry = 0;                        ///< relative, signed
+        double excess_asymmetry = 0, velocity_asymmetry = 0; ///< of excess and Stribeck velocity
         friction_contact contact;
         harmonics along;                  ///< of the Coulomb level, relative, over position
         double drift = 0, drift_time = 1; ///< Coulomb level times 1 + drift (1 - exp(-t/drift_time))
@@ -80,6 +81,13 @@ struct plant_model {
         friction.stribeck_velocity = d.stribeck_velocity_m_per_s.value_or(1);
         friction.viscous_asymmetry = d.viscous_asymmetry.value_or(0);
         friction.coulomb_asymmetry = d.coulomb_asymmetry.value_or(0);
+        friction.velocity_asymmetry = d.stribeck_velocity_asymmetry.value_or(0);
+        if (d.static_asymmetry &&
+            friction.excess > 0) // of the static level; the excess is what it has above the other
+            friction.excess_asymmetry =
+                std::clamp((*d.static_N * *d.static_asymmetry - friction.coulomb * friction.coulomb_asymmetry) /
+                               friction.excess,
+                           -1.0, 1.0);
         friction.contact.length = give;
         if (d.presliding_length_m) friction.contact.exponential(*d.presliding_length_m);
         if (!d.gms_weights.empty()) describe_contact(d);

@@ -15,7 +15,7 @@ namespace quadrant {
 /// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved together with
 /// the mass that it brakes.
 ///   M (v' - v)/h = drive - viscous v' - sum F_i',   F_i as in `maxwell_slip` with the level s(v) of the step's start,
-///   s(v) = level (1 + asymmetry sign v) (1 + change) + excess exp(-|v|/vs)
+///   s(v) = level (1 + asymmetry sign v) (1 + change) + excess (1 + excess_asymmetry sign v) exp(-|v|/vs(sign v))
 /// A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found in at most
 /// 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity. Velocity and spring forces are
 /// implicit, so no step adds energy and a stiff contact neither rings nor needs a small h; the level is that of the start.
@@ -39,9 +39,11 @@ public:
         of<signal::force> excess{}; ///< Fs - Fc; >= 0
         of<signal::velocity> stribeck_velocity = of<signal::velocity>::from_value(number(1)); ///< vs; > 0
         gain_of<signal::force, signal::velocity, number> viscous{};                           ///< >= 0
-        number asymmetry{0};                                                         ///< of the level; -1 ... 1
-        number viscous_asymmetry{0};                                                 ///< -1 ... 1
-        std::array<number, N> weights{};                                             ///< shares of the level
+        number asymmetry{0};             ///< of the level; -1 ... 1
+        number excess_asymmetry{0};      ///< of the excess; -1 ... 1
+        number velocity_asymmetry{0};    ///< of vs; above -1, below 1
+        number viscous_asymmetry{0};     ///< -1 ... 1
+        std::array<number, N> weights{}; ///< shares of the level
         std::array<gain_of<signal::force, signal::position, number>, N> stiffness{}; ///< >= 0
         quantity<unit_quotient<si::force, si::time>, number> attraction =
             quantity<unit_quotient<si::force, si::time>, number>::from_value(
@@ -58,10 +60,8 @@ public:
     slip_contact(const parameters& p, Real inertia, Real h)
         : slip_contact(checked(p), inertia, h, already_checked()) {}
     slip_contact(const parameters& p, Real inertia, Real h, already_checked)
-        : h_(h), inverse_velocity_(Real(1) / in_real<Real>(p.stribeck_velocity).value()),
-          excess_(in_real<Real>(p.excess).value()), damping_(in_real<Real>(p.damping).value()) {
+        : h_(h), damping_(in_real<Real>(p.damping).value()) {
         const Real attraction = in_real<Real>(p.attraction).value();
-        falls_ = any(greater(excess_, Real(0)));
         relaxes_ = any(less(attraction, Real(std::numeric_limits<double>::infinity())));
         attraction_step_ = attraction * h;
         for (std::size_t i = 0; i < N; ++i) {
@@ -73,6 +73,12 @@ public:
             side& s = forward ? forward_ : backward_;
             const Real sign = Real(forward ? 1 : -1);
             s.level = in_real<Real>(p.level).value() * (Real(1) + Real(p.asymmetry) * sign);
+            s.excess = in_real<Real>(p.excess).value() * (Real(1) + Real(p.excess_asymmetry) * sign);
+            s.inverse_velocity = Real(1) / (in_real<Real>(p.stribeck_velocity).value() *
+                                            (Real(1) + Real(p.velocity_asymmetry) * sign));
+            falls_ = falls_ || any(greater(s.excess, Real(0)));
+            falls_by_side_ = falls_by_side_ || any(!equal(Real(p.excess_asymmetry), Real(0))) ||
+                             any(!equal(Real(p.velocity_asymmetry), Real(0)));
             s.inertia =
                 inertia + h * in_real<Real>(p.viscous).value() * (Real(1) + Real(p.viscous_asymmetry) * sign);
             s.slipping = Real(1) / s.inertia;
@@ -90,7 +96,7 @@ public:
 
 private:
     struct side { // of one direction of motion
-        Real level{}, inertia{};
+        Real level{}, excess{}, inverse_velocity{}, inertia{};
         Real slipping{}, sticking{}; ///< one over the inertia while the first spring slips, and while it sticks
     };
     using law = detail::spring_law<Real, Real>;
@@ -103,12 +109,18 @@ private:
         require_not_negative("slip_contact.viscous", p.viscous);
         require_not_negative("slip_contact.damping", p.damping);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
-            const double c = detail::plain(lane(p.attraction, i)), side = detail::plain(lane(p.asymmetry, i)),
-                         viscous_side = detail::plain(lane(p.viscous_asymmetry, i));
+            const double c = detail::plain(lane(p.attraction, i));
             require(c > 0, "slip_contact.attraction", c, "must be above 0");
-            require(std::abs(side) <= 1, "slip_contact.asymmetry", side, "must lie between -1 and 1");
-            require(std::abs(viscous_side) <= 1, "slip_contact.viscous_asymmetry", viscous_side,
-                    "must lie between -1 and 1");
+            const auto side = [i](const detail::field_name& field, const number& of) {
+                const double a = detail::plain(lane(of, i));
+                require(std::abs(a) <= 1, field, a, "must lie between -1 and 1");
+            };
+            side("slip_contact.asymmetry", p.asymmetry);
+            side("slip_contact.excess_asymmetry", p.excess_asymmetry);
+            side("slip_contact.viscous_asymmetry", p.viscous_asymmetry);
+            const double v = detail::plain(lane(p.velocity_asymmetry, i));
+            require(std::abs(v) < 1, "slip_contact.velocity_asymmetry", v,
+                    "must lie between -1 and 1, both excluded");
         }
         for (std::size_t i = 0; i < N; ++i) {
             require_not_negative("slip_contact.weights", p.weights[i]);
@@ -120,7 +132,12 @@ private:
         using std::abs, std::exp;
         const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
         Real level = changed(select(forward, forward_.level, backward_.level));
-        if (falls_) level = level + excess_ * exp(-abs(v) * inverse_velocity_);
+        if (falls_by_side_)
+            level = level +
+                    select(forward, forward_.excess, backward_.excess) *
+                        exp(-abs(v) * select(forward, forward_.inverse_velocity, backward_.inverse_velocity));
+        else if (falls_)
+            level = level + forward_.excess * exp(-abs(v) * forward_.inverse_velocity);
         Real kept(0);
         if (relaxes_) { // a level of zero has no distance to keep
             const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
@@ -195,8 +212,9 @@ private:
         return v;
     }
 
-    Real h_, inverse_velocity_, excess_, damping_, attraction_step_{};
-    bool relaxes_ = false, falls_ = false; ///< a finite attraction, a level that falls with the speed
+    Real h_, damping_, attraction_step_{};
+    bool relaxes_ = false, falls_ = false,
+         falls_by_side_ = false; ///< a finite attraction; a level that falls with the speed
     std::size_t springs_ = 1;
     std::array<Real, N> weight_{}, stiffness_{};
     side forward_, backward_;

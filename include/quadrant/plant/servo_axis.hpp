@@ -114,6 +114,8 @@ public:
         typed(f.stribeck_velocity, [](const Single& p) { return p.friction.stribeck_velocity; });
         typed(f.viscous, [](const Single& p) { return p.friction.viscous; });
         f.asymmetry = each([](const Single& p) { return p.friction.asymmetry; });
+        f.excess_asymmetry = each([](const Single& p) { return p.friction.excess_asymmetry; });
+        f.velocity_asymmetry = each([](const Single& p) { return p.friction.velocity_asymmetry; });
         f.viscous_asymmetry = each([](const Single& p) { return p.friction.viscous_asymmetry; });
         typed(f.attraction, [](const Single& p) { return p.friction.attraction; });
         typed(f.damping, [](const Single& p) { return p.friction.damping; });
