@@ -224,6 +224,8 @@ public:
                     beam.push_back(c);
             best = *paying;
         }
+        // What does not take the gap of the machine file as it stands down explains nothing, however well it scores.
+        if (held_out_force(best) > (1 - rules_.least_shrink) * held_out_force(given_)) best = calibrated_;
         std::vector<candidate> path{best};
         while (!path.back().effects.empty()) {
             const candidate& whole = path.back();
