@@ -70,7 +70,7 @@ private:
         const axis_kind other = axis.kind == axis_kind::rotary ? axis_kind::linear : axis_kind::rotary;
         for (const auto& [box, content] : axis.value->items()) {
             if (!content.is_object()) continue;
-            const auto keys_of = [&, box = std::string_view(box)](axis_kind kind) {
+            const auto keys_of = [box = std::string_view(box), &content = content](axis_kind kind) {
                 return box == "controller" ? keys_of_controller(content, kind) : keys_of_box(box, kind);
             };
             const auto mine = keys_of(axis.kind), others = keys_of(other);
