@@ -47,7 +47,7 @@ log '1s/x_cmd_V/x_volt/'
 refuses 'x_cmd_V' machine.json l.csv
 head -n 2 log.csv >l.csv
 refuses 'holds one sample only' machine.json l.csv
-{ head -n 1 log.csv && sed -n '2000,2039p' log.csv; } >l.csv
+sed -n '1p;2000,2039p' log.csv >l.csv
 refuses 'one block to start the observer and one to score' machine.json l.csv
 awk -F, 'NR == 1 { print; next } { print $1 ",0,0,0" }' log.csv >l.csv
 refuses 'axis x does not move' machine.json l.csv
