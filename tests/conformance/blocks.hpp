@@ -100,6 +100,7 @@ inline const std::tuple blocks{
                                               .ff0 = p(2_V / 1_m),
                                               .ff1 = p(0.3_V / 1_mps),
                                               .ff2 = p(0.01_V / 1_mps2),
+                                              .maxerror = p(0.05_m),
                                               .error_previous_target = false},
                                              T);
           }},
