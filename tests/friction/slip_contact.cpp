@@ -190,3 +190,37 @@ TEST_CASE("slip_contact: what no guide has is refused by name") {
     CHECK_THROWS_WITH(contact<>(p, mass, step),
                       "slip_contact.stiffness = -2e+06: must be finite and not below 0");
 }
+
+TEST_CASE("slip_contact: each direction breaks away at its own static level and falls with its own Stribeck "
+          "velocity") {
+    auto p = thesis_y(1e300);
+    p.asymmetry = 0.1;
+    p.excess_asymmetry = -0.4;
+    p.velocity_asymmetry = 0.3;
+    const contact<> guide(p, mass, step);
+    for (const double sign : {1.0, -1.0}) {
+        CAPTURE(sign);
+        const double level = 100 * (1 + 0.1 * sign), excess = 50 * (1 - 0.4 * sign),
+                     vs = 2.2e-3 * (1 + 0.3 * sign);
+        const auto held = [&](double v) { // the springs under a velocity that a heavy mass keeps
+            const contact<> driven(p, 1e12, step);
+            contact<>::state s;
+            for (int k = 0; k < 20000; ++k) driven(s, 1e12 * v, v);
+            return sum(s);
+        };
+        for (const double v : {1e-3, 4e-3, 0.1})
+            CHECK(held(sign * v) == doctest::Approx(sign * (level + excess * std::exp(-v / vs))).epsilon(1e-9));
+        const auto slides = [&](double to) {
+            contact<>::state s;
+            double v = 0;
+            for (int k = 0; k < 200000; ++k) {
+                const double drive = sign * to * std::min(1.0, 1e-5 * k);
+                v = guide(s, mass * v + step * drive, v);
+            }
+            return sign * v > 1e-3;
+        };
+        CHECK_FALSE(
+            slides(0.9 * (level + excess))); // the springs creep under a push, and their level falls a little
+        CHECK(slides(1.03 * (level + excess)));
+    }
+}

@@ -5,6 +5,13 @@
 
 namespace quadrant {
 
+namespace detail {
+/// What x has beyond a dead band of this half width. The one place of this law; `dead_band` and `servo_axis` ask it.
+template <class Value> constexpr Value beyond(const Value& x, const Value& half) noexcept {
+    return select(greater(x, half), x - half, select(less(x, -half), x + half, Value()));
+}
+} // namespace detail
+
 /// Ignores small values and shifts the rest towards zero: a command that has to overcome a dead zone, or an error that
 /// shall not hunt around one encoder count.
 ///   y = x - half_width for x > half_width, x + half_width for x < -half_width, else 0
@@ -45,10 +52,7 @@ public:
     state now() const noexcept { return {}; }
 
 private:
-    value shifted(value x) const noexcept {
-        return select(greater(x, half_width_), x - half_width_,
-                      select(less(x, -half_width_), x + half_width_, value()));
-    }
+    value shifted(value x) const noexcept { return detail::beyond(x, half_width_); }
 
     parameters given_;
     value half_width_;

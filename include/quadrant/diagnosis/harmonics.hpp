@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../plant/harmonic_series.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,22 +29,9 @@ struct harmonics {
         }
     }
     double at(double z) const {
-        if (count == 0) return 0;
-        const double angle = 2 * std::numbers::pi * z / period, c1 = std::cos(angle), s1 = std::sin(angle);
-        double c = c1, s = s1, sum = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            sum += cosine[i] * c + sine[i] * s;
-            const double next = c * c1 - s * s1; // angle addition: cheaper than another cosine
-            s = s * c1 + c * s1;
-            c = next;
-        }
-        return sum;
-    }
-    /// The same without the last harmonics that have no size.
-    harmonics trimmed() const {
-        harmonics out = *this;
-        while (out.count > 0 && sine[out.count - 1] == 0 && cosine[out.count - 1] == 0) --out.count;
-        return out;
+        return count == 0
+                   ? 0
+                   : quadrant::detail::harmonic_series<most, double, double>{cosine, sine, count}(z / period);
     }
     /// Up to the last harmonic that has a size.
     std::vector<double> sizes() const {

@@ -13,8 +13,8 @@ using quadrant::joint; ///< where a law acts, and what its number means there
 
 /// The word of a joint in tables and messages.
 constexpr std::string_view name_of(joint where) {
-    constexpr std::array<std::string_view, 6> names{"command",  "motor gain",   "force",
-                                                    "friction", "transmission", "reading"};
+    constexpr std::array<std::string_view, joint_count> names{"command",  "motor gain",   "force",
+                                                              "friction", "transmission", "reading"};
     return names[static_cast<std::size_t>(where)];
 }
 

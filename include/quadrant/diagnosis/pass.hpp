@@ -162,24 +162,19 @@ template <class Real> void pass(const pass_input& in) {
 
 } // namespace detail
 
-/// The observer's pass compiled for one instruction set, for any number of plants: two, four or eight at a time.
+/// The observer's pass compiled for one instruction set, for any number of plants.
 struct pass_table {
     void (*one)(const pass_input&);
     void (*two)(const pass_input&);
     void (*more)(const pass_input&);
-    std::size_t abreast; ///< plants that `more` takes at once
 };
 template <class Isa = isa::here>
 inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>, &detail::pass<lanes<2, Isa>>,
-                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>, 8};
+                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>};
 
 /// All plants of `in`.
 inline void pass_all(const pass_input& in, const pass_table& by) {
-    for (std::size_t first = 0; first < in.plants;) {
-        const pass_input some = in.from(first, by.abreast);
-        (some.plants > 2 ? by.more : some.plants > 1 ? by.two : by.one)(some);
-        first += some.plants;
-    }
+    (in.plants > 2 ? by.more : in.plants > 1 ? by.two : by.one)(in);
 }
 
 } // namespace quadrant::diagnosis

@@ -12,14 +12,13 @@ namespace detail {
 class plant_laws {
 public:
     using state = own_laws::memories;
-    static constexpr std::size_t joints = 6;
 
     plant_laws() = default;
     explicit plant_laws(const own_laws& laws)
         : laws_(&laws), ask_([](const own_laws& of, joint where, const law_point& p, state& remembered) {
               return of.sum(where, p, remembered);
           }) {
-        for (std::size_t i = 0; i < joints; ++i) at_[i] = laws.any_at(static_cast<joint>(i));
+        for (std::size_t i = 0; i < joint_count; ++i) at_[i] = laws.any_at(static_cast<joint>(i));
     }
     bool at(joint where) const noexcept { return at_[static_cast<std::size_t>(where)]; }
     double operator()(joint where, const law_point& p, state& remembered) const {
@@ -32,7 +31,7 @@ public:
 
 private:
     const own_laws* laws_ = nullptr;
-    std::array<bool, joints> at_{};
+    std::array<bool, joint_count> at_{};
     double (*ask_)(const own_laws&, joint, const law_point&, state&) = nullptr;
 };
 
@@ -69,7 +68,7 @@ public:
 
 private:
     std::array<plant_laws, width> laws_{};
-    std::array<bool, plant_laws::joints> at_{};
+    std::array<bool, joint_count> at_{};
 };
 
 } // namespace detail

@@ -27,14 +27,20 @@ template <std::size_t W, class Isa> lanes<W, Isa> sqrt(const lanes<W, Isa>& x) n
         },
         x);
 }
-/// xsimd's in registers.
+/// xsimd's in registers; the C library's in a lane beyond +-708, where the result is no normal number (an infinity and a NaN too:
+/// without SSE4 xsimd would turn them into integers).
 template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
+    const auto near = less_equal(abs(x), lanes<W, Isa>(708));
+    lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::exp;
             return exp(v);
         },
-        x);
+        all(near) ? x : select(near, x, lanes<W, Isa>()));
+    if (!all(near))
+        for (std::size_t i = 0; i < W; ++i)
+            if (!near[i]) y.set(i, std::exp(x[i]));
+    return y;
 }
 /// xsimd's in registers.
 template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) noexcept {

@@ -30,7 +30,7 @@ public:
         const Real lag = in_real<Real>(p.lag).value();
         const auto lags = greater(lag, Real(0));
         const Real steps = select(lags, h / select(lags, lag, Real(1)), Real(1));
-        const Real left = exp(-select(less(steps, Real(700)), steps, Real(700)));
+        const Real left = exp(-steps);
         left_ = select(lags, left, Real(0));
         mean_ = select(lags, (Real(1) - left) / steps, Real(0));
         present_ = any(lags);

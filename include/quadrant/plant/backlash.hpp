@@ -2,7 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
-#include "play_law.hpp"
+#include "../select.hpp"
 
 namespace quadrant {
 
@@ -39,7 +39,7 @@ public:
     }
 
     value operator()(argument x) noexcept {
-        const value y = detail::play_law(state_.y, x, half_);
+        const value y = limited_to(state_.y, x - half_, x + half_);
         if (!finite(x, y)) return out_.hold();
         state_.y = y;
         return out_.keep(y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <cstddef>
 
 namespace quadrant {
 
@@ -11,6 +12,8 @@ namespace quadrant {
 ///   transmission  displacement of the load against the motor [m]
 ///   reading       added to the encoder's reading [m]
 enum class joint { command, motor_gain, force, friction, transmission, reading };
+/// How many there are.
+inline constexpr std::size_t joint_count = 6;
 
 /// Where the axis is when a law at a joint is asked.
 template <class Real = double> struct joint_point {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../control/dead_band.hpp"
 #include "../friction/slip_contact.hpp"
 #include "amplifier_lag.hpp"
 #include "harmonic_series.hpp"
 #include "joint.hpp"
-#include "play_law.hpp"
 #include "sprung_mass.hpp"
 
 #include <cstddef>
@@ -287,16 +287,8 @@ private:
 
     Real motor(state& s, Real command, Real x, const joint_point<Real>& point) const noexcept {
         if (laws_.at(joint::command)) command += laws_(joint::command, point, s.laws);
-        if (has_dead_zone_) {
-            const auto forward = greater(command, Real(0));
-            const Real size = select(forward, command, -command) - dead_zone_;
-            const Real left = select(greater(size, Real(0)), size, Real(0));
-            command = select(forward, left, -left);
-        }
-        if (has_limit_) {
-            command = select(greater(command, limit_), limit_, command);
-            command = select(less(command, -limit_), -limit_, command);
-        }
+        if (has_dead_zone_) command = detail::beyond(command, dead_zone_);
+        if (has_limit_) command = limited_to(command, limit_);
         if (lag_.present()) command = lag_(s.current, command);
         Real gain = force_constant_;
         if (ripple_.present()) gain = gain * (Real(1) + ripple_(x));
@@ -325,7 +317,7 @@ private:
             return;
         }
         const Real before = s.load;
-        s.load = detail::play_law(before, motor, half_play_);
+        s.load = limited_to(before, motor - half_play_, motor + half_play_);
         s.carried = !equal(s.load, before);
     }
 
