@@ -75,7 +75,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             }
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
-    if (!c.clean()) {
+    if (!c.settled) {
         const auto models =
             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
@@ -86,7 +86,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     weigh(out, c);
 
     const double energy = square(c.models.held_out_force(c.best()));
-    const double unexplained = c.clean() ? 0 : std::max(0.0, energy - square(c.floor_force()));
+    const double unexplained = c.settled ? 0 : std::max(0.0, energy - square(c.floor_force()));
     double sum = 0;
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
@@ -116,7 +116,7 @@ inline double explained_by(const axis_case& c, std::size_t which) {
 }
 /// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    return c.clean() ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
+    return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
 
 /// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
@@ -129,7 +129,7 @@ inline double unknown(const axis_case& c, std::size_t which) {
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
-    if (c.structure_on_second > c.limits.structure) {
+    if (!c.settled_on_second) {
         const double explained = std::max(explained_by(c, which), between(before.force, after.force));
         out = std::clamp(between(after.force, c.floor_force()) / explained, out, 0.95);
     }

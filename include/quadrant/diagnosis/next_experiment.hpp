@@ -140,7 +140,7 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
         take(best.motion);
         out.finding = "simulated beforehand, each name as the truth and the others fitted again: the best of " +
                       inside + worded(", which itself separates them by %.1f", out.gain_of_log);
-        if (out.gain_of_log >= c.limits.margin && !c.clean())
+        if (out.gain_of_log >= c.limits.margin && !c.settled)
             out.finding +=
                 "; what keeps them together is the force that is left unexplained, which is larger than "
                 "their difference: find that first";

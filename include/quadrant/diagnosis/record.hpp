@@ -113,13 +113,10 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     r.bandwidth_Hz = scale.bandwidth_Hz();
     r.resolution = std::max({resolution, log.position_step, scale.count});
     auto& s = r.score;
-    s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
-    s.block = 5 * s.mean;
-    s.skip = s.block;
-    s.floor = 0.4 * r.resolution;
-    s.floor_mean = 0.2 * r.resolution;
-    for (std::size_t k = s.skip; k + s.block <= log.position.size(); k += s.block)
-        s.segment_of_block.push_back(r.segment[k + s.block / 2]);
+    const auto mean =
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
+    s.block = s.skip = 5 * mean;
+    s.channels = detail::channels_of(mean, s.skip, r.resolution, r.observer.pole(), r.segment);
     s.segments = r.segments;
     return r;
 }
