@@ -71,7 +71,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met.
-                if (e->name == own->equivalent) finish(c.record, out.back().model);
+                if (may_be_one(*e, *own)) finish(c.record, out.back().model);
             }
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
@@ -96,7 +96,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
-        const bool equivalent = r.name->name == own->equivalent && excess() < alike * energy;
+        const bool equivalent = may_be_one(*r.name, *own) && excess() < alike * energy;
         if (within) r.weight = std::max(r.weight, std::exp(-excess() / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));

@@ -79,7 +79,7 @@ inline std::vector<confusable> readings_of(const std::vector<rival>& rivals, con
     std::stable_sort(others.begin(), others.end(), [](auto a, auto b) { return a->weight > b->weight; });
     constexpr double in_question = 0.05; // the most probable is in any case
     while (others.size() > 1 && others.back()->weight < in_question) others.pop_back();
-    const auto equivalent = [&](const rival* r) { return r->name->name == rivals.front().name->equivalent; };
+    const auto equivalent = [&](const rival* r) { return may_be_one(*r->name, *rivals.front().name); };
     if (!std::all_of(others.begin(), others.end(), equivalent)) std::erase_if(others, equivalent);
     std::vector<confusable> out{{rivals.front().name, rivals.front().model}};
     for (const rival* r : others)

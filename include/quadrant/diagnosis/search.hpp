@@ -116,7 +116,8 @@ public:
     std::vector<const effect*> suspects() const {
         std::vector<const effect*> out;
         const auto allowed = [&](const effect* e) {
-            return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end();
+            return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
+                   !(e->rotary_only && axis_.kind == axis_kind::linear);
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
         std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
