@@ -17,7 +17,7 @@ namespace {
 using namespace quadrant::diagnosis;
 
 struct init_options {
-    std::string out, log;
+    std::string out, log, command_is;
     bool questions = false;
     init_request request;
     std::array<std::vector<std::string>, init_fields.size()> texts;
@@ -67,6 +67,16 @@ void ask(init_options& o, axis_kind kind) {
     }
 }
 
+/// Asks where the command was taken, when no option says it; an empty answer means before the amplifier.
+void ask_origin(init_options& o) {
+    if (!o.command_is.empty()) return;
+    std::fputs("the command is asked by the controller, or measured behind the amplifier (asked or measured): ",
+               stderr);
+    std::string answer;
+    if (std::getline(std::cin, answer) && answer.starts_with('m'))
+        o.command_is = name_of(command_origin::measured);
+}
+
 void run(init_options& o) {
     std::optional<machine_log> log;
     if (!o.log.empty()) log = read_log(std::filesystem::path(o.log));
@@ -83,12 +93,14 @@ void run(init_options& o) {
             o.request.rotary = std::getline(std::cin, answer) && answer.starts_with('y');
         }
         ask(o, kind_of(""));
+        ask_origin(o);
     }
     for (std::size_t i = 0; i < init_fields.size(); ++i)
         for (const std::string& text : o.texts[i]) {
             const auto [axis, value] = parse(init_fields[i], text, kind_of);
             o.request.values[init_fields[i].option][axis] = value;
         }
+    if (o.command_is == name_of(command_origin::measured)) o.request.command_is = command_origin::measured;
     const auto begun = init_machine(o.request, log ? &*log : nullptr);
     write_aside(o.out, begun.machine.dump(2) + "\n");
     const std::string beside = std::filesystem::path(o.out).replace_extension("md").string();
@@ -114,6 +126,12 @@ void add_init(CLI::App& app) {
         ->check(CLI::PositiveNumber);
     command->add_option("--command-unit", o->request.command_unit, "unit of the command: V, A or N (Nm)")
         ->check(CLI::IsMember({"V", "A", "N", "Nm"}));
+    command
+        ->add_option(
+            "--command-is", o->command_is,
+            "where the log's command was taken: asked by the controller (default), or measured behind the "
+            "amplifier (a measured current or torque)")
+        ->check(CLI::IsMember({"asked", "measured"}));
     command->add_flag("--rotary", o->request.rotary,
                       "rotary axes, in rad and N m (a log says so itself): --inertia for --mass");
     command->add_flag("--questions", o->questions, "ask for what is not given, though no terminal listens");

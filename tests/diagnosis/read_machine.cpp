@@ -4,6 +4,7 @@
 #include "quadrant/diagnosis/plant_model.hpp"
 #include "quadrant/diagnosis/read/machine_keys.hpp"
 #include "quadrant/diagnosis/read/text.hpp"
+#include "quadrant/diagnosis/write_machine.hpp"
 
 #include <doctest/doctest.h>
 
@@ -367,6 +368,22 @@ TEST_CASE("read_machine: keys that belong together come together") {
     CHECK(refused_value(plant + "/force_constant_N_per_A", "1") ==
           "machine.json: axes.x.plant.force_constant_N_per_A: contradicts force_constant_N_per_V: give one of "
           "them");
+}
+
+TEST_CASE("read_machine: a file says where the command was taken, asked when it does not") {
+    const auto origin = [](const char* word) {
+        const auto machine = read_machine(with(actuator + "/command_is", word), "machine.json");
+        CHECK(read_machine(to_json(machine).dump(), "again").axes[0].actuator.command_is ==
+              machine.axes[0].actuator.command_is);
+        return machine.axes[0].actuator.command_is;
+    };
+    CHECK(read_machine(std::string_view(example), "m").axes[0].actuator.command_is == command_origin::asked);
+    CHECK(origin("\"asked\"") == command_origin::asked);
+    CHECK(origin("\"measured\"") == command_origin::measured);
+    CHECK(refused_value(actuator + "/command_is", "\"guessed\"") ==
+          "machine.json: axes.x.actuator.command_is: must be \"asked\" or \"measured\"");
+    CHECK(refused_value(actuator + "/command_is", "1") ==
+          "machine.json: axes.x.actuator.command_is: must be a string");
 }
 
 TEST_CASE("read_machine: a corner above half the sampling rate is refused") {

@@ -156,7 +156,8 @@ for path, to in [
         (x + ["plant", "mass_g"], 1), (x + ["plant", "force_constant_N_per_A"], 1), (x + ["plant", "delay_s"], 2),
         (x + ["plant", "stribeck_velocity_m_per_s"], ...), (x + ["plant", "cogging_period_m"], ...),
         (x + ["tolerance"], {"mass": -0.1}), (x + ["tolerance"], {"mass_kg": 0.1}), (x + ["encoder"], {"resolution_m": -1}),
-        (x + ["actuator", "dac_range_V"], ...), (x + ["actuator", "dac_bits"], 15.5), (x + ["controller", "kind"], ...),
+        (x + ["actuator", "dac_range_V"], ...), (x + ["actuator", "dac_bits"], 15.5),
+        (x + ["actuator", "command_is"], "guessed"), (x + ["controller", "kind"], ...),
         (x + ["controller", "velocity_filter_Hz"], ...), (x + ["controller", "velocity_feedforward"], "1"),
         (x + ["controller", "gain"], 1), (x + ["controller", "notch", "width"], ...)]:
     refuse(machine, changed(good_machine, path, to), f"machine with {'.'.join(path)} = {to}")
@@ -169,7 +170,7 @@ every_effect["axes"]["x"]["plant"] |= {
     "backlash_m": 1e-6, "spring_N_per_m": -5, "coupling": -0.1, "ripple": 0.02, "ripple_period_m": 0.024, "ripple_phase_rad": 0}
 every_effect["axes"]["x"]["encoder"] = {"resolution_m": 1e-7, "cyclic_m": 1e-7, "cyclic_period_m": 0.0004, "cyclic_phase_rad": 1}
 every_effect["axes"]["x"]["process"] = {"fundamental_Hz": 20, "force_N": [3, 1], "phase_rad": [0, 1], "mean_N": -2}
-every_effect["axes"]["x"]["actuator"] |= {"lag_s": 0.001, "drive_limit_V": 4, "dead_zone_V": 0.01, "loss_probability": 0.1}
+every_effect["axes"]["x"]["actuator"] |= {"lag_s": 0.001, "drive_limit_V": 4, "dead_zone_V": 0.01, "loss_probability": 0.1, "command_is": "measured"}
 accept(machine, every_effect, "a machine with every effect")
 for path, to in [
         (["plant", "gms_weights"], ...), (["plant", "gms_weights"], [0.1] * 5), (["plant", "gms_weights"], []),

@@ -12,10 +12,11 @@ namespace quadrant::diagnosis {
 
 /// What a machine file is begun from: numbers by option (init_fields.hpp) and axis, in SI.
 struct init_request {
-    std::vector<std::string> axes; ///< empty: those of the log, else "x"
-    double sample_period_s = 0;    ///< 0: the log's
-    std::string command_unit;      ///< V, A or N (Nm); empty: the log's, else V or Nm
-    bool rotary = false;           ///< every axis; with a log each says so itself
+    std::vector<std::string> axes;                     ///< empty: those of the log, else "x"
+    double sample_period_s = 0;                        ///< 0: the log's
+    std::string command_unit;                          ///< V, A or N (Nm); empty: the log's, else V or Nm
+    bool rotary = false;                               ///< every axis; with a log each says so itself
+    command_origin command_is = command_origin::asked; ///< of every axis: where the log's command was taken
     std::map<std::string, std::map<std::string, double>> values; ///< option, then axis ("" is every axis)
 
     std::optional<double> value(const std::string& option, const std::string& axis) const {
@@ -125,6 +126,12 @@ private:
             put(axis, f, key, *given, "given");
         }
         if (log) read_from_log(axis, *log);
+        if (ask_.command_is != command_origin::asked) {
+            json_["axes"][axis]["actuator"]["command_is"] = name_of(ask_.command_is);
+            rows_ += fmt::format("| `axes.{}.actuator.command_is` | {} | where the log's command column was "
+                                 "taken: behind the amplifier | given |\n",
+                                 axis, name_of(ask_.command_is));
+        }
         if (json_["axes"][axis].contains("controller")) {
             nlohmann::ordered_json with_kind = {{"kind", "cascade_p_pi"}};
             with_kind.update(json_["axes"][axis]["controller"]);

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// What the simulation believes of a machine: the contents of a machine file (schema quadrant.machine/1).
@@ -57,6 +58,16 @@ struct tolerance_description {
     }
 };
 
+/// Where the command column of a log was taken: before the amplifier (what the controller asked for), or behind it (a
+/// measured current, force or torque). Behind it the limit, dead zone, lag, delay and lost samples of the amplifier are
+/// already in the column, so they cannot be the cause of a gap.
+enum class command_origin { asked, measured };
+
+/// The word of a machine file for it.
+constexpr std::string_view name_of(command_origin o) {
+    return o == command_origin::measured ? "measured" : "asked";
+}
+
 /// What amplifier and converter do to a command on its way to the motor.
 struct actuator_description {
     std::optional<double> limit_V;
@@ -65,6 +76,7 @@ struct actuator_description {
     std::optional<double> lag_s{};     ///< first-order current loop
     std::optional<double> drive_limit_V{}, dead_zone_V{};
     std::optional<double> loss_probability{}; ///< of a period in which the drive keeps the previous command
+    command_origin command_is = command_origin::asked; ///< where the log's command column was taken
 };
 
 /// What the encoder makes of a position.

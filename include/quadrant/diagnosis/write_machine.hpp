@@ -54,6 +54,8 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
         auto content = effects_json(name, a);
         if (name == "actuator") content.update(numbers_json(actuator_keys, a.actuator));
         if (name == "actuator" && a.actuator.dac_bits) content["dac_bits"] = *a.actuator.dac_bits;
+        if (name == "actuator" && a.actuator.command_is != command_origin::asked)
+            content["command_is"] = name_of(a.actuator.command_is);
         box(name, content);
     }
     for (const auto& [key, value] : a.tolerance.given)

@@ -121,13 +121,19 @@ private:
         if (is_force(axis.command_unit)) axis.tolerance.given["force_constant"] = 0; // by definition
     }
 
-    /// What the controller itself does to its command.
+    /// What the controller itself does to its command, and where the log took it.
     static void read_own_limits(const json_node& node, actuator_description& actuator) {
         for (const auto& key : actuator_keys)
             if (const auto given = node.find(key.name)) key.set(actuator, given->number(key.rule));
         const auto dac = node.find("dac_bits");
         if (dac) actuator.dac_bits = static_cast<int>(dac->number(rule::bits));
         if (dac && !actuator.dac_range_V) dac->refuse("needs dac_range_V");
+        if (const auto origin = node.find("command_is")) {
+            actuator.command_is = origin->text() == name_of(command_origin::measured) ? command_origin::measured
+                                                                                      : command_origin::asked;
+            if (origin->text() != name_of(actuator.command_is))
+                origin->refuse(R"(must be "asked" or "measured")");
+        }
     }
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {

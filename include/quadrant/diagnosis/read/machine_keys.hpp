@@ -6,12 +6,14 @@
 /// (effect_keys.hpp).
 namespace quadrant::diagnosis::detail {
 
-/// Keys of the actuator that belong to no effect: what the controller itself does to its command.
+/// Keys of the actuator that belong to no effect: what the controller itself does to its command, and where the
+/// log's command was taken.
 inline constexpr std::array actuator_keys{
     number_key<actuator_description>{"limit_V", rule::positive, &actuator_description::limit_V},
     number_key<actuator_description>{"dac_range_V", rule::positive, &actuator_description::dac_range_V},
 };
-inline constexpr std::array<std::string_view, 3> actuator_other_keys{"limit_V", "dac_range_V", "dac_bits"};
+inline constexpr std::array<std::string_view, 4> actuator_other_keys{"limit_V", "dac_range_V", "dac_bits",
+                                                                     "command_is"};
 
 /// Boxes of an axis beside those that hold keys of effects.
 inline constexpr std::array<std::string_view, 2> axis_other_keys{"tolerance", "controller"};
