@@ -18,7 +18,7 @@ inline constexpr effect cross_coupling{
                          .meaning =
                              "this axis' acceleration gains coupling times the other's, of the same kind",
                          .at = member<&plant_description::coupling>}},
-    .prior = {0.2,
+    .prior = {0.1,
               "stacked axes and soft machine beds have it; it shows only while the other axis accelerates"},
     .remedy = "Feed the other axis' reference acceleration forward in this command; check squareness and how "
               "the machine stands.",
