@@ -285,7 +285,7 @@ inline std::string verdict_sentence(const diagnosis_result& d) {
 
 inline std::string experiment_gain(const experiment& e) {
     if (e.expected_gain <= 0) return "";
-    const double score = e.expected_gain / temperature; // as the probabilities are weighed
+    const double score = e.expected_gain / score_temperature; // as the probabilities are weighed
     return fmt::format("Expected to separate them by a log-score of {} or more, odds of {} to 1.",
                        number(e.expected_gain), score > 7 ? "more than 1000" : number(std::exp(score)));
 }

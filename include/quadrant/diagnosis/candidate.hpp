@@ -50,7 +50,7 @@ inline double flexibility(const fit_result& f) {
 /// What rare effects must bring before they stand beside common ones: their prior odds, as a score.
 inline double rarity(const std::vector<const effect*>& effects) {
     double sum = 0;
-    for (const effect* e : effects) sum -= temperature * std::log(e->prior.odds);
+    for (const effect* e : effects) sum -= score_temperature * std::log(e->prior.odds);
     return sum;
 }
 

@@ -37,7 +37,7 @@ inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
         }
         const double top = *std::max_element(score.begin(), score.end());
         double sum = 0;
-        for (double& v : score) sum += v = std::exp((v - top) / temperature);
+        for (double& v : score) sum += v = std::exp((v - top) / score_temperature);
         for (std::size_t j = 0; j < rivals.size(); ++j)
             rivals[j].weight += score[j] / sum / static_cast<double>(draws.size());
     }
@@ -144,7 +144,7 @@ inline double unknown(const axis_case& c, std::size_t which) {
         const double explained = std::max(explained_by(c, which), between(before.force, after.force));
         out = std::max(out, by_chance(between(after.force, c.floor_force()) / explained));
     }
-    const double gain = std::clamp((after.score - before.score) / temperature, -50.0, 0.0);
+    const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }
 
@@ -154,7 +154,7 @@ inline double against_others(const axis_case& c, const std::vector<rival>& names
     std::vector<const effect*> same;
     for (const rival& r : names)
         if (r.same || &r == &names.front()) same.push_back(r.name);
-    return 1 / (1 + std::exp((c.models.best_without(same) - c.best().total) / temperature));
+    return 1 / (1 + std::exp((c.models.best_without(same) - c.best().total) / score_temperature));
 }
 
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even ones alone repeat

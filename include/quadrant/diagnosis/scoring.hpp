@@ -10,7 +10,7 @@
 namespace quadrant::diagnosis {
 
 /// Divides scores before they become probabilities: blocks are not independent.
-inline constexpr double temperature = 5;
+inline constexpr double score_temperature = 5;
 
 /// One view of the innovations: their means over `mean` rows, judged in blocks. The first channel takes every row; each
 /// further one averages over longer stretches, in which the noise of the reading, which the observer follows, falls much
