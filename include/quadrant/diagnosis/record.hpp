@@ -56,8 +56,8 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
     std::vector<double> raw(n, 0.0);
     const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
     for (std::size_t k = 1; k + 1 < n; ++k)
-        raw[k] = plant.mass * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
-                               (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
+        raw[k] = plant.moving_mass() * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
+                                        (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
     return zero_phase(raw, bandwidth_Hz, period);
 }
 
