@@ -11,7 +11,7 @@
 
 #include "quadrant/diagnosis/effect_list.hpp"
 #include "quadrant/diagnosis/result.hpp"
-#include "quadrant/diagnosis/rules.hpp"
+#include "quadrant/diagnosis/scoring.hpp"
 
 /// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
 namespace quadrant_gap {
