@@ -109,9 +109,8 @@ public:
     void judge(fit_result& r, double choices) const {
         // As many of a block's rows are independent as its score says.
         r.choices = choices * (scoring_.nu + scoring_.nu_mean) / static_cast<double>(scoring_.block);
-        r.ms = detail::block_ms(r.innovation, scoring_.skip, scoring_.block);
-        r.ms_mean = detail::block_ms(detail::means(r.innovation, scoring_.skip, scoring_.mean), 0,
-                                     scoring_.block / scoring_.mean);
+        r.ms = detail::block_ms(r.innovation, scoring_);
+        r.ms_mean = detail::block_ms(detail::means(r.innovation, scoring_), 0, scoring_.block / scoring_.mean);
         r.objective = score_ms(r.ms, r.ms_mean) + prior(r) + r.choices;
         if (!std::isfinite(r.objective)) r.objective = std::numeric_limits<double>::infinity();
     }
@@ -165,7 +164,7 @@ private:
     }
     std::vector<std::vector<double>> means_of(const columns& d) const {
         std::vector<std::vector<double>> out;
-        for (const auto* x : d) out.push_back(detail::means(*x, scoring_.skip, scoring_.mean));
+        for (const auto* x : d) out.push_back(detail::means(*x, scoring_));
         return out;
     }
     /// The blocks as quadratics, with these slopes.
@@ -182,16 +181,20 @@ private:
                     bool curvature) const {
         const auto d = pointers(found, known);
         const auto dm = means_of(d);
-        quadratics(r.quadratic, r.innovation, d, scoring_.skip, scoring_.block, curvature);
-        quadratics(r.quadratic_mean, detail::means(r.innovation, scoring_.skip, scoring_.mean), pointers(dm), 0,
-                   scoring_.block / scoring_.mean, curvature);
+        quadratics(r.quadratic, r.innovation, d, scoring_.block, curvature,
+                   [&](std::size_t b) { return scoring_.first_of_block[b]; });
+        const std::size_t means = scoring_.block / scoring_.mean;
+        quadratics(r.quadratic_mean, detail::means(r.innovation, scoring_), pointers(dm), means, curvature,
+                   [&](std::size_t b) { return b * means; });
     }
+    /// `first_of(b)`: where block b begins.
+    template <class FirstOf>
     static void quadratics(std::vector<block_quadratic>& out, const std::vector<double>& e, const columns& d,
-                           std::size_t first, std::size_t block, bool curvature) {
+                           std::size_t block, bool curvature, FirstOf first_of) {
         const auto n = static_cast<Eigen::Index>(d.size());
         Eigen::MatrixXd j(static_cast<Eigen::Index>(block), n);
         for (std::size_t b = 0; b < out.size(); ++b) {
-            const auto k0 = first + b * block;
+            const std::size_t k0 = first_of(b);
             for (Eigen::Index i = 0; i < n; ++i)
                 std::copy_n(d[static_cast<std::size_t>(i)]->data() + k0, block, j.col(i).data());
             const Eigen::Map<const Eigen::VectorXd> eb(e.data() + k0, static_cast<Eigen::Index>(block));

@@ -15,8 +15,11 @@ inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     const std::size_t blocks = of_block.size(), pieces = std::min(folds, blocks);
     const auto piece_of = [&](std::size_t block) { return std::min(block, blocks - 1) * pieces / blocks; };
     for (std::size_t b = 0; b < blocks; ++b) of_block[b] = piece_of(b);
-    for (std::size_t k = 0; k < r.segment.size(); ++k)
-        r.segment[k] = k < r.score.skip ? 0 : piece_of((k - r.score.skip) / r.score.block);
+    const auto& first = r.score.first_of_block;
+    for (std::size_t k = 0, b = 0; k < r.segment.size(); ++k) {
+        while (b + 1 < blocks && k >= first[b + 1]) ++b;
+        r.segment[k] = piece_of(b);
+    }
     r.segments = r.score.segments = pieces;
     return r;
 }

@@ -13,6 +13,7 @@ struct scoring {
     std::size_t block = 100, mean = 20, skip = 100; ///< rows a block, rows a mean, rows not scored at the start
     double floor = 0, floor_mean = 0;               ///< [m]
     double nu = 3, nu_mean = 3;
+    std::vector<std::size_t> first_of_block;   ///< first row of each block; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block; ///< motion segment each block belongs to
     std::size_t segments = 0;
 };
@@ -28,13 +29,27 @@ inline std::vector<double> block_ms(const std::vector<double>& e, std::size_t fi
     }
     return out;
 }
-inline std::vector<double> means(const std::vector<double>& e, std::size_t first, std::size_t length) {
+/// The same over the blocks of a score.
+inline std::vector<double> block_ms(const std::vector<double>& e, const scoring& s) {
     std::vector<double> out;
-    for (std::size_t k = first; k + length <= e.size(); k += length) {
+    out.reserve(s.first_of_block.size());
+    for (const std::size_t first : s.first_of_block) {
         double sum = 0;
-        for (std::size_t i = k; i < k + length; ++i) sum += e[i];
-        out.push_back(sum / static_cast<double>(length));
+        for (std::size_t i = first; i < first + s.block; ++i) sum += e[i] * e[i];
+        out.push_back(sum / static_cast<double>(s.block));
     }
+    return out;
+}
+/// The means inside each block, block after block.
+inline std::vector<double> means(const std::vector<double>& e, const scoring& s) {
+    std::vector<double> out;
+    out.reserve(s.first_of_block.size() * (s.block / s.mean));
+    for (const std::size_t first : s.first_of_block)
+        for (std::size_t k = first; k + s.mean <= first + s.block; k += s.mean) {
+            double sum = 0;
+            for (std::size_t i = k; i < k + s.mean; ++i) sum += e[i];
+            out.push_back(sum / static_cast<double>(s.mean));
+        }
     return out;
 }
 

@@ -273,7 +273,7 @@ private:
             record_.observer.run(std::span(plants).subspan(first, n), e, a);
             for (std::size_t i = 0; i < n; ++i)
                 use(first + i, residual_force(plants[first + i], record_.position, a[i], record_.period,
-                                              record_.bandwidth_Hz));
+                                              record_.bandwidth_Hz, record_.left_out));
         }
     }
     static double square(double x) { return x * x; }
