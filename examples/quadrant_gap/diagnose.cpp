@@ -6,6 +6,7 @@
 #include "summary.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/import/check_physics.hpp>
 #include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
@@ -56,10 +57,12 @@ void run(const diagnose_options& o) {
     const auto machine = read_digested_machine(o.machine);
     const auto log = read_digested_log(o.log);
     check_match(machine.contents, log.contents);
+    check_physics(machine.contents, log.contents);
     std::optional<digested<machine_log>> holdout;
     if (!o.holdout.empty()) {
         holdout = read_digested_log(o.holdout);
         check_match(machine.contents, holdout->contents);
+        check_physics(machine.contents, holdout->contents);
     }
     progress_line tell(o);
     auto result = diagnose(
@@ -98,8 +101,7 @@ void add_diagnose(CLI::App& app) {
                         "no further, faster or stronger than the log");
     command->add_option("--threads", o->threads,
                         "at most; 0: as many as there are cores. The answer is the same");
-    command->add_flag("--fast", o->fast,
-                      "fewer models tried: half of the time, the same judgement at the end");
+    command->add_flag("--fast", o->fast, "fewer models tried: half of the time, the same judgement at the end");
     add_terminal_options(*command, o->say, "every model tried, with its gain; and what this log cannot see");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }

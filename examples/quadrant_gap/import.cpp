@@ -5,28 +5,63 @@
 #include <quadrant/diagnosis/import/check_physics.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
+#include <iostream>
 #include <memory>
+#include <unistd.h>
 
 namespace quadrant_gap {
 
 namespace {
 
 struct import_options {
-    std::string map, in, out;
+    std::string map, command_is;
+    std::vector<std::string> files; ///< those to read, and the one to write
+    quadrant::diagnosis::import_choice choice;
     quadrant::diagnosis::known_axis known;
     bool unchecked = false;
     terminal say;
 };
 
+/// Asks where a current or torque was taken, when neither map nor option says it and somebody is there to answer.
+void ask_origin(quadrant::diagnosis::import_map& map) {
+    using namespace quadrant::diagnosis;
+    for (auto& axis : map.axes) {
+        const auto* command = axis.find(signal_role::command);
+        if (!command || command->si == "V" || axis.command_is == command_origin::measured) continue;
+        std::fprintf(stderr,
+                     "axis %s: the command in %s is asked by the controller, or measured behind the amplifier "
+                     "(asked or measured): ",
+                     axis.name.c_str(), command->si.c_str());
+        std::string answer;
+        if (std::getline(std::cin, answer) && answer.starts_with('m'))
+            axis.command_is = command_origin::measured;
+    }
+}
+
 void run(const import_options& o) {
     using namespace quadrant::diagnosis;
-    const auto map = read_import_map(std::filesystem::path(o.map));
-    auto imported = import_log(map, std::filesystem::path(o.in));
-    if (!o.unchecked) check_physics(imported, map, o.known);
-    write_aside(o.out, imported.text);
+    std::vector<foreign_file> files;
+    for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
+        files.push_back(
+            {quadrant::diagnosis::detail::read_whole(std::filesystem::path(o.files[i])), o.files[i]});
+    const std::string& out = o.files.back();
+    import_map map;
+    if (!o.map.empty())
+        map = read_import_map(std::filesystem::path(o.map));
+    else if (files.size() > 1)
+        throw bad_input("--map", "is needed to join several files");
+    else
+        map = map_of_header(files.front().text, files.front().name);
+    if (o.command_is == "measured")
+        for (auto& axis : map.axes) axis.command_is = command_origin::measured;
+    else if (o.command_is.empty() && isatty(STDIN_FILENO))
+        ask_origin(map);
+    auto imported = import_log(map, files, o.choice);
+    if (!o.unchecked) check_physics(imported, o.known);
+    write_aside(out, imported.text);
     if (o.say.quiet) return;
     std::printf("%zu rows, sample period %.6g s: %s\n", imported.log.samples, imported.log.sample_period_s,
-                o.out.c_str());
+                out.c_str());
     for (const auto& note : imported.notes) std::printf("Note: %s.\n", note.c_str());
 }
 
@@ -36,10 +71,30 @@ void add_import(CLI::App& app) {
     const auto o = std::make_shared<import_options>();
     auto* command = app.add_subcommand(
         "import", "turn another program's log into one that diagnose reads, and check its units by physics");
-    command->add_option("--map", o->map, "which column is what, in which unit (JSON; examples/import)")
-        ->required();
-    command->add_option("IN", o->in, "the log as the other program wrote it")->required();
-    command->add_option("OUT", o->out, "log to write (CSV)")->required();
+    command->add_option(
+        "--map", o->map,
+        "which column is what, in which unit (JSON; examples/import). Not needed where the columns "
+        "have our names, in any unit (t_ms, x_pos_mm)");
+    command
+        ->add_option(
+            "FILES", o->files,
+            "IN... OUT: the log as the other program wrote it, or several files that the map joins on time; "
+            "then the log to write (CSV)")
+        ->required()
+        ->expected(2, 100);
+    command->add_flag("--resample", o->choice.resample,
+                      "onto an even clock, with the median step of the stamps as its period");
+    command->add_option("--sample-period", o->choice.period_s, "resample onto an even clock of this period [s]")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--from", o->choice.from_s, "leave out the rows before this time [s], from the first row")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--to", o->choice.to_s, "leave out the rows behind this time [s]")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--command-is", o->command_is,
+                     "where the command was taken: asked by the controller, or measured behind the amplifier")
+        ->check(CLI::IsMember({"asked", "measured"}));
     command
         ->add_option("--mass,--inertia", o->known.mass,
                      "moving mass [kg], or inertia [kg m^2], to check the units by")
@@ -50,7 +105,7 @@ void add_import(CLI::App& app) {
         ->check(CLI::PositiveNumber);
     command->add_flag("--unchecked", o->unchecked, "write it whatever physics says");
     add_terminal_options(*command, o->say, "the same as without: everything assumed is told");
-    command->callback([o] { refuse_in_name_of(o->in, [&] { run(*o); }); });
+    command->callback([o] { refuse_in_name_of(o->files.front(), [&] { run(*o); }); });
 }
 
 } // namespace quadrant_gap

@@ -53,7 +53,8 @@ void check_diagnosis(const std::string& text) {
 
 void check_map(const std::string& text) {
     const auto map = read_import_map(text, "map.json");
-    must_hold(!map.axes.empty() && (map.time || map.period_s > 0));
+    must_hold(!map.axes.empty() && !map.files.empty());
+    for (const auto& file : map.files) must_hold(file.time || file.period_s > 0 || file.halscope);
 }
 
 /// A foreign log with decimal commas, a header and an end.
@@ -65,7 +66,7 @@ void check_foreign_log(const std::string& text) {
         "map.json");
     auto in = import_log(map, text, "log.txt");
     must_hold(in.log.samples >= 2 && in.log.sample_period_s > 0);
-    check_physics(in, map);
+    check_physics(in);
 }
 
 /// Moves follow one another, each with a way to go and a feed.

@@ -27,7 +27,8 @@ public:
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
-        if (axis.controller) controller = judge_controller(*axis.controller, axis.actuator, log, record);
+        if (axis.controller && log.has_reference)
+            controller = judge_controller(*axis.controller, axis.actuator, log, record);
         controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
         if (holdout)
@@ -86,7 +87,8 @@ public:
         std::vector<double> e, a;
         second->observer.run(there.plant, e, &a);
         return {-there.objective, models.settled(there.ms, second->score, noise),
-                rms(residual_force(there.plant, second->position, a, second->period, second->bandwidth_Hz))};
+                rms(residual_force(there.plant, second->position, a, second->period, second->bandwidth_Hz,
+                                   second->left_out))};
     }
     bool controller_differs() const { return controller && controller->differs; }
     bool controller_open() const { return controller_differs() && !controller->mended; }

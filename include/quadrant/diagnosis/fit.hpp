@@ -114,7 +114,7 @@ public:
         r.ms.clear();
         for (const channel& c : scoring_.channels) {
             independent += c.nu / static_cast<double>(c.block);
-            r.ms.push_back(detail::block_ms(seen(r.innovation, c), 0, c.block / c.mean));
+            r.ms.push_back(detail::block_ms(r.innovation, c));
         }
         r.choices = choices * independent;
         r.objective = score_ms(r.ms) + prior(r) + r.choices;
@@ -162,11 +162,6 @@ private:
         return moved;
     }
 
-    /// A signal as a channel sees it.
-    std::vector<double> seen(const std::vector<double>& e, const channel& c) const {
-        if (c.mean > 1) return detail::means(e, scoring_.skip, c.mean);
-        return {e.begin() + static_cast<std::ptrdiff_t>(std::min(scoring_.skip, e.size())), e.end()};
-    }
     static columns pointers(const std::vector<std::vector<double>>& d, const columns& known = {}) {
         columns out;
         for (std::size_t i = 0; i < d.size(); ++i)
@@ -189,20 +184,25 @@ private:
         for (std::size_t i = 0; i < scoring_.channels.size(); ++i) {
             const channel& c = scoring_.channels[i];
             if (c.mean == 1) {
-                quadratics(r.quadratic[i], r.innovation, d, scoring_.skip, c.block, curvature);
+                quadratics(r.quadratic[i], r.innovation, d, c.block, curvature,
+                           [&](std::size_t b) { return c.first_of_block[b]; });
                 continue;
             }
             std::vector<std::vector<double>> slow;
-            for (const auto* x : d) slow.push_back(seen(*x, c));
-            quadratics(r.quadratic[i], seen(r.innovation, c), pointers(slow), 0, c.block / c.mean, curvature);
+            for (const auto* x : d) slow.push_back(detail::seen(*x, c));
+            const std::size_t means = c.block / c.mean;
+            quadratics(r.quadratic[i], detail::seen(r.innovation, c), pointers(slow), means, curvature,
+                       [&](std::size_t b) { return b * means; });
         }
     }
+    /// `first_of(b)`: where block b begins.
+    template <class FirstOf>
     static void quadratics(std::vector<block_quadratic>& out, const std::vector<double>& e, const columns& d,
-                           std::size_t first, std::size_t block, bool curvature) {
+                           std::size_t block, bool curvature, FirstOf first_of) {
         const auto n = static_cast<Eigen::Index>(d.size());
         Eigen::MatrixXd j(static_cast<Eigen::Index>(block), n);
         for (std::size_t b = 0; b < out.size(); ++b) {
-            const auto k0 = first + b * block;
+            const std::size_t k0 = first_of(b);
             for (Eigen::Index i = 0; i < n; ++i)
                 std::copy_n(d[static_cast<std::size_t>(i)]->data() + k0, block, j.col(i).data());
             const Eigen::Map<const Eigen::VectorXd> eb(e.data() + k0, static_cast<Eigen::Index>(block));

@@ -64,11 +64,13 @@ private:
             plant = restarted(plant, judged_);
             std::vector<double> e, a;
             judged_.observer.run(plant, e, &a);
-            s.force = residual_force(plant, judged_.position, a, judged_.period, judged_.bandwidth_Hz);
+            s.force = residual_force(plant, judged_.position, a, judged_.period, judged_.bandwidth_Hz,
+                                     judged_.left_out);
         } else {
             s.force = case_.models.held_out_residual(model);
         }
-        if (controller) s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
+        if (controller && log_.has_reference)
+            s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
         return s;
     }
     static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "axis_words.hpp"
+#include "command_origin.hpp"
 #include "controller/description.hpp"
 #include "own_law.hpp"
 
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 /// What the simulation believes of a machine: the contents of a machine file (schema quadrant.machine/1).
@@ -62,16 +62,6 @@ struct tolerance_description {
         return found == given.end() ? unstated : found->second;
     }
 };
-
-/// Where the command column of a log was taken: before the amplifier (what the controller asked for), or behind it (a
-/// measured current, force or torque). Behind it the limit, dead zone, lag, delay and lost samples of the amplifier are
-/// already in the column, so they cannot be the cause of a gap.
-enum class command_origin { asked, measured };
-
-/// The word of a machine file for it.
-constexpr std::string_view name_of(command_origin o) {
-    return o == command_origin::measured ? "measured" : "asked";
-}
 
 /// What amplifier and converter do to a command on its way to the motor.
 struct actuator_description {

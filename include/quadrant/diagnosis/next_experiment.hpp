@@ -118,8 +118,8 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
     out.gain_of_log = std::max(0.0, log);
     const double period = c.record.period;
     const auto motions =
-        motions_for(names, standard_motions(shown_by(c.log.reference, period, c.record.scale.corner_Hz), period,
-                                            c.record.scale));
+        motions_for(names, standard_motions(shown_by(motion_of(c.log), period, c.record.scale.corner_Hz),
+                                            period, c.record.scale));
     if (motions.empty()) {
         out.motion = names.front().name->exciting_motion;
         out.finding = "not simulated: the reference of this log shows no travel and speed to stay inside";

@@ -10,14 +10,17 @@ namespace quadrant::diagnosis {
 /// as they are. `motions`: how many the record holds.
 inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     motions = r.segments;
-    const std::size_t blocks = r.score.channels.front().segment_of_block.size(), pieces = std::min(folds, blocks);
+    const auto& first = r.score.channels.front().first_of_block;
+    const std::size_t blocks = first.size(), pieces = std::min(folds, blocks);
     if (r.segments > 1 || blocks < 2) return r;
     const auto piece_of = [&](std::size_t block) { return std::min(block, blocks - 1) * pieces / blocks; };
-    for (std::size_t k = 0; k < r.segment.size(); ++k)
-        r.segment[k] = k < r.score.skip ? 0 : piece_of((k - r.score.skip) / r.score.block);
+    for (std::size_t k = 0, b = 0; k < r.segment.size(); ++k) {
+        while (b + 1 < blocks && k >= first[b + 1]) ++b;
+        r.segment[k] = piece_of(b);
+    }
     for (channel& c : r.score.channels)
         for (std::size_t b = 0; b < c.segment_of_block.size(); ++b)
-            c.segment_of_block[b] = r.segment[r.score.skip + b * c.block + c.block / 2];
+            c.segment_of_block[b] = r.segment[c.first_of_block[b] + c.block / 2];
     r.segments = r.score.segments = pieces;
     return r;
 }

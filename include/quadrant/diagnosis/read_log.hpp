@@ -2,7 +2,8 @@
 #pragma once
 #include "log.hpp"
 #include "read/log_header.hpp"
-#include "read/sample_clock.hpp"
+#include "read/log_rows.hpp"
+#include "sensor_box.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -92,57 +93,133 @@ private:
         refuse(line_, line, cells.offset(), message);
     }
 
+    /// The rows on the log's own even clock. Stamps that go back are refused; rows whose stamp is that of the row before are
+    /// dropped, unless the stamps are written too coarsely to differ.
+    log_rows on_the_clock() {
+        const log_column& time = header_.columns[header_.time];
+        const auto& t = time.values;
+        const double plain = (t.back() - t.front()) / static_cast<double>(rows_ - 1);
+        const bool coarse = time.step.step() > plain; // then stamps must be equal
+        std::vector<std::size_t> kept;
+        for (std::size_t k = 0; k < rows_; ++k) {
+            if (k > 0 && t[k] < t[kept.back()])
+                refuse_stamp(k, fmt::format("t_s: {} does not come after {}", t[k], t[kept.back()]));
+            if (k == 0 || coarse || t[k] > t[kept.back()]) kept.push_back(k);
+        }
+        if (kept.size() < 2 || !(t[kept.back()] > t[kept.front()]))
+            throw bad_input(file_, "all rows have one stamp: its period cannot be known");
+        log_rows out(t, std::move(kept), time.step.step());
+        const row_clock& clock = out.clock();
+        if (!clock.even && clock.spread > most_spread)
+            refuse_stamp(
+                out.row(clock.worst),
+                fmt::format(
+                    "t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, here most; single steps "
+                    "may be half a period off: resample the log with quadrant-gap import --resample",
+                    clock.jitter, clock.period));
+        return out;
+    }
+
     machine_log assemble() {
-        const auto clock =
-            read_clock(header_.columns[header_.time].values,
-                       [&](std::size_t row, const std::string& message) { refuse_stamp(row, message); });
+        const log_rows rows = on_the_clock();
         machine_log out;
         out.file = one_line(file_);
-        out.sample_period_s = clock.period;
-        out.samples = rows_;
+        out.sample_period_s = rows.clock().period;
         for (const auto& note : header_.notes) out.notes.push_back(fmt::format("{}: {}.", out.file, note));
-        if (clock.jitter > 1e-3)
-            out.notes.push_back(fmt::format("{}: the stamps jitter by up to {:.2g} % of the sample period.",
-                                            out.file, 100 * clock.jitter));
+        for (const auto& note : rows.notes()) out.notes.push_back(fmt::format("{}: {}.", out.file, note));
         for (auto& [name, at] : header_.axes) {
             if (purpose_ == log_purpose::motion) {
-                out.axes.push_back(planned(name, *at.kind, header_.columns[*at.reference]));
-                add_motion(out.axes.back(), at);
-                continue;
+                auto& reference = header_.columns[*at.reference];
+                reference.values = rows.smooth(reference.values);
+                out.axes.push_back(planned(name, *at.kind, reference));
+            } else {
+                out.axes.push_back(recorded(out, name, at, rows));
             }
-            auto &reference = header_.columns[*at.reference], &position = header_.columns[*at.position],
-                 &command = header_.columns[*at.command];
-            const bool still = is_constant(reference.values) && is_constant(position.values);
-            if (still && header_.axes.size() == 1)
-                throw bad_input(file_, fmt::format("axis {} does not move: {} and {} never change", name,
-                                                   reference.name, position.name));
-            if (still)
-                out.notes.push_back(
-                    fmt::format("{}: axis {} never moves: nothing can be said of it.", out.file, name));
-            out.axes.push_back({.name = name,
-                                .still = still,
-                                .command_unit = at.command_unit,
-                                .reference = std::move(reference.values),
-                                .position = std::move(position.values),
-                                .command = std::move(command.values),
-                                .reference_step = reference.step.step(),
-                                .position_step = position.step.step(),
-                                .command_step = command.step.step(),
-                                .kind = *at.kind});
-            add_motion(out.axes.back(), at);
+            add_motion(out.axes.back(), at, rows);
+            if (purpose_ != log_purpose::motion) settle_reference(out, out.axes.back(), at);
         }
+        out.samples = rows.samples();
         if (std::all_of(out.axes.begin(), out.axes.end(), [](const axis_log& a) { return a.still; }))
             throw bad_input(file_, "no axis moves");
         return out;
     }
 
+    /// What one axis did.
+    axis_log recorded(machine_log& out, const std::string& name, const log_header::axis_columns& at,
+                      const log_rows& rows) {
+        auto &position = header_.columns[*at.position], &command = header_.columns[*at.command];
+        log_column* reference = at.reference ? &header_.columns[*at.reference] : nullptr;
+        const bool still = is_constant(position.values) && (!reference || is_constant(reference->values));
+        if (still && header_.axes.size() == 1)
+            throw bad_input(file_,
+                            fmt::format("axis {} does not move: {}{} never change{}", name,
+                                        reference ? reference->name + " and " : "", position.name,
+                                        reference ? "" : "s"));
+        const auto tell = [&](const std::string& text) {
+            out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
+        };
+        if (still) tell(" never moves: nothing can be said of it");
+        const double step = position.step.step();
+        const auto found = rows.check(position.values, observed_count(position.values, step));
+        if (found.wrong + found.stale > 0)
+            tell(fmt::format(
+                ": {} readings of the position are wrong (no motion explains them) and {} repeat the one "
+                "before while the axis moves: left out",
+                found.wrong, found.stale));
+        axis_log axis{.name = name,
+                      .still = still,
+                      .command_unit = at.command_unit,
+                      .reference = reference ? rows.smooth(reference->values) : std::vector<double>{},
+                      .position = rows.smooth(position.values, found.bad),
+                      .command = at.command_measured ? rows.smooth(command.values) : rows.held(command.values),
+                      .reference_step = reference ? reference->step.step() : 0,
+                      .position_step = step,
+                      .command_step = command.step.step(),
+                      .kind = *at.kind};
+        axis.left_out = rows.left_out(found.bad);
+        if (at.enabled) leave_out_disabled(axis, rows.held(header_.columns[*at.enabled].values), tell);
+        if (std::none_of(axis.left_out.begin(), axis.left_out.end(), [](auto x) { return x != 0; }))
+            axis.left_out.clear();
+        if (at.command_measured) axis.command_is = command_origin::measured;
+        return axis;
+    }
+
+    /// Rows in which the drive is off say nothing of how it acts on the axis.
+    template <class Tell>
+    static void leave_out_disabled(axis_log& axis, const std::vector<double>& enabled, Tell tell) {
+        std::size_t off = 0, stretches = 0;
+        for (std::size_t k = 0; k < enabled.size(); ++k) {
+            if (enabled[k] >= 0.5) continue;
+            stretches += k == 0 || enabled[k - 1] >= 0.5;
+            ++off;
+            axis.left_out[k] = 1;
+        }
+        if (off > 0)
+            tell(fmt::format(": the drive is off in {} samples ({} stretches): left out", off, stretches));
+    }
+
+    /// Without a position reference nothing is said of the controller, and the motions are those of its speed, or of the
+    /// axis itself.
+    static void settle_reference(machine_log& out, axis_log& axis, const log_header::axis_columns& at) {
+        if (at.reference) return;
+        axis.has_reference = false;
+        axis.reference = axis.position;
+        if (at.reference_velocity) {
+            for (std::size_t k = 1; k < axis.reference.size(); ++k)
+                axis.reference[k] =
+                    axis.reference[k - 1] + axis.reference_velocity[k - 1] * out.sample_period_s;
+        }
+        out.notes.push_back(
+            fmt::format("{}: axis {} has no position reference{}: nothing is said of the controller.", out.file,
+                        axis.name, at.reference_velocity ? ", only its speed" : ""));
+    }
+
     /// The velocities that the log has columns for.
-    void add_motion(axis_log& axis, const log_header::axis_columns& at) {
-        if (at.reference_velocity)
-            axis.reference_velocity = std::move(header_.columns[*at.reference_velocity].values);
-        if (at.reference_acceleration)
-            axis.reference_acceleration = std::move(header_.columns[*at.reference_acceleration].values);
-        if (at.velocity) axis.velocity = std::move(header_.columns[*at.velocity].values);
+    void add_motion(axis_log& axis, const log_header::axis_columns& at, const log_rows& rows) {
+        const auto values = [&](std::size_t column) { return rows.smooth(header_.columns[column].values); };
+        if (at.reference_velocity) axis.reference_velocity = values(*at.reference_velocity);
+        if (at.reference_acceleration) axis.reference_acceleration = values(*at.reference_acceleration);
+        if (at.velocity) axis.velocity = values(*at.velocity);
     }
 
     /// An axis that follows its reference without being asked for anything.
@@ -169,7 +246,8 @@ private:
 
 } // namespace detail
 
-/// Reads a log (FORMAT.md) or throws bad_input.
+/// Reads a log (FORMAT.md) or throws bad_input. Missing rows, single wrong readings and rows with the drive off are filled in and
+/// marked (axis_log::left_out); stamps that jitter by up to half a period are resampled; notes say so.
 inline machine_log read_log(const std::filesystem::path& path) {
     return detail::log_reader(detail::read_whole(path), path.string()).read();
 }

@@ -14,6 +14,8 @@ struct axis_record {
     std::vector<double> velocity{}, acceleration{}; ///< zero-phase, at the corner of `scale` [m/s], [m/s^2]
     std::vector<std::size_t> segment{};             ///< motion segment of every row
     std::size_t segments = 0;
+    std::vector<unsigned char>
+        left_out{};          ///< of every row: 1 where the residual force says nothing; empty: none
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
     record_scales scale{};   ///< what is long, fast and strong here
@@ -48,16 +50,19 @@ inline std::vector<std::size_t> motion_segments(std::span<const double> motion, 
 
 /// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
 /// accelerations through the identical zero-phase filter. The measured one is the second difference of the position;
-/// the model's is averaged over the same two periods, so that a right model leaves the encoder's rounding only.
+/// the model's is averaged over the same two periods, so that a right model leaves the encoder's rounding only. Rows that
+/// are left out (axis_record::left_out) count as if nothing were left there.
 inline std::vector<double> residual_force(const plant_model& plant, std::span<const double> position,
                                           std::span<const double> model_acceleration, double period,
-                                          double bandwidth_Hz) {
+                                          double bandwidth_Hz, std::span<const unsigned char> left_out = {}) {
     const std::size_t n = position.size();
     std::vector<double> raw(n, 0.0);
     const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
     for (std::size_t k = 1; k + 1 < n; ++k)
-        raw[k] = plant.moving_mass() * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
-                                        (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
+        raw[k] = plant.mass * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
+                               (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
+    for (std::size_t k = 0; k < left_out.size(); ++k)
+        if (left_out[k]) raw[k] = 0;
     return zero_phase(raw, bandwidth_Hz, period);
 }
 
@@ -77,7 +82,7 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     std::vector<double> half_difference(innovation.size());
     for (std::size_t k = 1; k < half_difference.size(); ++k)
         half_difference[k] = (innovation[k] - innovation[k - 1]) * std::numbers::sqrt2 / 2;
-    const auto ms = detail::block_ms(half_difference, s.skip, s.block);
+    const auto ms = detail::block_ms(half_difference, s.channels.front());
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
@@ -91,6 +96,62 @@ inline std::size_t substeps_of(const plant_model& described, double period) {
     for (std::size_t i = 0; i < f.contact.elements; ++i) stiffness += f.stiffness(i);
     return static_cast<std::size_t>(
         std::clamp(std::ceil(10 * period * std::sqrt(stiffness / described.mass)), 1.0, 10.0));
+}
+
+/// Rows that are not judged: those of long gaps, and those in which the observer forgets the gap before.
+struct gap_rows {
+    std::vector<unsigned char> gap, settling;
+};
+
+/// The rows of gaps that last longer than the response of the observer. It follows what was filled into a shorter one (a missing
+/// row, a wrong reading) without harm. Behind a longer one its state is unknown, as at the start of a record, and as many rows
+/// go by before it is judged.
+inline gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows, std::size_t skip) {
+    gap_rows out;
+    const std::size_t n = left_out.size();
+    for (std::size_t first = 0; first < n;) {
+        std::size_t last = first;
+        while (last < n && left_out[last]) ++last;
+        if (static_cast<double>(last - first) > response_rows) {
+            out.gap.resize(n, 0);
+            out.settling.resize(n, 0);
+            std::fill(out.gap.begin() + static_cast<std::ptrdiff_t>(first),
+                      out.gap.begin() + static_cast<std::ptrdiff_t>(last), static_cast<unsigned char>(1));
+            std::fill(out.settling.begin() + static_cast<std::ptrdiff_t>(first),
+                      out.settling.begin() + static_cast<std::ptrdiff_t>(std::min(n, last + skip)),
+                      static_cast<unsigned char>(1));
+        }
+        first = last + 1;
+    }
+    return out;
+}
+
+/// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not judged.
+inline std::vector<std::size_t> lay_blocks(std::size_t block, std::size_t skip,
+                                           const std::vector<unsigned char>& settling, std::size_t rows) {
+    std::vector<std::size_t> out;
+    for (std::size_t first = skip; first + block <= rows;) {
+        std::size_t clear = first + block;
+        while (!settling.empty() && clear > first && !settling[clear - 1]) --clear;
+        if (!settling.empty() && clear > first) {
+            first = clear; // behind the last row of it that is not judged
+            continue;
+        }
+        out.push_back(first);
+        first += block;
+    }
+    return out;
+}
+
+/// These rows and their neighbours: a second difference reaches over one row on each side.
+inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows) {
+    std::vector<unsigned char> out = rows;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        if (rows[k]) {
+            if (k > 0) out[k - 1] = 1;
+            if (k + 1 < rows.size()) out[k + 1] = 1;
+        }
+    return out;
 }
 
 inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
@@ -108,7 +169,7 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     const auto smooth = zero_phase(log.position, scale.corner_Hz, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
-    r.segment = motion_segments(log.reference, period, scale);
+    r.segment = motion_segments(motion_of(log), period, scale);
     r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
     r.bandwidth_Hz = scale.bandwidth_Hz();
     r.resolution = std::max({resolution, log.position_step, scale.count});
@@ -116,7 +177,11 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     const auto mean =
         std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
     s.block = s.skip = 5 * mean;
-    s.channels = detail::channels_of(mean, s.skip, r.resolution, r.observer.pole(), r.segment);
+    const auto gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
+    s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
+        return lay_blocks(block, s.skip, gaps.settling, log.position.size());
+    });
+    r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;
 }

@@ -21,7 +21,8 @@ struct channel {
     double floor = 0;                  ///< [m]
     double noise_gain = 1;             ///< rms of the means for white noise of the reading with rms 1
     double rounding = 1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
-    std::vector<std::size_t> segment_of_block{}; ///< motion segment each block belongs to
+    std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
+    std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
 };
 
 /// How innovations become a score. A block of a channel counts nu/2 log(mean square + floor^2): free of scale, so that
@@ -37,6 +38,7 @@ struct scoring {
 
 namespace detail {
 
+/// Mean squares of the stretches of `block` entries from `first` on.
 inline std::vector<double> block_ms(const std::vector<double>& e, std::size_t first, std::size_t block) {
     std::vector<double> out;
     for (std::size_t k = first; k + block <= e.size(); k += block) {
@@ -46,14 +48,21 @@ inline std::vector<double> block_ms(const std::vector<double>& e, std::size_t fi
     }
     return out;
 }
-inline std::vector<double> means(const std::vector<double>& e, std::size_t first, std::size_t length) {
+/// A signal as a channel sees it: the means inside each of its blocks, block after block.
+inline std::vector<double> seen(const std::vector<double>& e, const channel& c) {
     std::vector<double> out;
-    for (std::size_t k = first; k + length <= e.size(); k += length) {
-        double sum = 0;
-        for (std::size_t i = k; i < k + length; ++i) sum += e[i];
-        out.push_back(sum / static_cast<double>(length));
-    }
+    out.reserve(c.first_of_block.size() * (c.block / c.mean));
+    for (const std::size_t first : c.first_of_block)
+        for (std::size_t k = first; k + c.mean <= first + c.block; k += c.mean) {
+            double sum = 0;
+            for (std::size_t i = k; i < k + c.mean; ++i) sum += e[i];
+            out.push_back(sum / static_cast<double>(c.mean));
+        }
     return out;
+}
+/// Mean squares of a channel's blocks.
+inline std::vector<double> block_ms(const std::vector<double>& e, const channel& c) {
+    return block_ms(seen(e, c), 0, c.block / c.mean);
 }
 
 /// What means over c.mean rows see of the reading's noise behind an observer with both poles at `pole`: the noise
@@ -74,19 +83,20 @@ inline void set_gains(channel& c, double pole) {
 }
 
 /// The channels of a record: every row, a fifth of a block, then five times longer each, as long as there are `least`
-/// blocks. `segment`: of every row.
-inline std::vector<channel> channels_of(std::size_t mean, std::size_t skip, double resolution, double pole,
-                                        const std::vector<std::size_t>& segment) {
+/// blocks. `segment`: of every row; lay(block): the first rows of the blocks of this length.
+template <class Lay>
+std::vector<channel> channels_of(std::size_t mean, double resolution, double pole,
+                                 const std::vector<std::size_t>& segment, Lay lay) {
     constexpr std::size_t least = 5;
     std::vector<channel> out;
     const auto add = [&](std::size_t rows, std::size_t block) {
-        channel c{.mean = rows, .block = block};
+        channel c{.mean = rows, .block = block, .first_of_block = lay(block)};
+        if (out.size() > 1 && c.first_of_block.size() < least) return false;
+        for (const std::size_t first : c.first_of_block)
+            c.segment_of_block.push_back(segment[first + block / 2]);
         set_gains(c, pole);
         if (rows <= mean) c.rounding = 1; // a pulse below half a count moves nothing that anybody reads
         c.floor = (rows == 1 ? 0.4 : 0.2) * resolution * c.rounding;
-        for (std::size_t k = skip; k + block <= segment.size(); k += block)
-            c.segment_of_block.push_back(segment[k + block / 2]);
-        if (out.size() > 1 && c.segment_of_block.size() < least) return false;
         out.push_back(std::move(c));
         return true;
     };

@@ -213,7 +213,7 @@ public:
         for (std::size_t j = 1; j < e.size(); ++j) {
             for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
             for (std::size_t i = 0; i < channels.size(); ++i)
-                sizes[i].push_back(square(rms(detail::means(e[j], record_.score.skip, channels[i].mean))));
+                sizes[i].push_back(square(rms(detail::seen(e[j], channels[i]))));
         }
         for (auto& of_channel : sizes) cloud_.push_back(quantile(of_channel, 0.95));
         return cloud_;
@@ -330,7 +330,7 @@ private:
             record_.observer.run(std::span(plants).subspan(first, n), e, a);
             for (std::size_t i = 0; i < n; ++i)
                 use(first + i, residual_force(plants[first + i], record_.position, a[i], record_.period,
-                                              record_.bandwidth_Hz));
+                                              record_.bandwidth_Hz, record_.left_out));
         }
     }
     static double square(double x) { return x * x; }

@@ -25,7 +25,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.kind = axis.kind;
     std::vector<double> innovation, acceleration;
     record.observer.run(plant, innovation, &acceleration);
-    out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz);
+    out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz, record.left_out);
     out.gap.force_rms_N = scored_rms(out.force);
     out.gap.noise_floor_force_rms_N = residual_force_floor(
         plant.mass, position_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
@@ -33,7 +33,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.where = regimes(out.force, record);
     for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);
     for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);
-    if (!axis.controller) return out;
+    if (!axis.controller || !log.has_reference) return out;
 
     out.closed_loop = true;
     auto loop = simulate_closed_loop(*axis.controller, axis, plant, period, log);

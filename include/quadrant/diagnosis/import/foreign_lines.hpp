@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../read/decimal.hpp"
+#include "../read/text.hpp"
 #include "map.hpp"
 
 namespace quadrant::diagnosis::detail {
@@ -13,8 +14,8 @@ public:
         std::string_view text; ///< without quotes and blanks around it
     };
 
-    foreign_lines(const import_map& map, std::string_view text, std::string_view file)
-        : map_(map), file_(file), rest_(without_byte_order_mark(text)) {}
+    foreign_lines(const import_map::layout& layout, std::string_view text, std::string_view file)
+        : layout_(layout), file_(file), rest_(without_byte_order_mark(text)) {}
 
     bool next() {
         if (rest_.empty()) return false;
@@ -37,7 +38,7 @@ public:
     }
     /// The number in a cell; null, or what is wrong with it.
     const char* parse(std::string_view text, double& value) const {
-        if (map_.decimal == '.') return parse_number(text, value);
+        if (layout_.decimal == '.') return parse_number(text, value);
         if (text.find('.') != text.npos) return "has a decimal point where the map has a comma";
         std::string with_point(text);
         std::replace(with_point.begin(), with_point.end(), ',', '.');
@@ -51,9 +52,9 @@ private:
         cells_.clear();
         std::size_t at = 0;
         const std::string_view line = current_;
-        const bool runs = map_.separator == ' ';
+        const bool runs = layout_.separator == ' ';
         while (at <= line.size()) {
-            while (at < line.size() && line[at] != map_.separator && is_blank(line[at])) ++at;
+            while (at < line.size() && line[at] != layout_.separator && is_blank(line[at])) ++at;
             if (runs)
                 while (at < line.size() && is_blank(line[at])) ++at;
             std::size_t end = at;
@@ -61,9 +62,10 @@ private:
                 end = line.find('"', at + 1);
                 if (end == line.npos) refuse(at, "a quote is not closed before the end of the line");
                 cells_.push_back({at, line.substr(at + 1, end - at - 1)});
-                while (end < line.size() && line[end] != map_.separator) ++end;
+                while (end < line.size() && line[end] != layout_.separator) ++end;
             } else {
-                while (end < line.size() && (runs ? !is_blank(line[end]) : line[end] != map_.separator)) ++end;
+                while (end < line.size() && (runs ? !is_blank(line[end]) : line[end] != layout_.separator))
+                    ++end;
                 std::string_view text = line.substr(at, end - at);
                 text = text.substr(0, text.find_last_not_of(" \t") + 1);
                 if (!(runs && text.empty())) cells_.push_back({at, text});
@@ -72,7 +74,7 @@ private:
         }
     }
 
-    const import_map& map_;
+    const import_map::layout& layout_;
     std::string_view file_, rest_, current_{};
     std::size_t number_ = 0;
     std::vector<cell> cells_{};

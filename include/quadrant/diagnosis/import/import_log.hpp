@@ -1,214 +1,257 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../log.hpp"
-#include "../read/sample_clock.hpp"
-#include "foreign_lines.hpp"
+#include "../read/even_rows.hpp"
+#include "../read_log.hpp"
+#include "foreign_table.hpp"
+#include "own_header.hpp"
+#include "read_map.hpp"
 
 namespace quadrant::diagnosis {
 
 /// Another program's log in the words of ours.
 struct imported_log {
-    machine_log log;                ///< in SI: metres or radians
+    machine_log log;                ///< in SI: metres or radians; what read_log makes of the text
     std::string text;               ///< as FORMAT.md writes a log
     std::vector<std::string> notes; ///< what was assumed, and what physics says of it
 };
 
+/// What to take of the files, and on which clock.
+struct import_choice {
+    bool resample = false; ///< onto an even clock; several files always are
+    double period_s = 0;   ///< of that clock; 0: the median step of the first file's stamps
+    double from_s = 0;     ///< rows before it are left out, counted from the first row of the first file
+    double to_s = 1e300;   ///< rows behind it likewise
+};
+
+/// A file that was read: its text, and the name by which messages call it.
+struct foreign_file {
+    std::string text, name;
+};
+
 namespace detail {
 
-/// One foreign log. Every row must be whole: nothing is resampled, nothing filled in.
+/// Files of other programs on their way to one log of ours.
 class importer {
 public:
-    importer(const import_map& map, std::string_view text, std::string_view file)
-        : map_(map), file_(file), lines_(map, text, file) {}
+    importer(const import_map& map, std::span<const foreign_file> files, const import_choice& choice)
+        : map_(map), files_(files), choice_(choice) {}
 
     imported_log take() {
-        if (map_.named()) find_header();
-        if (map_.time) add(*map_.time, "t_s");
-        for (const auto& a : map_.axes) {
-            add(a.reference, a.name + "_ref_" + a.reference.si);
-            add(a.position, a.name + "_pos_" + a.position.si);
-            add(a.command, a.name + "_cmd_" + a.command.si);
+        if (files_.size() != map_.files.size())
+            throw bad_input(map_.file,
+                            fmt::format("describes {} files; {} are given", map_.files.size(), files_.size()));
+        for (std::size_t i = 0; i < files_.size(); ++i) {
+            tables_.push_back(foreign_table_reader(map_, i, files_[i].text, files_[i].name).take());
+            for (const auto& note : tables_.back().notes) tell(i, note);
         }
-        read_rows();
-        return assemble();
+        const double zero = tables_.front().t.front();
+        for (auto& table : tables_)
+            for (double& t : table.t) t -= zero;
+        if (choice_.resample || choice_.period_s > 0 || files_.size() > 1)
+            resample();
+        else
+            keep_rows();
+        finish();
+        return std::move(out_);
     }
 
 private:
-    struct column {
-        std::string name;
-        std::size_t index;
-        double factor;
-        std::vector<double> values{};
-        written_step step{};
-    };
+    void tell(std::size_t file, const std::string& note) {
+        out_.notes.push_back(files_.size() > 1 ? one_line(files_[file].name) + ": " + note : note);
+    }
 
-    void find_header() {
-        while (lines_.next()) {
-            const bool here = map_.header_line > 0 ? lines_.number() == map_.header_line
-                                                   : lines_.begins_with(map_.header_begins_with);
-            if (!here) continue;
-            for (const auto& cell : lines_.cells()) names_.emplace_back(cell.text);
+    /// Each row as it stands. What read_log could not take is refused here, with the place in the file.
+    void keep_rows() {
+        const foreign_table& in = tables_.front();
+        const auto clock = read_clock(in.t, in.written);
+        if (!clock.even && clock.spread > most_spread)
+            throw bad_input(
+                files_.front().name, in.line[clock.worst], 1,
+                fmt::format("the stamps jitter by {:.2g} of the period of {:.4g} s, here most: import "
+                            "with --resample",
+                            clock.jitter, clock.period));
+        head();
+        std::vector<double> row;
+        for (std::size_t k = 0; k < in.t.size(); ++k) {
+            if (!wanted(in.t[k])) continue;
+            row.clear();
+            for (const auto& c : in.columns) row.push_back(c.values[k]);
+            write_row(in.t[k], row);
+        }
+    }
+    bool wanted(double t) const { return t >= choice_.from_s - 1e-9 && t <= choice_.to_s + 1e-9; }
+
+    /// All files onto one even clock, that of the first file's rows or of the period that was asked for.
+    void resample() {
+        const foreign_table& first = tables_.front();
+        const double period = choice_.period_s > 0 ? choice_.period_s : usual_period(first);
+        double begin = std::max(0.0, choice_.from_s), end = std::min(first.t.back(), choice_.to_s);
+        for (const auto& table : tables_) {
+            begin = std::max(begin, table.t.front());
+            end = std::min(end, table.t.back());
+        }
+        begin = period * std::ceil(begin / period - 1e-6);
+        if (!(end - begin > 2 * period))
+            throw bad_input(files_.back().name,
+                            fmt::format("the files have no time in common, or --from and --to "
+                                        "leave none: {:.6g} to {:.6g} s",
+                                        begin, end));
+        constexpr double most = 100; // samples for each row: more is a pause, or a period that is not meant
+        if ((end - begin) / period > most * static_cast<double>(first.t.size()))
+            throw bad_input(
+                files_.front().name,
+                fmt::format("{:.3g} s at a period of {:.3g} s are far more samples than its {} rows: take a "
+                            "part with --from and --to, or give --sample-period",
+                            end - begin, period, first.t.size()));
+        samples_ = static_cast<std::size_t>(std::floor((end - begin) / period + 1e-6)) + 1;
+        left_out_.assign(samples_, 0);
+        for (std::size_t i = 0; i < tables_.size(); ++i) resample(i, begin, period);
+        head();
+        std::vector<double> row;
+        for (std::size_t k = 0; k < samples_; ++k) {
+            if (left_out_[k]) continue;
+            row.clear();
+            for (const auto& table : tables_)
+                for (const auto& c : table.columns) row.push_back(c.values[k]);
+            write_row(static_cast<double>(k) * period, row);
+        }
+    }
+    /// The period of rows that are even, else the median step of their stamps.
+    static double usual_period(const foreign_table& table) {
+        const auto clock = read_clock(table.t, table.written);
+        if (clock.even && clock.gaps == 0) return clock.period;
+        std::vector<double> steps;
+        for (std::size_t k = 1; k < table.t.size(); ++k) steps.push_back(table.t[k] - table.t[k - 1]);
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::nth_element(steps.begin(), middle, steps.end());
+        return *middle > 0 ? *middle : clock.period;
+    }
+    void resample(std::size_t file, double begin, double period) {
+        foreign_table& table = tables_[file];
+        const auto clock = read_clock(table.t, table.written);
+        // Rows that are even are evener than their stamps, unless the stamps are asked to count.
+        const bool by_row =
+            clock.even && clock.gaps == 0 && (!choice_.resample || table.written > 0.01 * clock.period);
+        std::vector<double> at;
+        for (std::size_t k = 0; k < table.t.size(); ++k) {
+            const double t = by_row ? table.t[0] + static_cast<double>(k) * clock.period : table.t[k];
+            at.push_back((t - begin) / period);
+        }
+        const even_rows rows(std::move(at), clock.after_gap, samples_);
+        const auto left = rows.left_out();
+        tell_clock(file, clock, period);
+        for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= left[k];
+        for (auto& c : table.columns) resample(file, table, rows, c);
+    }
+    void resample(std::size_t file, const foreign_table& table, const even_rows& rows, foreign_column& c) {
+        if (is_held(c.name)) {
+            c.values = rows.held(c.values);
             return;
         }
-        throw bad_input(file_,
-                        map_.header_line > 0
-                            ? fmt::format("ends before line {}, where the map has the names of the columns",
-                                          map_.header_line)
-                            : fmt::format("no line begins with {}, as the map says of the names of the columns",
-                                          in_quotes(map_.header_begins_with)));
-    }
-
-    void add(const import_map::source& s, const std::string& name) {
-        std::size_t index = s.number - 1;
-        if (!s.column.empty()) {
-            const auto found = std::find(names_.begin(), names_.end(), s.column);
-            if (found == names_.end())
-                lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
-                                             suggestion(s.column, names_), s.place, map_.file));
-            if (std::find(found + 1, names_.end(), s.column) != names_.end())
-                lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
-                                             in_quotes(s.column), s.place, map_.file));
-            index = static_cast<std::size_t>(found - names_.begin());
+        const bool position = c.name.find("_pos_") != c.name.npos;
+        wrong_readings found;
+        if (position) {
+            found = reading_check(table.t, c.values, observed_count(c.values, c.step())).take();
+            if (found.wrong + found.stale > 0)
+                tell(file, fmt::format("{}: {} wrong and {} repeated readings are left out", c.name,
+                                       found.wrong, found.stale));
+            const auto left = rows.left_out(found.bad);
+            for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= left[k];
         }
-        columns_.push_back({name, index, s.factor});
+        const std::span<const unsigned char> bad = found.bad;
+        if (const double error = position ? rows.interpolation_error(c.values, bad) : 0; error > 0)
+            tell(file,
+                 fmt::format("{}: resampling makes an error of at most about {:.2g} {} rms (what the curvature "
+                             "adds between rows); a stamp that is itself wrong adds the speed times its error",
+                             c.name, error, c.name.ends_with("rad") ? "rad" : "m"));
+        c.values = rows.smooth(c.values, bad);
     }
-
-    void read_rows() {
-        std::size_t skipped = 0;
-        bool blank_line = false;
-        while (lines_.next()) {
-            const auto& cells = lines_.cells();
-            if (!map_.end.empty() && lines_.begins_with(map_.end)) break;
-            if (first_lines_.empty()) { // units, types and the like stand between the names and the rows
-                double number = 0;
-                const std::size_t look = columns_.front().index;
-                if (lines_.blank() ||
-                    (map_.named() && (look >= cells.size() || lines_.parse(cells[look].text, number)))) {
-                    ++skipped;
-                    continue;
-                }
-            } else if (lines_.blank()) {
-                blank_line = true;
-                continue;
-            }
-            if (blank_line) lines_.refuse(0, "the line before is blank, inside the log");
-            first_lines_.push_back(lines_.number());
-            for (auto& c : columns_) read_cell(c, cells);
-        }
-        if (first_lines_.size() < 2) throw bad_input(file_, "holds no rows of numbers that the map can read");
-        if (skipped > 0)
-            out_.notes.push_back(fmt::format(
-                "{} lines between the names of the columns and the first row are skipped", skipped));
+    void tell_clock(std::size_t file, const row_clock& clock, double period) {
+        tell(file, fmt::format(
+                       "resampled onto a period of {:.6g} s; its rows come every {:.6g} s, single steps up to "
+                       "{:.2g} % off, with {} gaps ({} rows missing)",
+                       period, clock.period, 100 * clock.spread, clock.gaps, clock.missing));
     }
-
-    void read_cell(column& c, const std::vector<foreign_lines::cell>& cells) const {
-        if (c.index >= cells.size())
-            lines_.refuse(lines_.length(), fmt::format("the row has {} cells; {} is number {}", cells.size(),
-                                                       c.name, c.index + 1));
-        const auto [offset, text] = cells[c.index];
-        double value = 0;
-        if (const char* fault = lines_.parse(text, value))
-            lines_.refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(text), fault));
-        c.values.push_back(value);
-        std::string as_written(text);
-        std::replace(as_written.begin(), as_written.end(), ',', '.');
-        c.step.add(as_written, value);
+    static bool is_held(const std::string& name) {
+        for (const signal_kind& kind : signal_kinds)
+            if (kind.held && name.find(kind.infix) != name.npos) return true;
+        return false;
     }
 
     /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so that its
-    /// rounding is still seen.
-    static std::pair<int, bool> decimals(const column& c) {
-        const double step = c.step.step() > 0 ? c.step.step() : 1,
+    /// rounding is still seen. What was resampled has digits of its own.
+    std::pair<int, bool> decimals(const foreign_column& c) const {
+        const double step = c.written.step() > 0 ? c.written.step() : 1,
                      power = -std::log10(step * std::abs(c.factor));
-        const bool exact = std::abs(power - std::round(power)) < 1e-9;
+        const bool exact = samples_ == 0 && std::abs(power - std::round(power)) < 1e-9;
         constexpr int guard = 3;
         return {std::clamp(static_cast<int>(exact ? std::round(power) : std::ceil(power) + guard), 0, 15),
                 exact};
     }
-
-    imported_log assemble() {
-        out_.log.file = one_line(file_);
-        out_.log.samples = first_lines_.size();
-        write(stamps());
-        std::size_t next = first_signal();
-        const auto in_si = [&] {
-            column& c = columns_[next++];
-            for (double& x : c.values) x *= c.factor;
-            return std::move(c.values);
-        };
-        for (const auto& axis : map_.axes) {
-            axis_log a;
-            a.name = axis.name;
-            a.command_unit = axis.command.si;
-            a.kind = axis.position.si == "rad" ? axis_kind::rotary : axis_kind::linear;
-            a.reference = in_si();
-            a.position = in_si();
-            a.command = in_si();
-            out_.log.axes.push_back(std::move(a));
-        }
-        return std::move(out_);
-    }
-
-    std::size_t first_signal() const { return map_.time ? 1 : 0; }
-
-    /// Time of each row from the first; sets the sample period.
-    std::vector<double> stamps() {
-        std::vector<double> t(first_lines_.size());
-        if (map_.time) {
-            const auto& c = columns_.front();
-            for (std::size_t k = 0; k < t.size(); ++k) t[k] = (c.values[k] - c.values[0]) * c.factor;
-            const auto clock = read_clock(t, [&](std::size_t row, const std::string& message) {
-                throw bad_input(file_, first_lines_[row], 1, message);
-            });
-            out_.log.sample_period_s = clock.period;
-        } else {
-            for (std::size_t k = 0; k < t.size(); ++k) t[k] = static_cast<double>(k) * map_.period_s;
-            out_.log.sample_period_s = map_.period_s;
-            out_.notes.push_back(fmt::format(
-                "no time column: the rows are taken to be {:g} s apart, none missing", map_.period_s));
-        }
-        return t;
-    }
-
-    void write(const std::vector<double>& t) {
-        const std::span signals = std::span(columns_).subspan(first_signal());
-        std::vector<int> digits;
+    void head() {
         out_.text = "t_s";
-        for (const column& c : signals) {
-            out_.text += ',' + c.name;
-            const auto [d, exact] = decimals(c);
-            digits.push_back(d);
-            if (!exact && c.step.step() > 0)
-                out_.notes.push_back(fmt::format("{} is written with {} decimals; its own rounding is {:.3g}",
-                                                 c.name, d, c.step.step() * std::abs(c.factor)));
-        }
+        for (std::size_t i = 0; i < tables_.size(); ++i)
+            for (const auto& c : tables_[i].columns) {
+                out_.text += ',' + c.name;
+                const auto [d, exact] = decimals(c);
+                digits_.push_back(d);
+                if (!exact && c.step() > 0)
+                    tell(i, fmt::format("{} is written with {} decimals; its own rounding is {:.3g}", c.name, d,
+                                        c.step()));
+            }
         out_.text += '\n';
-        for (std::size_t k = 0; k < t.size(); ++k) {
-            out_.text += fmt::format("{:.9f}", t[k]);
-            for (std::size_t i = 0; i < signals.size(); ++i)
-                out_.text += fmt::format(",{:.{}f}", signals[i].values[k] * signals[i].factor, digits[i]);
-            out_.text += '\n';
+    }
+    void write_row(double t, const std::vector<double>& row) {
+        out_.text += fmt::format("{:.9f}", t);
+        for (std::size_t i = 0; i < row.size(); ++i) out_.text += fmt::format(",{:.{}f}", row[i], digits_[i]);
+        out_.text += '\n';
+    }
+
+    void finish() {
+        const std::string& name = files_.front().name;
+        out_.log = log_reader(out_.text, name).read();
+        const std::string before = one_line(name) + ": ";
+        for (std::string note : out_.log.notes) {
+            if (note.starts_with(before)) note.erase(0, before.size());
+            if (note.ends_with('.')) note.pop_back();
+            out_.notes.push_back(note);
         }
+        for (const auto& a : map_.axes)
+            if (a.command_is == command_origin::measured)
+                out_.notes.push_back(
+                    fmt::format("axis {}: the command is a measured one: the machine file needs "
+                                "\"command_is\": \"measured\" under actuator (init --command-is "
+                                "measured writes it)",
+                                a.name));
     }
 
     const import_map& map_;
-    std::string_view file_;
-    foreign_lines lines_;
-    std::vector<std::string> names_{};
-    std::vector<column> columns_{};
-    std::vector<std::size_t> first_lines_{}; ///< line of each row
+    std::span<const foreign_file> files_;
+    const import_choice& choice_;
+    std::vector<foreign_table> tables_{};
+    std::vector<int> digits_{};
+    std::size_t samples_ = 0; ///< of the even clock; 0: the rows stay as they are
+    std::vector<unsigned char> left_out_{};
     imported_log out_{};
 };
 
 } // namespace detail
 
-/// Reads another program's log through a map: columns renamed, numbers in SI, rows as they are. A missing row, a number
-/// that is none, a column that is not there: bad_input with file, line and column.
-inline imported_log import_log(const import_map& map, std::string_view text, std::string_view name) {
-    return detail::importer(map, text, name).take();
+/// Reads other programs' files through a map and joins them on time: columns renamed, numbers in SI. Rows stay as they are, or
+/// are resampled onto an even clock. Rows may be missing; a number that is none, a column that is not there, a stamp that
+/// goes back: bad_input with file, line and column.
+inline imported_log import_log(const import_map& map, std::span<const foreign_file> files,
+                               const import_choice& choice = {}) {
+    return detail::importer(map, files, choice).take();
 }
-inline imported_log import_log(const import_map& map, const std::filesystem::path& path) {
-    return import_log(map, detail::read_whole(path), path.string());
+inline imported_log import_log(const import_map& map, std::string_view text, std::string_view name,
+                               const import_choice& choice = {}) {
+    const foreign_file one[]{{std::string(text), std::string(name)}};
+    return import_log(map, one, choice);
+}
+inline imported_log import_log(const import_map& map, const std::filesystem::path& path,
+                               const import_choice& choice = {}) {
+    return import_log(map, detail::read_whole(path), path.string(), choice);
 }
 
 } // namespace quadrant::diagnosis

@@ -1,76 +1,149 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../log.hpp"
-#include "../signals.hpp"
+#include "../scales.hpp"
 
 #include <Eigen/Dense>
 
 namespace quadrant::diagnosis {
 
-/// What physics says of the units of one axis.
+/// What physics says of the units of one axis. Nothing here has an absolute scale.
 struct unit_check {
     double position_per_reference = 1; ///< slope of the position over the reference: 1 when both have one unit
-    double travel = 0, peak_speed = 0, peak_acceleration = 0; ///< of the position, 20 Hz [m], [m/s], [m/s^2]
-    double command_per_acceleration = 0;                      ///< of command = A a + B v + C sign v + D
-    double spread = 0; ///< standard deviation of A, from motion segments of 0.25 s
+    double correlation = 0;            ///< of the two
+    double travel = 0, peak_speed = 0,
+           peak_acceleration = 0; ///< of the position, below `corner_Hz` [m], [m/s], [m/s^2]
+    double corner_Hz = 0;         ///< up to it the acceleration stands ten times above the reading's noise
+    double command_per_acceleration =
+        0;             ///< A of command = A a + B v + C sign v + D + E x (and sin x, cos x of an angle)
+    double spread = 0; ///< standard deviation of A, from stretches of five blocks
+    double share = 0;  ///< of the command's variance that the acceleration alone explains beside the rest
     bool sign_is_known() const { return std::abs(command_per_acceleration) > 4 * spread; }
 };
 
-/// Regression of the command over acceleration, speed and direction, and of the position over the reference. A controller
-/// that fights friction may still push against the acceleration for a while: the spread says how sure the sign is.
+namespace detail {
+
+/// The highest frequency up to which the acceleration of a record is ten times as strong as the noise of its reading,
+/// between 20 cycles in the record and 17 rows in a cycle.
+inline double motion_corner(std::span<const double> position, double period, double count) {
+    const double noise = reading_noise(position, count);
+    const double most = 0.06 / period,
+                 least = std::min(most, 20 / (static_cast<double>(position.size()) * period));
+    double corner = most;
+    for (; corner > least; corner /= 1.5) {
+        const auto a = derivative(derivative(zero_phase(position, corner, period), period), period);
+        const double w = 2 * std::numbers::pi * corner;
+        if (rms(a) > 10 * noise * w * w * std::sqrt(2 * corner * period)) break; // white noise below the corner
+    }
+    return std::max(corner, least);
+}
+
+/// The sums of a regression over some rows: of products of its terms, of terms and command, of the command's square.
+template <int Terms> struct regression_sums {
+    Eigen::Matrix<double, Terms, Terms> left = Eigen::Matrix<double, Terms, Terms>::Zero();
+    Eigen::Matrix<double, Terms, 1> right = Eigen::Matrix<double, Terms, 1>::Zero();
+    double square = 0;
+
+    void add(const Eigen::Matrix<double, Terms, 1>& row, double u) {
+        left += row * row.transpose();
+        right += u * row;
+        square += u * u;
+    }
+    void add(const regression_sums& other, double weight = 1) {
+        left += weight * other.left;
+        right += weight * other.right;
+        square += weight * other.square;
+    }
+    /// Coefficients without the first `skipped` terms, and what they leave of the square.
+    std::pair<Eigen::VectorXd, double> solved(int skipped = 0) const {
+        const int n = Terms - skipped;
+        Eigen::MatrixXd m = left.bottomRightCorner(n, n);
+        for (int i = 0; i < n; ++i) m(i, i) += 1e-9 * std::max(m(i, i), 1e-300) + 1e-300;
+        const Eigen::VectorXd b = right.tail(n), x = m.ldlt().solve(b);
+        return {x, std::max(0.0, square - x.dot(b))};
+    }
+};
+
+/// Terms of the command besides the acceleration: speed, direction, a constant, the position, and its sine and cosine where it
+/// is an angle (gravity).
+inline constexpr int unit_terms = 7;
+using unit_sums = regression_sums<unit_terms>;
+
+inline void solve_units(unit_check& out, const std::vector<unit_sums>& stretches) {
+    unit_sums all;
+    for (const auto& s : stretches) all.add(s);
+    const auto [with, left] = all.solved();
+    const double left_without = all.solved(1).second;
+    const double mean = all.right[3] / std::max(1.0, all.left(3, 3));
+    const double variance = all.square - mean * all.right[3];
+    out.command_per_acceleration = with[0] / out.peak_acceleration;
+    out.share = variance > 0 ? (left_without - left) / variance : 0;
+    double sum = 0; // jackknife over the stretches
+    for (const auto& s : stretches) {
+        unit_sums rest = all;
+        rest.add(s, -1);
+        const double d = rest.solved().first[0] / out.peak_acceleration - out.command_per_acceleration;
+        sum += d * d;
+    }
+    const auto n = static_cast<double>(stretches.size());
+    out.spread = std::sqrt(sum * (n - 1) / n);
+}
+
+/// Slope and correlation of the position over the reference.
+inline void compare_with_reference(unit_check& out, const axis_log& log) {
+    const auto n = static_cast<double>(log.position.size());
+    double mean_r = 0, mean_y = 0, rr = 0, ry = 0, yy = 0;
+    for (std::size_t k = 0; k < log.position.size(); ++k) {
+        mean_r += log.reference[k] / n;
+        mean_y += log.position[k] / n;
+    }
+    for (std::size_t k = 0; k < log.position.size(); ++k) {
+        const double r = log.reference[k] - mean_r, y = log.position[k] - mean_y;
+        rr += r * r;
+        ry += r * y;
+        yy += y * y;
+    }
+    out.position_per_reference = rr > 0 ? ry / rr : 0;
+    out.correlation = rr > 0 && yy > 0 ? ry / std::sqrt(rr * yy) : 0;
+}
+
+} // namespace detail
+
+/// Regression of the command over acceleration, speed, direction and position, and of the position over the reference. A
+/// controller that fights friction or gravity may push against the acceleration for a while: spread and share say how sure
+/// the sign is.
 inline unit_check check_units(const axis_log& log, double period) {
+    using namespace detail;
     unit_check out;
     const auto n = log.position.size();
-    const auto x = zero_phase(log.position, 20, period), v = derivative(x, period), a = derivative(v, period);
-    const auto u = zero_phase(log.command, 20, period);
-    const auto mean = [](const std::vector<double>& z) {
-        double sum = 0;
-        for (double e : z) sum += e;
-        return sum / static_cast<double>(z.size());
-    };
-    const double mean_r = mean(log.reference), mean_y = mean(log.position);
-    double rr = 0, ry = 0;
+    const auto [low, high] = std::minmax_element(log.position.begin(), log.position.end());
+    out.travel = *high - *low;
+    compare_with_reference(out, log);
+    out.spread = std::numeric_limits<double>::infinity();
+    if (!(out.travel > 0) || n < 64) return out;
+    out.corner_Hz = motion_corner(log.position, period, observed_count(log.position, log.position_step));
+    const auto x = zero_phase(log.position, out.corner_Hz, period), v = derivative(x, period),
+               a = derivative(v, period), u = zero_phase(log.command, out.corner_Hz, period);
     for (std::size_t k = 0; k < n; ++k) {
-        rr += (log.reference[k] - mean_r) * (log.reference[k] - mean_r);
-        ry += (log.reference[k] - mean_r) * (log.position[k] - mean_y);
+        if (!log.left_out.empty() && log.left_out[k]) continue;
         out.peak_speed = std::max(out.peak_speed, std::abs(v[k]));
         out.peak_acceleration = std::max(out.peak_acceleration, std::abs(a[k]));
     }
-    out.position_per_reference = rr > 0 ? ry / rr : 0;
-    const auto [low, high] = std::minmax_element(x.begin(), x.end());
-    out.travel = *high - *low;
-
-    const auto rows = std::max<std::size_t>(8, static_cast<std::size_t>(0.25 / period));
-    const std::size_t blocks = n / rows;
-    if (blocks < 6 || !(out.peak_acceleration > 0)) {
-        out.spread = std::numeric_limits<double>::infinity();
-        return out;
-    }
-    std::vector<Eigen::Matrix4d> left(blocks, Eigen::Matrix4d::Zero());
-    std::vector<Eigen::Vector4d> right(blocks, Eigen::Vector4d::Zero());
-    for (std::size_t k = 0; k < blocks * rows; ++k) {
+    const auto rows = std::max<std::size_t>(8, static_cast<std::size_t>(15 / (out.corner_Hz * period)));
+    constexpr std::size_t least = 6;
+    const std::size_t stretch = std::min(rows, n / least), stretches = n / stretch;
+    if (!(out.peak_acceleration > 0) || stretch < 8) return out;
+    std::vector<unit_sums> sums(stretches);
+    for (std::size_t k = 0; k < stretches * stretch; ++k) {
+        if (!log.left_out.empty() && log.left_out[k]) continue;
         const double direction = std::abs(v[k]) > 0.01 * out.peak_speed ? (v[k] > 0 ? 1 : -1) : 0;
-        const Eigen::Vector4d row(a[k] / out.peak_acceleration, v[k] / out.peak_speed, direction, 1);
-        left[k / rows] += row * row.transpose();
-        right[k / rows] += u[k] * row;
+        const double angle = log.kind == axis_kind::rotary ? x[k] : 0;
+        Eigen::Matrix<double, unit_terms, 1> row;
+        row << a[k] / out.peak_acceleration, v[k] / out.peak_speed, direction, 1, (x[k] - *low) / out.travel,
+            std::sin(angle), log.kind == axis_kind::rotary ? std::cos(angle) : 0;
+        sums[k / stretch].add(row, u[k]);
     }
-    const auto solved = [&](std::size_t without) {
-        Eigen::Matrix4d m = 1e-9 * Eigen::Matrix4d::Identity();
-        Eigen::Vector4d b = Eigen::Vector4d::Zero();
-        for (std::size_t i = 0; i < blocks; ++i)
-            if (i != without) {
-                m += left[i];
-                b += right[i];
-            }
-        return m.ldlt().solve(b)[0] / out.peak_acceleration;
-    };
-    out.command_per_acceleration = solved(blocks);
-    double sum = 0; // jackknife over the segments
-    for (std::size_t i = 0; i < blocks; ++i) {
-        const double d = solved(i) - out.command_per_acceleration;
-        sum += d * d;
-    }
-    out.spread = std::sqrt(sum * static_cast<double>(blocks - 1) / static_cast<double>(blocks));
+    solve_units(out, sums);
     return out;
 }
 

@@ -24,6 +24,8 @@ struct log_column {
 struct log_header {
     struct axis_columns {
         std::optional<std::size_t> reference, position, command;
+        std::optional<std::size_t> enabled; ///< 0 where the drive is off
+        bool command_measured = false;      ///< it was taken behind the amplifier
         std::optional<std::size_t> reference_velocity, reference_acceleration, velocity; ///< need not be there
         std::string command_unit;
         std::size_t command_at = 0; ///< in the header line
@@ -42,6 +44,9 @@ enum class column_role {
     reference_velocity,
     reference_acceleration,
     velocity,
+    current,
+    torque,
+    enabled,
     not_used_yet
 };
 
@@ -51,6 +56,8 @@ struct column_suffix {
     std::string_view unit = {};
 };
 inline constexpr std::array column_suffixes{
+    column_suffix{"_motor_pos_m", column_role::not_used_yet},
+    column_suffix{"_motor_pos_rad", column_role::not_used_yet},
     column_suffix{"_ref_m", column_role::reference, "m"},
     column_suffix{"_pos_m", column_role::position, "m"},
     column_suffix{"_ref_rad", column_role::reference, "rad"},
@@ -68,11 +75,65 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_acc_m_per_s2", column_role::not_used_yet},
     column_suffix{"_force_N", column_role::not_used_yet},
     column_suffix{"_acc_rad_per_s2", column_role::not_used_yet},
-    column_suffix{"_torque_Nm", column_role::not_used_yet},
+    column_suffix{"_current_A", column_role::current, "A"},
+    column_suffix{"_torque_Nm", column_role::torque, "Nm"},
+    column_suffix{"_enabled", column_role::enabled},
+    column_suffix{"_duty", column_role::not_used_yet},
+    column_suffix{"_supply_V", column_role::not_used_yet},
 };
+
+/// Columns that say more of an axis that others make: they come behind those.
+constexpr bool is_beside(column_role r) {
+    return r != column_role::reference && r != column_role::position && r != column_role::command;
+}
 
 /// What a file is read for: what a machine did, or a motion that it is to make.
 enum class log_purpose { record, motion };
+
+/// A column of an axis that others make.
+struct column_beside {
+    std::size_t index, offset;
+    const column_suffix* suffix;
+};
+
+/// Joins such a column to its axis. A measured current or torque is the command of an axis that has none.
+template <class Refuse>
+void join_beside(log_header& out, const column_beside& c, log_purpose purpose, Refuse refuse) {
+    log_column& column = out.columns[c.index];
+    const auto found = out.axes.find(column.name.substr(0, column.name.size() - c.suffix->text.size()));
+    if (found == out.axes.end()) {
+        out.notes.push_back(
+            fmt::format("column {} belongs to no axis of the log and is ignored", in_quotes(column.name)));
+        return;
+    }
+    auto& axis = found->second;
+    const bool motion = c.suffix->role == column_role::velocity ||
+                        c.suffix->role == column_role::reference_velocity ||
+                        c.suffix->role == column_role::reference_acceleration;
+    if (motion && (c.suffix->unit == "rad") != (axis.kind == axis_kind::rotary))
+        refuse(c.offset,
+               fmt::format("{}: axis {} is {}", in_quotes(column.name), found->first, name_of(*axis.kind)));
+    if (purpose == log_purpose::motion &&
+        (!motion || c.suffix->role == column_role::velocity)) // what a machine did, not what it is to do
+        return;
+    const bool measured = c.suffix->role == column_role::current || c.suffix->role == column_role::torque;
+    if (measured && axis.command) {
+        out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(column.name)));
+        return;
+    }
+    column.used = true;
+    if (measured) {
+        axis.command = c.index;
+        axis.command_unit = c.suffix->unit;
+        axis.command_at = c.offset;
+        axis.command_measured = true;
+        return;
+    }
+    (c.suffix->role == column_role::velocity             ? axis.velocity
+     : c.suffix->role == column_role::reference_velocity ? axis.reference_velocity
+     : c.suffix->role == column_role::enabled            ? axis.enabled
+                                                         : axis.reference_acceleration) = c.index;
+}
 
 /// `refuse(offset, message)` throws. Of a motion only the reference is read.
 template <class Refuse>
@@ -110,11 +171,7 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
         out.columns[index].used = true;
     };
 
-    struct motion_column {
-        std::size_t index, offset;
-        const column_suffix* suffix;
-    };
-    std::vector<motion_column> motions; ///< joined when it is known which axes there are
+    std::vector<column_beside> beside; ///< joined when it is known which axes there are
     while (cells.next()) {
         if (cells.broken())
             refuse(cells.offset(), "a quote is not closed before the comma or the end of the line");
@@ -139,9 +196,8 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
                 fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
-        else if (suffix->role == column_role::reference_velocity ||
-                 suffix->role == column_role::reference_acceleration || suffix->role == column_role::velocity)
-            motions.push_back({index, cells.offset(), &*suffix});
+        else if (is_beside(suffix->role))
+            beside.push_back({index, cells.offset(), &*suffix});
         else if (purpose == log_purpose::record || suffix->role == column_role::reference)
             join_axis(*suffix, index);
     }
@@ -149,36 +205,26 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
     if (!time) refuse(line.size(), "column t_s is missing");
     if (out.axes.empty())
         refuse(line.size(), "no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
-    for (auto& [name, axis] : out.axes) {
+    for (auto& [name, axis] : out.axes)
         if (!axis.kind) axis.kind = axis.command_unit == "Nm" ? axis_kind::rotary : axis_kind::linear;
+    for (const column_beside& c : beside) join_beside(out, c, purpose, refuse);
+    for (auto& [name, axis] : out.axes) {
         const std::string m = key_of("m", *axis.kind), force = key_of("N", *axis.kind);
-        if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_{} is missing", name, m));
-        if (purpose == log_purpose::motion) continue;
+        if (purpose == log_purpose::motion) {
+            if (!axis.reference) refuse(line.size(), fmt::format("column {}_ref_{} is missing", name, m));
+            continue;
+        }
         if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_{} is missing", name, m));
         if (!axis.command)
-            refuse(line.size(),
-                   fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1})", name, force));
+            refuse(
+                line.size(),
+                fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A, "
+                            "{0}_torque_Nm)",
+                            name, force));
         if (is_force(axis.command_unit) && axis.command_unit != force)
             refuse(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "
                                                 "{0}_cmd_{2}",
                                                 name, name_of(*axis.kind), force));
-    }
-    for (const motion_column& m : motions) {
-        log_column& column = out.columns[m.index];
-        const auto axis = out.axes.find(column.name.substr(0, column.name.size() - m.suffix->text.size()));
-        if (axis == out.axes.end()) {
-            out.notes.push_back(
-                fmt::format("column {} belongs to no axis of the log and is ignored", in_quotes(column.name)));
-            continue;
-        }
-        if ((m.suffix->unit == "rad") != (axis->second.kind == axis_kind::rotary))
-            refuse(m.offset, fmt::format("{}: axis {} is {}", in_quotes(column.name), axis->first,
-                                         name_of(*axis->second.kind)));
-        if (m.suffix->role == column_role::velocity && purpose == log_purpose::motion) continue;
-        (m.suffix->role == column_role::velocity             ? axis->second.velocity
-         : m.suffix->role == column_role::reference_velocity ? axis->second.reference_velocity
-                                                             : axis->second.reference_acceleration) = m.index;
-        column.used = true;
     }
     out.time = *time;
     return out;

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../read/json_node.hpp"
+#include "../read/row_clock.hpp"
+#include "foreign_lines.hpp"
+
+namespace quadrant::diagnosis::detail {
+
+/// One column of another program's log, in SI.
+struct foreign_column {
+    std::string name; ///< in our log
+    std::size_t index;
+    double factor;
+    std::vector<double> values{};
+    written_step written{}; ///< before the factor
+
+    /// The last digit of the column in SI; 0: none was rounded.
+    double step() const { return written.step() * std::abs(factor); }
+};
+
+/// The rows of one file that a map wants: stamps from the first row of the first file, and columns.
+struct foreign_table {
+    std::vector<double> t; ///< as in the file [s]; increasing
+    double written = 0;    ///< last digit of the stamps [s]
+    std::vector<foreign_column> columns;
+    std::vector<std::size_t> line; ///< of every row in the file, from 1
+    std::vector<std::string> notes;
+};
+
+/// Reads one file by its layout.
+class foreign_table_reader {
+public:
+    foreign_table_reader(const import_map& map, std::size_t file, std::string_view text, std::string_view name)
+        : map_(map), layout_(map.files[file]), file_(file), name_(name), lines_(layout_, text, name) {}
+
+    foreign_table take() {
+        if (layout_.halscope)
+            begin_halscope();
+        else if (layout_.named())
+            find_header();
+        if (layout_.time) add(*layout_.time, "t_s");
+        for (const auto& a : map_.axes)
+            for (const auto& s : a.signals)
+                if (s.from.file == file_) add(s.from, a.name + column_of(a, s));
+        read_rows();
+        keep_stamps();
+        return std::move(out_);
+    }
+
+    /// The rest of a column's name behind that of its axis. A measured current or torque says so by its name.
+    static std::string column_of(const import_map::axis& a, const import_map::signal& s) {
+        const bool measured = s.role == signal_role::command && a.command_is == command_origin::measured;
+        if (measured && s.from.si == "A") return "_current_A";
+        if (measured && s.from.si == "Nm") return "_torque_Nm";
+        return std::string(kind_of(s.role).infix) + (s.from.si == "1" ? "" : s.from.si);
+    }
+
+private:
+    void find_header() {
+        while (lines_.next()) {
+            const bool here = layout_.header_line > 0 ? lines_.number() == layout_.header_line
+                                                      : lines_.begins_with(layout_.header_begins_with);
+            if (!here) continue;
+            for (const auto& cell : lines_.cells()) names_.emplace_back(cell.text);
+            return;
+        }
+        throw bad_input(name_,
+                        layout_.header_line > 0
+                            ? fmt::format("ends before line {}, where the map has the names of the columns",
+                                          layout_.header_line)
+                            : fmt::format("no line begins with {}, as the map says of the names of the columns",
+                                          in_quotes(layout_.header_begins_with)));
+    }
+
+    /// "Sampling period is 1000000 ns", then rows of name and value in turns.
+    void begin_halscope() {
+        const auto wrong = [&] {
+            lines_.refuse(0, "is not what halscope saves: the first line must be \"Sampling period is N ns\"");
+        };
+        if (!lines_.next()) throw bad_input(name_, "is empty");
+        const auto& cells = lines_.cells();
+        double ns = 0;
+        if (cells.size() < 5 || cells[0].text != "Sampling" || cells[4].text != "ns" ||
+            lines_.parse(cells[3].text, ns) || !(ns > 0))
+            wrong();
+        period_ = ns * 1e-9;
+        while (lines_.next())
+            if (!lines_.blank()) break;
+        for (std::size_t i = 0; i < lines_.cells().size(); i += 2) names_.emplace_back(lines_.cells()[i].text);
+        again_ = true;
+    }
+
+    void add(const import_map::source& s, const std::string& name) {
+        std::size_t index = s.number - 1;
+        if (!s.column.empty()) {
+            const auto found = std::find(names_.begin(), names_.end(), s.column);
+            if (found == names_.end())
+                lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
+                                             suggestion(s.column, names_), s.place, map_.file));
+            if (std::find(found + 1, names_.end(), s.column) != names_.end())
+                lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
+                                             in_quotes(s.column), s.place, map_.file));
+            index = static_cast<std::size_t>(found - names_.begin());
+        }
+        if (layout_.halscope) index = 2 * index + 1;
+        out_.columns.push_back({name, index, s.factor});
+    }
+
+    bool next() { return std::exchange(again_, false) || lines_.next(); }
+
+    void read_rows() {
+        std::size_t skipped = 0;
+        bool blank_line = false;
+        while (next()) {
+            const auto& cells = lines_.cells();
+            if (!layout_.end.empty() && lines_.begins_with(layout_.end)) break;
+            if (out_.line.empty()) { // units, types and the like stand between the names and the rows
+                double number = 0;
+                const std::size_t look = out_.columns.empty() ? 0 : out_.columns.front().index;
+                if (lines_.blank() ||
+                    (layout_.named() && (look >= cells.size() || lines_.parse(cells[look].text, number)))) {
+                    ++skipped;
+                    continue;
+                }
+            } else if (lines_.blank()) {
+                blank_line = true;
+                continue;
+            }
+            if (blank_line) lines_.refuse(0, "the line before is blank, inside the log");
+            out_.line.push_back(lines_.number());
+            for (auto& c : out_.columns) read_cell(c, cells);
+        }
+        if (layout_.halscope && out_.line.size() > 1) drop_last();
+        if (out_.line.size() < 2) throw bad_input(name_, "holds no rows of numbers that the map can read");
+        if (skipped > 0)
+            out_.notes.push_back(fmt::format(
+                "{} lines between the names of the columns and the first row are skipped", skipped));
+    }
+    /// halscope writes one row more than it sampled.
+    void drop_last() {
+        out_.line.pop_back();
+        for (auto& c : out_.columns) c.values.pop_back();
+        out_.notes.push_back("the last row is dropped: halscope saves one more than it sampled");
+    }
+
+    void read_cell(foreign_column& c, const std::vector<foreign_lines::cell>& cells) const {
+        if (c.index >= cells.size())
+            lines_.refuse(lines_.length(), fmt::format("the row has {} cells; {} is number {}", cells.size(),
+                                                       c.name, c.index + 1));
+        const auto [offset, text] = cells[c.index];
+        double value = 0;
+        if (const char* fault = lines_.parse(text, value))
+            lines_.refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(text), fault));
+        c.values.push_back(value);
+        std::string as_written(text);
+        std::replace(as_written.begin(), as_written.end(), ',', '.');
+        c.written.add(as_written, value);
+    }
+
+    /// Stamps in seconds; rows whose stamp is that of the row before are dropped.
+    void keep_stamps() {
+        const std::size_t n = out_.line.size();
+        const double period = layout_.halscope ? period_ : layout_.period_s;
+        if (!layout_.time) {
+            for (std::size_t k = 0; k < n; ++k) out_.t.push_back(static_cast<double>(k) * period);
+            out_.notes.push_back(
+                fmt::format("no time column: the rows are taken to be {:g} s apart, none missing", period));
+        } else {
+            const foreign_column time = std::move(out_.columns.front());
+            out_.columns.erase(out_.columns.begin());
+            out_.written = time.step();
+            take_stamps(time);
+        }
+        for (auto& c : out_.columns)
+            for (double& x : c.values) x *= c.factor;
+    }
+    void take_stamps(const foreign_column& time) {
+        const auto& stamp = time.values;
+        const std::size_t n = stamp.size();
+        const double plain = (stamp[n - 1] - stamp[0]) / static_cast<double>(n - 1);
+        const bool coarse = time.written.step() > std::abs(plain); // then stamps must be equal
+        std::vector<std::size_t> kept;
+        for (std::size_t k = 0; k < n; ++k) {
+            if (k > 0 && stamp[k] < stamp[kept.back()])
+                throw bad_input(
+                    name_, out_.line[k], 1,
+                    fmt::format("t_s: {} does not come after {}: cut the file here, or sort its rows",
+                                stamp[k] * time.factor, stamp[kept.back()] * time.factor));
+            if (k == 0 || coarse || stamp[k] > stamp[kept.back()]) kept.push_back(k);
+        }
+        const std::size_t doubled = n - kept.size();
+        if (doubled > 0) {
+            out_.notes.push_back(
+                fmt::format("{} rows have the stamp of the row before and are dropped", doubled));
+            for (auto& c : out_.columns) c.values = taken(c.values, kept);
+            out_.line = taken(out_.line, kept);
+        }
+        if (kept.size() < 2 || !(stamp[kept.back()] > stamp[kept.front()]))
+            throw bad_input(name_, "all rows have one stamp");
+        for (const std::size_t k : kept) out_.t.push_back(stamp[k] * time.factor);
+    }
+    template <class T>
+    static std::vector<T> taken(const std::vector<T>& x, const std::vector<std::size_t>& rows) {
+        std::vector<T> out;
+        for (const std::size_t k : rows) out.push_back(x[k]);
+        return out;
+    }
+
+    const import_map& map_;
+    const import_map::layout& layout_;
+    std::size_t file_;
+    std::string_view name_;
+    foreign_lines lines_;
+    double period_ = 0;  ///< that halscope states [s]
+    bool again_ = false; ///< the current line is a row that is not yet read
+    std::vector<std::string> names_{};
+    foreign_table out_{};
+};
+
+} // namespace quadrant::diagnosis::detail
