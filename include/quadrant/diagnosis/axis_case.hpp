@@ -34,11 +34,8 @@ public:
         if (holdout)
             second = for_machine(
                 in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second), axis);
-        path = models.run();
         count_unnamed = coarse() && is_excluded("encoder_quantization");
-        noise = models.noise(path.back());
-        settled = models.settled(path.back().fit.ms, record.score, noise);
-        if (second) settled_on_second = second_log(path.back()).settled;
+        follow(models.run());
     }
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -55,6 +52,7 @@ public:
     std::optional<axis_record> second; ///< the hold-out log
     std::optional<controller_finding> controller;
     std::vector<candidate> path; ///< the calibrated machine, then with one cause more each
+    std::size_t claims = 0;      ///< of the causes, the first on the path
     double noise = 0;            ///< white noise of the position [m]
     bool count_unnamed = false; ///< a coarser count than described, and the machine file excludes it as a cause
     bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
@@ -62,10 +60,25 @@ public:
     bool settled_on_second = true;   ///< the same on the hold-out log
 
     const candidate& best() const { return path.back(); }
+    /// The model of the claims alone: what apply writes.
+    const candidate& applied() const { return path[claims]; }
+    /// Takes another way from the machine file to its causes.
+    void follow(std::vector<candidate> way) {
+        path = std::move(way);
+        claims = path.size() - 1;
+        noise = models.noise(best());
+        settled = models.settled(best().fit.ms, record.score, noise) &&
+                  (best().effects.empty() || near_floor(best()));
+        if (second) settled_on_second = second_log(best()).settled;
+    }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
     /// behind the names.
     bool at_floor() const { return settled && settled_on_second; }
+    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
+    bool near_floor(const candidate& m) const {
+        return models.held_out_force(m) < limits.near_floor * floor_force();
+    }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {

@@ -39,14 +39,14 @@ inline constexpr effect described_values{
 
 } // namespace detail
 
-/// What the best model of an axis has moved inside the owner's tolerance, as
-/// machine keys. A key that a cause gives is that cause's; a value that the
+/// What a model of an axis has moved inside the owner's tolerance, as machine keys. A key that a cause gives is that cause's; a value that the
 /// machine file does not describe stays undescribed, but for the give of its
 /// friction.
-inline std::vector<parameter_estimate> calibrated(const axis_case& c, const std::vector<cause>& causes) {
+inline std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
+                                                  const std::vector<cause>& causes) {
     const auto before = detail::described_values.read(c.models.given().fit.plant);
     std::vector<parameter_estimate> out;
-    for (auto& p : estimates(c.best(), detail::described_values, c.record.score)) {
+    for (auto& p : estimates(model, detail::described_values, c.record.score)) {
         const bool of_a_cause = std::any_of(causes.begin(), causes.end(), [&](const cause& x) {
             return std::any_of(x.parameters.begin(), x.parameters.end(),
                                [&](const auto& q) { return q.key == p.key; });

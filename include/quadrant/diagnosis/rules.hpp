@@ -14,6 +14,7 @@ struct rules {
     double structure = 5; ///< log-score of blocks above their limit that still counts as the floor
     double immaterial =
         0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
+    double near_floor = 3; ///< times the noise's residual force: more is left is not explained
     std::size_t most_causes = 4, beam = 2;
     std::size_t in_pairs = 4; ///< of the single effects that are tried two at once where none pays
     double abreast = 0;      ///< least share of the best way's gain at which another is followed beside it

@@ -53,7 +53,7 @@ inline double reading_noise(std::span<const double> position, double resolution)
 /// mean, F) displaces the mass M by the standard deviation s of the reading's noise:
 ///   M (2 pi corner)^2 s = F / 100
 /// At higher frequencies the noise hides such a force, at lower ones the record shows it. Neither the sample rate nor a
-/// controller is in it. It stays where the record can show it: 17 rows in a cycle at least, 120 cycles in the record.
+/// controller is in it. It stays where the record can show it: 17 rows in a cycle at least, 30 cycles in the record.
 inline record_scales scales_of(const plant_description& plant, const axis_log& log, double period,
                                double resolution) {
     record_scales out;
@@ -71,7 +71,7 @@ inline record_scales scales_of(const plant_description& plant, const axis_log& l
     const double acceleration = plant.force_constant_N_per_V * std::sqrt(variance) / plant.mass_kg;
     const double noise = detail::reading_noise(log.position, out.count);
     const double resolved = std::sqrt(0.01 * acceleration / noise) / (2 * std::numbers::pi);
-    const double most = 0.06 / period, least = std::min(120 / (n * period), most);
+    const double most = 0.06 / period, least = std::min(30 / (n * period), most);
     out.corner_Hz = std::clamp(resolved, least, most);
     for (double v : derivative(zero_phase(log.position, out.corner_Hz, period), period))
         out.speed = std::max(out.speed, std::abs(v));

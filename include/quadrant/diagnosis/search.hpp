@@ -115,9 +115,12 @@ public:
 
     std::vector<const effect*> suspects() const {
         std::vector<const effect*> out;
+        // What is logged behind the amplifier has passed everything that acts on the command.
+        const bool measured = axis_.actuator.command_is == command_origin::measured;
         const auto allowed = [&](const effect* e) {
             return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
-                   !(e->rotary_only && axis_.kind == axis_kind::linear);
+                   !(e->rotary_only && axis_.kind == axis_kind::linear) &&
+                   !(measured && e->joins == joint::command);
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
         std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);

@@ -76,6 +76,7 @@ inline ordered_json axis_json(const axis_result& a) {
             {"gap_after", gap_json(a.gap_after, a.kind)},
             {"where", where},
             {"calibrated", parameters_json(a.calibrated)},
+            {"calibrated_with_suspects", parameters_json(a.calibrated_with_suspects)},
             {"evaluated_on", a.evaluated_on}};
 }
 
@@ -90,6 +91,7 @@ inline ordered_json cause_json(const cause& c, axis_kind kind) {
             {"group_probability", c.group_probability},
             {"confusable_with", c.confusable_with},
             {"parameters", parameters_json(c.parameters)},
+            {"with_suspects", parameters_json(c.with_suspects)},
             {"readings", readings},
             {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
             {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},

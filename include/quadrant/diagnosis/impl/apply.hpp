@@ -27,12 +27,14 @@ public:
                 throw bad_input(file_, fmt::format("axes.{}: is a {} axis; the diagnosis is of another machine",
                                                    a.name, name_of(kind_of(a.name))));
         }
-        for (const cause& c : d.causes) {
+        const bool with_suspects =
+            std::any_of(d.causes.begin(), d.causes.end(), [&](const cause& c) { return taken(c) && !claimed(c); });
+        for (cause c : d.causes) {
+            if (with_suspects && !c.with_suspects.empty()) c.parameters = c.with_suspects;
             // A group is sure where its names are not: any reading of it predicts the record.
-            if (std::max(c.probability, c.group_probability) < at_least_)
+            if (!taken(c))
                 out_.notes.push_back(fmt::format(
-                    "{} of axis {} is left out: probability {:.2f}, below {:g}; the forecast gap_after "
-                    "counts on it, which took the {}",
+                    "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the {}",
                     c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
                     text_of(fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
                                         c.gap_after_force_rms_N.value),
@@ -53,7 +55,8 @@ public:
             moved.axis = a.name;
             moved.effect = "calibration";
             moved.described = true;
-            moved.parameters = a.calibrated;
+            moved.parameters = with_suspects && !a.calibrated_with_suspects.empty() ? a.calibrated_with_suspects
+                                                                                    : a.calibrated;
             join(moved, before["axes"][a.name]);
         }
         for (const axis_result& a : d.axes) follow(a.name, before["axes"][a.name]["plant"]);
@@ -63,6 +66,9 @@ public:
 
 private:
     using json = nlohmann::ordered_json;
+
+    bool taken(const cause& c) const { return std::max(c.probability, c.group_probability) >= at_least_; }
+    static bool claimed(const cause& c) { return c.group_probability >= 0.5; }
 
     axis_kind kind_of(const std::string& axis) const {
         return out_.machine["axes"][axis]["plant"].contains(key_of("mass_kg", axis_kind::rotary))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../as_applied.hpp"
 #include "../bad_input.hpp"
 #include "../blind_spots.hpp"
 #include "../block_places.hpp"
@@ -97,6 +98,7 @@ inline void put_in_words(axis_kind kind, std::vector<place>& places) {
 inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
     for (cause& x : causes) {
         put_in_words(kind, x.parameters);
+        put_in_words(kind, x.with_suspects);
         for (reading& r : x.readings) put_in_words(kind, r.parameters);
         x.exciting_motion = text_of(x.exciting_motion, kind);
     }
@@ -113,15 +115,17 @@ inline void to_suspects(std::vector<cause>& causes) {
     }
 }
 
-inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
+inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
     result.kind = c.axis.kind;
     result.command_unit = c.axis.command_unit;
     std::vector<std::vector<rival>> rivals;
-    auto causes = plant_causes(c, &rivals);
-    if (untested(c)) {
-        to_suspects(causes);
+    auto causes = plant_causes_by_weight(c, rivals);
+    const bool guess = untested(c);
+    if (guess) to_suspects(causes);
+    put_as_applied(c, causes, rivals);
+    if (guess) {
         out.notes.push_back(
             worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
                    "samples that it was not fitted to; record more, or give a hold-out log.",
@@ -141,16 +145,20 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
         causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
     }
     how_far(c).measure(result, causes);
-    result.calibrated = calibrated(c, causes);
+    result.calibrated = calibrated(c, c.applied(), causes);
+    if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
     result.verdict = judge(c, causes);
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
     result.where.insert(result.where.end(), views.begin(), views.end());
     for (cause& x : causes)
-        if (x.effect != "controller_mismatch") mark_bounds(c.best(), x.parameters);
-    mark_bounds(c.best(), result.calibrated);
+        if (x.effect != "controller_mismatch")
+            mark_bounds(x.group_probability >= 0.5 ? c.applied() : c.best(), x.parameters);
+    mark_bounds(c.applied(), result.calibrated);
+    mark_bounds(c.best(), result.calibrated_with_suspects);
     put_in_words(result.kind, result.where);
     put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, result.calibrated_with_suspects);
     put_in_words(result.kind, causes);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
@@ -169,7 +177,7 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
 }
 
 /// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
-inline const axis_case& need_blocks(const axis_case& c, const std::string& file) {
+inline axis_case& need_blocks(axis_case& c, const std::string& file) {
     if (c.record.score.channels.front().segment_of_block.empty())
         throw bad_input(file,
                         worded("%zu samples of axis %s: a diagnosis needs at least %zu, one block to start "
@@ -221,7 +229,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        const axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
+        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
                           machine.excluded_effects, r, tell);
         detail::diagnose_axis(out, detail::need_blocks(c, log.file));
     }

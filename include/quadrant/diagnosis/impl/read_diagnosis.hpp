@@ -163,6 +163,8 @@ private:
         a.gap_after = after ? gap(*after) : a.gap;
         each(node.need("where"), [&](const json_node& n) { a.where.push_back(read_place(n)); });
         if (const auto values = node.find("calibrated")) a.calibrated = parameters(*values);
+        if (const auto values = node.find("calibrated_with_suspects"))
+            a.calibrated_with_suspects = parameters(*values);
         if (const auto on = node.find("evaluated_on")) a.evaluated_on = on->text();
         return a;
     }
@@ -182,6 +184,7 @@ private:
         c.group_probability = share(node.need("group_probability"));
         c.confusable_with = words(node.need("confusable_with"));
         c.parameters = parameters(node.need("parameters"));
+        if (const auto values = node.find("with_suspects")) c.with_suspects = parameters(*values);
         if (const auto readings = node.find("readings"))
             each(*readings, [&](const json_node& n) {
                 c.readings.push_back({effect_of(n.object().need("effect")), parameters(n.need("parameters"))});

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "causes.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// These effects on top of `from`, each time the one that takes most off the force on held-out motion.
+inline std::vector<candidate> by_share(const axis_case& c, const candidate& from, std::vector<const effect*> effects) {
+    std::vector<candidate> out{from};
+    while (!effects.empty()) {
+        const effect* first = nullptr;
+        candidate best;
+        for (const effect* e : effects) {
+            auto with = out.back().effects;
+            with.push_back(e);
+            candidate m = c.models.with(with);
+            if (first && !(c.models.held_out_force(m) < c.models.held_out_force(best))) continue;
+            first = e;
+            best = std::move(m);
+            best.effects = std::move(with);
+        }
+        std::erase(effects, first);
+        out.push_back(std::move(best));
+    }
+    return out;
+}
+
+} // namespace detail
+
+/// A group is headed by its most probable name: as long as another name of a cause weighs more, the model with that name
+/// takes its place.
+inline std::vector<cause> plant_causes_by_weight(axis_case& c, std::vector<std::vector<detail::rival>>& rivals) {
+    for (std::size_t round = 0; round < c.limits.most_causes; ++round) {
+        const detail::rival* heavier = nullptr;
+        rivals.clear();
+        for (std::size_t i = 0; i < c.best().effects.size() && !heavier; ++i) {
+            rivals.push_back(detail::rivals_of(c, i));
+            for (const auto& r : rivals.back())
+                if (r.same && r.weight > (heavier ? heavier : &rivals.back().front())->weight) heavier = &r;
+        }
+        if (!heavier) break;
+        auto way = c.models.path_to(heavier->model);
+        if (search::same(way.back(), c.best())) break;
+        c.follow(std::move(way));
+    }
+    return plant_causes(c, &rivals);
+}
+
+/// Puts what apply will write first: the claims, the one that takes most off before the others, fitted without the suspects,
+/// which follow. `causes` and `rivals` come into the same order, and the claims get the values of that fit.
+inline void put_as_applied(axis_case& c, std::vector<cause>& causes,
+                           std::vector<std::vector<detail::rival>>& rivals) {
+    std::vector<const effect*> claims, suspects;
+    const auto effects = c.best().effects;
+    for (std::size_t i = 0; i < causes.size(); ++i)
+        (causes[i].group_probability >= 0.5 ? claims : suspects).push_back(effects[i]);
+    auto way = detail::by_share(c, c.path.front(), claims);
+    auto rest = detail::by_share(c, way.back(), suspects);
+    way.insert(way.end(), std::make_move_iterator(rest.begin() + 1), std::make_move_iterator(rest.end()));
+    c.path = std::move(way);
+    c.claims = claims.size();
+
+    std::vector<cause> ordered;
+    std::vector<std::vector<detail::rival>> ordered_rivals;
+    for (const effect* e : c.best().effects) {
+        const auto i = static_cast<std::size_t>(std::find(effects.begin(), effects.end(), e) - effects.begin());
+        ordered.push_back(std::move(causes[i]));
+        ordered_rivals.push_back(std::move(rivals[i]));
+    }
+    causes = std::move(ordered);
+    rivals = std::move(ordered_rivals);
+    if (suspects.empty()) return;
+    for (std::size_t i = 0; i < c.claims; ++i) {
+        const effect& e = *c.best().effects[i];
+        auto alone = estimates(c.applied(), e, c.record.score);
+        detail::add_model_error(alone, e, c, detail::left_beside(c, i));
+        detail::widen(alone, causes[i].parameters);
+        causes[i].with_suspects = std::exchange(causes[i].parameters, std::move(alone));
+    }
+}
+
+} // namespace quadrant::diagnosis
