@@ -23,7 +23,8 @@ axis_log logged_with(const axis_description& axis, const signal_of_time& signal,
     std::vector<double> added(log.reference.size());
     for (std::size_t k = 0; k < added.size(); ++k)
         added[k] = std::round(signal(static_cast<double>(k) * T) / step) * step;
-    const auto run = simulate_closed_loop(*axis.controller, axis, plant_model(axis, 2e-7), T, log, {}, 4, added);
+    const auto run =
+        simulate_closed_loop(*axis.controller, axis, plant_model(axis, 2e-7), T, log, {}, 4, added);
     log.position = run.position;
     for (double& y : log.position) y = std::round(y * 1e12) / 1e12;
     log.command = run.command;
@@ -65,8 +66,9 @@ TEST_CASE("added command: a constant from a time on is found with its size and i
 }
 
 TEST_CASE("added command: a constant that goes again is found with both times") {
-    const auto w = found_with(axis_of("cascade_p_pi"), [](double t) { return t > 1.3 && t < 3.6 ? -0.25 : 0.0; })
-                       .added->waveform;
+    const auto w = found_with(axis_of("cascade_p_pi"), [](double t) {
+                       return t > 1.3 && t < 3.6 ? -0.25 : 0.0;
+                   }).added->waveform;
     CHECK(w.form == waveform_form::constant);
     REQUIRE(w.levels.size() == 1);
     CHECK(w.levels[0].value == doctest::Approx(-0.25).epsilon(0.01));
@@ -87,16 +89,17 @@ TEST_CASE("added command: a square wave is found with its levels, its times and 
         CHECK(w.levels[0].value == doctest::Approx(0.5).epsilon(0.01));
         CHECK(w.levels[0].duration_s == doctest::Approx(0.3).epsilon(0.005));
     }
-    const auto w =
-        found_with(axis_of("cascade_p_pi"), square(1.2, 0.5, 0.15, 0.35, true)).added->waveform;
+    const auto w = found_with(axis_of("cascade_p_pi"), square(1.2, 0.5, 0.15, 0.35, true)).added->waveform;
     CHECK(w.form == waveform_form::square);
-    CHECK(in_words(w, "V") == "a square wave of +-0.5 V, 0.15 s on and 0.35 s off, is added to the command from 1.2 s on");
+    CHECK(in_words(w, "V") ==
+          "a square wave of +-0.5 V, 0.15 s on and 0.35 s off, is added to the command from 1.2 s on");
 }
 
 TEST_CASE("added command: short pulses are found, down to a few samples and a few converter steps") {
     const auto w = found_with(axis_of("cascade_p_pi"), square(0.8, 0.01, 0.005, 0.195)).added->waveform;
     CHECK(w.form == waveform_form::square);
     CHECK(w.period_s == doctest::Approx(0.2).epsilon(0.005));
+    REQUIRE(w.levels.size() == 2);
     CHECK(w.levels[0].value == doctest::Approx(0.01).epsilon(0.05));
 }
 
@@ -111,8 +114,9 @@ TEST_CASE("added command: a tone is found with frequency, size and phase, whole 
         CHECK(w.from_s == doctest::Approx(1).epsilon(0.005));
         CHECK(w.phase_rad == doctest::Approx(0.6 + two_pi * 7.3 * (w.from_s - 1)).epsilon(0.02));
     }
-    const auto w = found_with(axis_of("cascade_p_pi"), [](double t) { return 0.05 * std::sin(two_pi * 41 * t); })
-                       .added->waveform;
+    const auto w = found_with(axis_of("cascade_p_pi"), [](double t) {
+                       return 0.05 * std::sin(two_pi * 41 * t);
+                   }).added->waveform;
     CHECK(w.form == waveform_form::tone);
     CHECK(w.frequency_Hz == doctest::Approx(41).epsilon(0.001));
 }

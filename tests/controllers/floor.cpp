@@ -48,7 +48,8 @@ axis_log written(const axis_description& axis, const controller_description& c, 
     log.command_step = w.command_step;
     return log;
 }
-controller_finding judged_as(const axis_description& axis, const controller_description& c, const axis_log& log) {
+controller_finding judged_as(const axis_description& axis, const controller_description& c,
+                             const axis_log& log) {
     const double T = machine().sample_period_s, count = axis.encoder.resolution_m;
     return judge_controller(c, axis.actuator, log, prepare(log, T, count, scales_of(axis.plant, log, T, count)),
                             count);

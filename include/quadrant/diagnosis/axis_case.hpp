@@ -31,8 +31,7 @@ public:
             controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                           coarse() ? count : axis.encoder.resolution_m);
         if (controller && is_excluded("added_command")) controller->added.reset();
-        controller_unnamed =
-            controller_differs() && !command_is_added() && is_excluded("controller_mismatch");
+        controller_unnamed = controller_differs() && !command_is_added() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
         if (holdout)
             second = for_machine(

@@ -49,8 +49,12 @@ struct loop_columns {
     /// The rows from one on.
     loop_columns from(std::size_t row) const {
         const auto part = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(row); };
-        return {part(reference),          part(position),               part(command),
-                part(reference_velocity), part(reference_acceleration), part(velocity)};
+        return {part(reference),
+                part(position),
+                part(command),
+                part(reference_velocity),
+                part(reference_acceleration),
+                part(velocity)};
     }
 };
 

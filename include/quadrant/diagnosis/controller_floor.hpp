@@ -25,23 +25,23 @@ inline axis_log as_controlled(axis_log log, double count) {
         for (double& v : column) v = std::round(v / count) * count;
         step = 0;
     };
-    if (in_whole_counts(log.position, log.position_step, count))
-        put_on_counts(log.position, log.position_step);
+    if (in_whole_counts(log.position, log.position_step, count)) put_on_counts(log.position, log.position_step);
     if (log.reference_step <= 0.5 * count && in_whole_counts(log.reference, log.reference_step, count))
         put_on_counts(log.reference, log.reference_step);
     return log;
 }
 
 /// A difference at row k without what the sign of the reference's velocity makes of it where rounding of the
-/// column decides that sign: by one or two Coulomb feedforwards the command may then be off.
+/// column decides that sign: by one or two Coulomb feedforwards the command may then be off. What is no multiple of it
+/// to a quarter of one has another reason and stays.
 inline double but_for_the_sign(double difference, double coulomb_feedforward, std::size_t k,
                                const axis_log& log) {
     if (std::abs(log.reference[k] - log.reference[k - 1]) > log.reference_step) return difference;
-    double least = difference;
     for (const double signs : {-2.0, -1.0, 1.0, 2.0})
-        if (const double other = difference + signs * coulomb_feedforward; std::abs(other) < std::abs(least))
-            least = other;
-    return least;
+        if (const double other = difference + signs * coulomb_feedforward;
+            std::abs(other) < 0.25 * std::abs(coulomb_feedforward) && std::abs(other) < std::abs(difference))
+            return other;
+    return difference;
 }
 
 /// The step of the converter behind a controller [V]; 0: none is described.
@@ -172,7 +172,8 @@ inline replay_floor floor_of(const controller_description& c, const replay_box& 
 
 /// Rows after which a replay that begins in the middle of the record agrees with one that has seen all of it: for so
 /// long the past that no log has shows in the command. At most a quarter of the record.
-inline std::size_t rows_of_unknown_past(const controller_description& c, const replay_box& box, double least_ms) {
+inline std::size_t rows_of_unknown_past(const controller_description& c, const replay_box& box,
+                                        double least_ms) {
     constexpr std::size_t starts = 4;
     const auto whole = box.replay(c);
     const std::size_t rows = whole.size();

@@ -53,8 +53,7 @@ inline double width_of(const key_fit& fit, double left, std::size_t block) {
 /// Every key fitted alone; the first agrees best.
 inline std::vector<key_fit> fitted_keys(const controller_description& described, const replay_box& box,
                                         const std::vector<double>& difference, double floor,
-                                        const record_scales& scale,
-                                        std::vector<std::vector<double>>& slopes) {
+                                        const record_scales& scale, std::vector<std::vector<double>>& slopes) {
     std::vector<key_fit> out;
     for (const auto& key : searched_keys(described, scale)) {
         key_search search(described, key, box, difference, floor);

@@ -26,8 +26,8 @@ struct key_fit {
     double described = 0, value = 0;
     double score = std::numeric_limits<double>::infinity(); ///< replay_score() at the value
     controller_description controller{};                    ///< with the value
-    std::vector<double> left{};  ///< replayed less logged, without the converter
-    std::vector<double> slope{}; ///< change of that per change of the value
+    std::vector<double> left{};                             ///< replayed less logged, without the converter
+    std::vector<double> slope{};                            ///< change of that per change of the value
 };
 
 /// The search of one key. What a small change of the key does to the command is a signal; the share of it that

@@ -33,10 +33,11 @@ public:
             }
             if (c.waveform) { // of this log: the hold-out log may have another, or none
                 const auto there = [&](const auto& x) {
-                    return segment_energy(x, case_.record.segment, case_.record.segments, case_.record.score.skip);
+                    return segment_energy(x, case_.record.segment, case_.record.segments,
+                                          case_.record.score.skip);
                 };
-                compare(c, there(case_.command_left(false)),
-                        there(case_.command_left()), case_.record.segments);
+                compare(c, there(case_.command_left(false)), there(case_.command_left()),
+                        case_.record.segments);
                 continue;
             }
             if (of_controller)
@@ -95,7 +96,8 @@ private:
     void compare(cause& c, const segment_energy& before, const segment_energy& after) const {
         compare(c, before, after, judged_.segments);
     }
-    static void compare(cause& c, const segment_energy& before, const segment_energy& after, std::size_t segments) {
+    static void compare(cause& c, const segment_energy& before, const segment_energy& after,
+                        std::size_t segments) {
         const auto draws = segment_draws(segments);
         const auto interval = [&](auto of) { return resampled(draws, segments, of); };
         c.gap_before_force_rms_N = interval([&](const auto& w) { return before.rms(w); });

@@ -80,7 +80,7 @@ struct cause {
     double group_probability = 0; ///< of this name or one it is confusable with
     std::vector<std::string> confusable_with;
     std::vector<parameter_estimate> parameters;
-    std::vector<reading> readings; ///< of the names it is confusable with
+    std::vector<reading> readings;            ///< of the names it is confusable with
     std::optional<added_waveform> waveform{}; ///< of an added command
     estimate gap_before_force_rms_N, gap_after_force_rms_N;
     estimate gap_before_position_rms_m, gap_after_position_rms_m;
@@ -98,7 +98,8 @@ struct axis_signals {
         simulated_position_after;                        ///< closed loop; empty without a controller
     std::vector<double> residual_before, residual_after; ///< force [N]
     std::vector<double> command_replayed;                ///< the described controller on the logged r and y
-    std::vector<double> command_added; ///< the waveform that is added to the command; empty: none, or another log
+    std::vector<double>
+        command_added; ///< the waveform that is added to the command; empty: none, or another log
     std::vector<double> frequency_Hz, spectrum_before, spectrum_after; ///< residual force [N/sqrt(Hz)]
 };
 

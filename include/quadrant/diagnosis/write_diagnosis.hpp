@@ -118,22 +118,22 @@ inline ordered_json cause_json(const cause& c, axis_kind kind, const std::string
     for (const auto& r : c.readings)
         readings.push_back({{"effect", r.effect}, {"parameters", parameters_json(r.parameters)}});
     ordered_json out = {{"axis", c.axis},
-            {"effect", c.effect},
-            {"described", c.described},
-            {"probability", c.probability},
-            {"group_probability", c.group_probability},
-            {"confusable_with", c.confusable_with},
-            {"parameters", parameters_json(c.parameters)},
-            {"readings", readings},
-            {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
-            {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},
-            {key_of("gap_before_position_rms_m", kind), c.gap_before_position_rms_m.value},
-            {key_of("gap_after_position_rms_m", kind), c.gap_after_position_rms_m.value},
-            {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
-            {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
-            {"shrink", c.shrink.value},
-            {"shrink_ci95", interval_json(c.shrink)},
-            {"exciting_motion", c.exciting_motion}};
+                        {"effect", c.effect},
+                        {"described", c.described},
+                        {"probability", c.probability},
+                        {"group_probability", c.group_probability},
+                        {"confusable_with", c.confusable_with},
+                        {"parameters", parameters_json(c.parameters)},
+                        {"readings", readings},
+                        {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
+                        {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},
+                        {key_of("gap_before_position_rms_m", kind), c.gap_before_position_rms_m.value},
+                        {key_of("gap_after_position_rms_m", kind), c.gap_after_position_rms_m.value},
+                        {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
+                        {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
+                        {"shrink", c.shrink.value},
+                        {"shrink_ci95", interval_json(c.shrink)},
+                        {"exciting_motion", c.exciting_motion}};
     if (c.waveform) out["waveform"] = waveform_json(*c.waveform, unit);
     return out;
 }

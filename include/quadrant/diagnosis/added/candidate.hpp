@@ -9,10 +9,10 @@ namespace quadrant::diagnosis::detail {
 
 /// What the log commands beyond the replay.
 struct added_signal {
-    std::vector<double> values; ///< logged less replayed, from the first row that is compared [V]
-    double noise = 0;           ///< that rounding leaves in a row, rms [V]
-    double period = 0;          ///< of the samples [s]
-    std::size_t first_row = 0;  ///< of `values`, in the log
+    std::vector<double> values;  ///< logged less replayed, from the first row that is compared [V]
+    double noise = 0;            ///< that rounding leaves in a row, rms [V]
+    double period = 0;           ///< of the samples [s]
+    std::size_t first_row = 0;   ///< of `values`, in the log
     bool offset_unknown = false; ///< the controller's first integral is unknown, and with it a constant
 
     double time(std::size_t row) const { return period * static_cast<double>(row + first_row); }

@@ -14,7 +14,8 @@ class column_fit {
 public:
     static constexpr std::size_t folds = 5;
 
-    column_fit(std::span<const double> signal, const std::vector<std::vector<double>>& columns, std::size_t block)
+    column_fit(std::span<const double> signal, const std::vector<std::vector<double>>& columns,
+               std::size_t block)
         : signal_(signal), columns_(columns), block_(block), width_(static_cast<Eigen::Index>(columns.size())) {
         for (auto& sum : sums_) sum = {Eigen::MatrixXd::Zero(width_, width_), Eigen::VectorXd::Zero(width_)};
         Eigen::VectorXd row(width_);

@@ -24,9 +24,10 @@ class added_search {
 public:
     added_search(const controller_description& described, const replay_box& box, const replay_floor& floor)
         : described_(described), box_(box), floor_(floor) {
-        auto left = box.difference(described, box.smooth(described));
-        signal_.values.resize(left.size());
-        std::transform(left.begin(), left.end(), signal_.values.begin(), std::negate{});
+        // With the sign that the written reference has: an excuse for it would take a part of the signal.
+        const auto replayed = box.smooth(described);
+        for (std::size_t k = box.from(); k < replayed.size(); ++k)
+            signal_.values.push_back(box.log().command[k] - replayed[k]);
         signal_.noise = std::sqrt(floor.ms);
         signal_.period = box.period();
         signal_.first_row = box.from();
@@ -56,8 +57,8 @@ public:
         for (auto& c : candidates()) {
             const auto columns = constant(c.columns);
             const column_fit fit(signal_.values, columns, block);
-            const auto r = scored(fit.held_out_ms(), static_cast<double>(columns.size() + c.numbers),
-                                  suspect_prior);
+            const auto r =
+                scored(fit.held_out_ms(), static_cast<double>(columns.size() + c.numbers), suspect_prior);
             weights.push_back(r.score);
             if (r.score > best.score) {
                 best = r;
@@ -70,12 +71,13 @@ public:
         const auto weight = [&](double score) { return std::exp((score - top) / rules{}.temperature); };
         for (double s : weights) scores += weight(s);
         const double all = scores + weight(of_key.score) + weight(of_law.score);
-        if (best.score == top) {
+        if (best.score == top && best.ms < 0.5 * before_ms_) {
             const double explained = std::max(before_ms_ - best.ms, std::numeric_limits<double>::min());
             const double left = std::sqrt(std::max(0.0, best.ms - 4 * floor_.ms) / explained);
             // As for every cause: what is left may come from what the name stands in for.
             const double known = 1 - std::min(0.03 + left, 0.95);
-            return added_finding{std::move(wave.form), known * scores / all, known * weight(of_key.score) / all};
+            return added_finding{std::move(wave.form), known * scores / all,
+                                 known * weight(of_key.score) / all};
         }
         return without_form(of_key, of_law, law, key);
     }
@@ -145,8 +147,8 @@ private:
     /// No simple form explains it. It is added all the same where the best key and the other law, fitted to the
     /// parts that differ, leave most of them, and would differ where the replay agrees; or where they predict next
     /// to nothing at all.
-    std::optional<added_finding> without_form(const reading& of_key, const reading& of_law, const column_fit& law,
-                                              const std::optional<key_fit>& key) const {
+    std::optional<added_finding> without_form(const reading& of_key, const reading& of_law,
+                                              const column_fit& law, const std::optional<key_fit>& key) const {
         const double explained = 1 - std::min(of_key.ms, of_law.ms) / before_ms_;
         if (!(explained < 0.5)) return {};
         const std::size_t block = box_.block();

@@ -71,8 +71,8 @@ private:
     void find_zero() {
         zero_ = groups_;
         if (!s_.offset_unknown) {
-            const double range = *std::max_element(mean_.begin(), mean_.end()) -
-                                 *std::min_element(mean_.begin(), mean_.end());
+            const double range =
+                *std::max_element(mean_.begin(), mean_.end()) - *std::min_element(mean_.begin(), mean_.end());
             for (std::size_t g = 0; g < groups_; ++g)
                 if (std::abs(mean_[g]) <= std::max(0.05 * range, s_.noise)) zero_ = g;
             if (zero_ == groups_) { // it is never zero: a level without rows

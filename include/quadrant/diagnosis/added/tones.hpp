@@ -51,7 +51,8 @@ public:
         if (!usable_ || length < 32) return {};
         double sum_f = 0, slope = 0, size = 0;
         for (std::size_t i = 0; i < windows; ++i) {
-            const double f = peak(begin_ + i * length, begin_ + (i + 1) * length), x = static_cast<double>(i) - 3.5;
+            const double f = peak(begin_ + i * length, begin_ + (i + 1) * length),
+                         x = static_cast<double>(i) - 3.5;
             sum_f += f;
             slope += f * x;
             size += x * x;
@@ -119,7 +120,8 @@ private:
     }
     /// The rows on which it is there: where it begins and ends the sum of squares is least.
     std::pair<std::size_t, std::size_t> rows_of(const swept_tone& t) const {
-        const double quarter = 0.25 / std::max(std::abs(t.frequency), 1 / (static_cast<double>(end_) * s_.period));
+        const double quarter =
+            0.25 / std::max(std::abs(t.frequency), 1 / (static_cast<double>(end_) * s_.period));
         const auto margin = static_cast<std::size_t>(quarter / s_.period) + 1;
         const auto gain = [&](std::size_t k) { // of the tone over nothing
             const double left = s_.values[k] - t.at(s_.time(k)), without = s_.values[k] - t.c;
@@ -127,7 +129,8 @@ private:
         };
         std::size_t from = begin_, to = end_;
         double best = 0, sum = 0;
-        const std::size_t low = begin_ - std::min(begin_, margin), high = std::min(end_ + margin, s_.values.size());
+        const std::size_t low = begin_ - std::min(begin_, margin),
+                          high = std::min(end_ + margin, s_.values.size());
         for (std::size_t k = begin_; k-- > low;)
             if ((sum += gain(k)) > best) best = sum, from = k;
         best = sum = 0;
@@ -158,7 +161,8 @@ private:
         w.frequency_Hz = t.frequency + t.sweep * (w.from_s - t.middle);
         w.sweep_Hz_per_s = t.sweep;
         w.phase_rad = std::remainder(std::atan2(t.a, t.b) + t.phase(w.from_s), 2 * std::numbers::pi);
-        out.numbers = (form == waveform_form::chirp ? 2u : 1u) + (w.from_start ? 0u : 1u) + (w.to_end ? 0u : 1u);
+        out.numbers =
+            (form == waveform_form::chirp ? 2u : 1u) + (w.from_start ? 0u : 1u) + (w.to_end ? 0u : 1u);
         return out;
     }
 

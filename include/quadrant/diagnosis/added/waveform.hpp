@@ -38,13 +38,13 @@ struct added_waveform {
     waveform_form form = waveform_form::unknown;
     double from_s = 0, to_s = 0; ///< first and last time at which it is not zero
     bool from_start = false, to_end = false;
-    double rms = 0;               ///< between these times [V]
-    double period_s = 0;          ///< of levels that repeat
-    std::vector<level> levels{};  ///< of a constant in parts, each part; of a square or pattern, one period
-    double amplitude = 0;         ///< of a tone or chirp [V]
-    double frequency_Hz = 0;      ///< of a tone; of a chirp where it begins
-    double sweep_Hz_per_s = 0;    ///< of a chirp
-    double phase_rad = 0;         ///< amplitude sin(2 pi (frequency t + sweep t^2 / 2) + phase), t from `from_s`
+    double rms = 0;              ///< between these times [V]
+    double period_s = 0;         ///< of levels that repeat
+    std::vector<level> levels{}; ///< of a constant in parts, each part; of a square or pattern, one period
+    double amplitude = 0;        ///< of a tone or chirp [V]
+    double frequency_Hz = 0;     ///< of a tone; of a chirp where it begins
+    double sweep_Hz_per_s = 0;   ///< of a chirp
+    double phase_rad = 0;        ///< amplitude sin(2 pi (frequency t + sweep t^2 / 2) + phase), t from `from_s`
     std::vector<double> values{}; ///< one a row [V]
     double sample_period_s = 0;   ///< of `values`
 };

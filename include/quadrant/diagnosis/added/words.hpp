@@ -32,8 +32,8 @@ inline std::string square_in_words(const added_waveform& w, std::string_view uni
         }
     }
     const bool both = signs == 2;
-    const std::string level = both ? fmt::format("+-{:.3g} {}", std::abs(size), unit)
-                                   : fmt::format("{:+.3g} {}", size, unit);
+    const std::string level =
+        both ? fmt::format("+-{:.3g} {}", std::abs(size), unit) : fmt::format("{:+.3g} {}", size, unit);
     const char* const what = on < 0.1 * w.period_s ? "pulses" : "a square wave";
     if (off > 0) return fmt::format("{} of {}, {:.4g} s on and {:.4g} s off", what, level, on, off);
     return fmt::format("a square wave of {}, {:.4g} s each way", level, on);
@@ -46,7 +46,8 @@ inline std::string square_in_words(const added_waveform& w, std::string_view uni
 inline std::string in_words(const added_waveform& w, std::string_view unit) {
     const std::string when = detail::times_of(w);
     const auto added = [&](const std::string& what) {
-        return fmt::format("{} is added to the command {}", what, when);
+        return fmt::format("{} {} added to the command {}", what, what.starts_with("pulses") ? "are" : "is",
+                           when);
     };
     switch (w.form) {
     case waveform_form::square:
@@ -62,10 +63,12 @@ inline std::string in_words(const added_waveform& w, std::string_view unit) {
                                  w.amplitude, unit));
     }
     case waveform_form::constant: {
-        if (w.levels.size() == 1) return added(fmt::format("a constant of {:+.3g} {}", w.levels[0].value, unit));
+        if (w.levels.size() == 1)
+            return added(fmt::format("a constant of {:+.3g} {}", w.levels[0].value, unit));
         std::string parts;
         for (const auto& l : w.levels)
-            parts += fmt::format("{}{:+.3g} {} from {:.4g} s", parts.empty() ? "" : ", ", l.value, unit, l.from_s);
+            parts +=
+                fmt::format("{}{:+.3g} {} from {:.4g} s", parts.empty() ? "" : ", ", l.value, unit, l.from_s);
         return added(fmt::format("a constant in parts ({})", parts));
     }
     default:
