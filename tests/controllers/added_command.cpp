@@ -36,7 +36,6 @@ controller_finding found_with(const axis_description& axis, const signal_of_time
     CHECK(out.differs);
     CHECK_FALSE(out.mended);
     REQUIRE(out.added);
-    MESSAGE(axis.name, ": ", in_words(out.added->waveform, "V"), "; ", out.added->probability);
     CHECK(out.added->probability > 0.9);
     return out;
 }

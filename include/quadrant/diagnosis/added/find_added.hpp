@@ -23,7 +23,7 @@ namespace detail {
 class added_search {
 public:
     added_search(const controller_description& described, const replay_box& box, const replay_floor& floor)
-        : described_(described), box_(box), floor_(floor) {
+        : box_(box), floor_(floor) {
         // With the sign that the written reference has: an excuse for it would take a part of the signal.
         const auto replayed = box.smooth(described);
         for (std::size_t k = box.from(); k < replayed.size(); ++k)
@@ -191,7 +191,6 @@ private:
         return out;
     }
 
-    const controller_description& described_;
     const replay_box& box_;
     const replay_floor& floor_;
     added_signal signal_;
