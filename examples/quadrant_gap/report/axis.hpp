@@ -2,6 +2,8 @@
 #pragma once
 #include "chart.hpp"
 
+#include "quadrant/diagnosis/signals.hpp"
+
 /// One axis in pictures: its charts, and where the gap sits.
 namespace quadrant_gap {
 
@@ -94,7 +96,8 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
         std::vector<double> rest(s.command.size());
         for (std::size_t k = 0; k < rest.size(); ++k)
             rest[k] = s.command[k] - s.command_replayed[k] - s.command_added[k];
-        const double constant = quantile(std::move(rest), 0.5); // of the first integral, which no log holds
+        const double constant =
+            quadrant::diagnosis::quantile(std::move(rest), 0.5); // of the first integral, which no log holds
         for (std::size_t k = 0; k < s.command.size(); ++k)
             beyond.push_back(s.command[k] - s.command_replayed[k] - constant);
     }
