@@ -37,8 +37,9 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
         CHECK(!e->prior.reason.empty());
         CHECK(e->prior.odds > 0);
         CHECK((e->starts == nullptr) == (e->read == nullptr));
-        CHECK((e->trial.into != nullptr));
-        CHECK(e->trial.low < e->trial.high);
+        const bool in_trials = e->name != "added_command"; // a signal of the log, not a number of a machine
+        CHECK((e->trial.into != nullptr) == in_trials);
+        CHECK((e->trial.low < e->trial.high) == in_trials);
         CHECK((e->equivalent.empty() || effect_named(e->equivalent) != nullptr));
         for (const machine_key& k : e->keys) {
             CAPTURE(k.name);
