@@ -50,7 +50,8 @@ struct bare {
     }
 };
 
-/// Simulates the machine with the keys that were set, and compares the error with that before and with the forecast.
+/// Simulates the machine with the keys that were set, and compares the error with that before and with the
+/// forecast.
 void check(std::string_view kind, const feedforward_key& fed, const char* effect, const char* key,
            double value) {
     CAPTURE(kind);

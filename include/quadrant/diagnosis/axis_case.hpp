@@ -108,8 +108,9 @@ public:
                 if (controller->key == key.key) key.of(c) = controller->value;
         return c;
     }
-    /// What the corrected controller commands otherwise than this log, as a force on the axis [N]: with the signal
-    /// that is added to the command taken off, or not. A constant of the unknown first integral is no part of it.
+    /// What the corrected controller commands otherwise than this log, as a force on the axis [N]: with the
+    /// signal that is added to the command taken off, or not. A constant of the unknown first integral is no
+    /// part of it.
     std::vector<double> command_left(bool without_added = true) const {
         auto d = command_difference(log, mended());
         if (!command_is_added()) return d;

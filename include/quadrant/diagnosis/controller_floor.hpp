@@ -32,8 +32,8 @@ inline axis_log as_controlled(axis_log log, double count) {
 }
 
 /// A difference at row k without what the sign of the reference's velocity makes of it where rounding of the
-/// column decides that sign: by one or two Coulomb feedforwards the command may then be off. What is no multiple of it
-/// to a quarter of one has another reason and stays.
+/// column decides that sign: by one or two Coulomb feedforwards the command may then be off. What is no
+/// multiple of it to a quarter of one has another reason and stays.
 inline double but_for_the_sign(double difference, double coulomb_feedforward, std::size_t k,
                                const axis_log& log) {
     if (std::abs(log.reference[k] - log.reference[k - 1]) > log.reference_step) return difference;
@@ -122,8 +122,8 @@ struct replay_floor {
 /// The floor of a controller on a log: it is replayed on columns that were rounded otherwise by as much, a few
 /// times. A right controller differs from its log by as much as two such replays differ. The linear and the
 /// nonlinear part of its filters, its converter and the unknown first integral are all in it. Two roundings to
-/// the converter's step may differ by one step for as long as the command stands still, and arithmetic of single
-/// precision is exact to 2^-24.
+/// the converter's step may differ by one step for as long as the command stands still, and arithmetic of
+/// single precision is exact to 2^-24.
 inline replay_floor floor_of(const controller_description& c, const replay_box& box) {
     constexpr std::size_t draws = 6;
     const axis_log& log = box.log();
@@ -170,8 +170,8 @@ inline replay_floor floor_of(const controller_description& c, const replay_box& 
     return out;
 }
 
-/// Rows after which a replay that begins in the middle of the record agrees with one that has seen all of it: for so
-/// long the past that no log has shows in the command. At most a quarter of the record.
+/// Rows after which a replay that begins in the middle of the record agrees with one that has seen all of it:
+/// for so long the past that no log has shows in the command. At most a quarter of the record.
 inline std::size_t rows_of_unknown_past(const controller_description& c, const replay_box& box,
                                         double least_ms) {
     constexpr std::size_t starts = 4;

@@ -39,8 +39,8 @@ inline void refuse_broken(const controller_description& described, const axis_lo
                         broken - replayed.begin()));
 }
 
-/// Below this share of itself neither a command nor a value is called another one: the accuracy to which files and
-/// recordings of controllers agree.
+/// Below this share of itself neither a command nor a value is called another one: the accuracy to which files
+/// and recordings of controllers agree.
 inline constexpr double same_controller = 0.005;
 
 /// 95 % of what the difference that is left leaves open of a value. Its blocks are independent, not its rows.
@@ -66,8 +66,8 @@ inline std::vector<key_fit> fitted_keys(const controller_description& described,
 
 } // namespace detail
 
-/// Replays a controller on a log, and finds what differs. `count`: of the encoder that the position was read from,
-/// where it is known [m].
+/// Replays a controller on a log, and finds what differs. `count`: of the encoder that the position was read
+/// from, where it is known [m].
 inline controller_finding judge_controller(const controller_description& described,
                                            const actuator_description& actuator, const axis_log& log,
                                            const axis_record& record, double count = 0) {

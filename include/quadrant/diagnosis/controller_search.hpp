@@ -7,7 +7,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Sum over the blocks of log(mean square + floor): free of scale, and no block gains from being below the floor.
+/// Sum over the blocks of log(mean square + floor): free of scale, and no block gains from being below the
+/// floor.
 inline double replay_score(const std::vector<double>& d, std::size_t block, double floor) {
     double sum = 0;
     for (double ms : block_ms(d, 0, block)) sum += std::log(ms + floor);
@@ -31,8 +32,9 @@ struct key_fit {
 };
 
 /// The search of one key. What a small change of the key does to the command is a signal; the share of it that
-/// the difference holds (least squares) says where the value lies, and how large a value that is absent is. From
-/// there, and from a scan for keys that are far from linear, golden section and two Newton steps lead to the best.
+/// the difference holds (least squares) says where the value lies, and how large a value that is absent is.
+/// From there, and from a scan for keys that are far from linear, golden section and two Newton steps lead to
+/// the best.
 class key_search {
 public:
     key_search(const controller_description& described, const searched_key& key, const replay_box& box,

@@ -6,14 +6,15 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A signal cut where its level changes: binary segmentation. A part is cut in two where that takes most off the
-/// sum of squares, as long as that is more than noise would give anywhere in the record.
+/// A signal cut where its level changes: binary segmentation. A part is cut in two where that takes most off
+/// the sum of squares, as long as that is more than noise would give anywhere in the record.
 class constant_parts {
 public:
     /// `sigma`: noise of a row. Nothing is found where more than `most` parts would be needed.
     constant_parts(const std::vector<double>& x, double sigma, std::size_t most) : sum_(x.size() + 1) {
         for (std::size_t k = 0; k < x.size(); ++k) sum_[k + 1] = sum_[k] + x[k];
-        // Twice the logarithm of the rows is what the best of all cuts takes off white noise; the rest is margin.
+        // Twice the logarithm of the rows is what the best of all cuts takes off white noise; the rest is
+        // margin.
         least_ = 8 * std::log(static_cast<double>(std::max<std::size_t>(2, x.size()))) * sigma * sigma;
         ends_ = {0, x.size()};
         std::vector<std::pair<std::size_t, std::size_t>> open{{0, x.size()}};

@@ -7,9 +7,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A signal as a sum of columns, fitted by least squares to four fifths of its blocks and compared with the other
-/// fifth, five times. Neighbouring blocks are fitted and compared in turn, so that a part of the record that
-/// happens once is in both.
+/// A signal as a sum of columns, fitted by least squares to four fifths of its blocks and compared with the
+/// other fifth, five times. Neighbouring blocks are fitted and compared in turn, so that a part of the record
+/// that happens once is in both.
 class column_fit {
 public:
     static constexpr std::size_t folds = 5;

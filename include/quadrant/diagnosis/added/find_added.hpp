@@ -145,8 +145,8 @@ private:
         if (b > a) w.rms = rms(std::span(w.values).subspan(a, b - a));
     }
     /// No simple form explains it. It is added all the same where the best key and the other law, fitted to the
-    /// parts that differ, leave most of them, and would differ where the replay agrees; or where they predict next
-    /// to nothing at all.
+    /// parts that differ, leave most of them, and would differ where the replay agrees; or where they predict
+    /// next to nothing at all.
     std::optional<added_finding> without_form(const reading& of_key, const reading& of_law,
                                               const column_fit& law, const std::optional<key_fit>& key) const {
         const double explained = 1 - std::min(of_key.ms, of_law.ms) / before_ms_;

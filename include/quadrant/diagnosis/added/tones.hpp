@@ -44,7 +44,8 @@ public:
         for (int i = 0; i < 6; ++i) refine(t, begin_, end_, false);
         return candidate(t, waveform_form::tone);
     }
-    /// From a fit to the middle eighth of the rows to one of all of them, the frequency and its change with them.
+    /// From a fit to the middle eighth of the rows to one of all of them, the frequency and its change with
+    /// them.
     std::optional<waveform_candidate> chirp() const {
         constexpr std::size_t windows = 8;
         const std::size_t length = (end_ - begin_) / windows;

@@ -41,8 +41,8 @@ inline std::string square_in_words(const added_waveform& w, std::string_view uni
 
 } // namespace detail
 
-/// A waveform as a part of a sentence: "a square wave of +-2 V, 0.3 s on and 0.7 s off, is added to the command from
-/// 1.2 s on".
+/// A waveform as a part of a sentence: "a square wave of +-2 V, 0.3 s on and 0.7 s off, is added to the
+/// command from 1.2 s on".
 inline std::string in_words(const added_waveform& w, std::string_view unit) {
     const std::string when = detail::times_of(w);
     const auto added = [&](const std::string& what) {

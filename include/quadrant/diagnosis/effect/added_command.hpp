@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// A signal is added to the command in parts of the record: of a test, or by a fault. It is found by replay of the
-/// controller, not by a fit of the plant (added/find_added.hpp); its waveform stands in the diagnosis.
+/// A signal is added to the command in parts of the record: of a test, or by a fault. It is found by replay of
+/// the controller, not by a fit of the plant (added/find_added.hpp); its waveform stands in the diagnosis.
 inline constexpr effect added_command{
     .name = "added_command",
     .label = "added command",
