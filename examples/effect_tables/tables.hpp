@@ -28,7 +28,8 @@ inline std::string keys_of(const effect& e) {
     for (const machine_key& k : e.keys)
         out += fmt::format("{}`{}`{}", out.empty() ? "" : ", ", k.name,
                            k.shape == key_shape::number ? "" : " [..]");
-    return out.empty() ? "those of the controller's kind" : out;
+    if (!out.empty()) return out;
+    return e.name == "controller_mismatch" ? "those of the controller's kind" : "none";
 }
 
 /// docs/diagnosis.md: what each effect shows and the motion to record for it.

@@ -75,6 +75,7 @@ inline std::string summary_of(const diagnosis_result& d, const cause& c) {
         wrapped(fmt::format("{}, axis {}: probability {}{}", capital(voice(name_of_effect(c.effect))), c.axis,
                             probability(c.probability), claimed(c) ? "" : ", a suspect, not a claim"),
                 2);
+    if (c.waveform) text += wrapped(capital(waveform_in_words(d, c)) + ".", 4);
     for (const std::string& line : lines_of(c.parameters, voice)) text += wrapped(line, 4);
     text +=
         wrapped(fmt::format("{} gap {}, shrinks by {}", voice("force"),

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "quadrant/diagnosis/added/words.hpp"
 #include "quadrant/diagnosis/effect_list.hpp"
 #include "quadrant/diagnosis/result.hpp"
 #include "quadrant/diagnosis/scoring.hpp"
@@ -209,6 +210,11 @@ inline std::vector<std::string> lines_of(const std::vector<parameter_estimate>& 
 
 // ---- sentences ----
 
+/// What is added to a command, in the unit of its axis.
+inline std::string waveform_in_words(const diagnosis_result& d, const cause& c) {
+    return in_words(*c.waveform, voice_of(d, c.axis).in_command_unit("V"));
+}
+
 inline bool claimed(const cause& c) { return std::max(c.probability, c.group_probability) >= 0.5; }
 
 /// "cogging", or "a or b" when the record does not say which.
@@ -233,11 +239,15 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
             "calibrate its values, nothing is missing.",
             a.name, before, floor);
     std::vector<std::string> missing, wrong;
+    std::string added; // to a command: the simulation lacks nothing
     const cause *suspect = nullptr, *first = nullptr, *last = nullptr;
     for (const cause& c : d.causes) {
         if (c.axis != a.name) continue;
         if (claimed(c)) {
-            (c.described ? wrong : missing).push_back(claim(c));
+            if (c.waveform)
+                added = waveform_in_words(d, c);
+            else
+                (c.described ? wrong : missing).push_back(claim(c));
             if (!first) first = &c;
             last = &c;
         } else if (!suspect) {
@@ -261,9 +271,12 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
     if (!wrong.empty())
         what += fmt::format("{} {}{} {} not as the machine file says", missing.empty() ? "The" : ", and the",
                             listed(wrong), missing.empty() ? " of axis " + a.name : "", are(wrong));
+    if (!added.empty())
+        what = what.empty() ? fmt::format("{} of axis {}", capital(added), a.name)
+                            : fmt::format("{}, and {}", what, added);
     // The numbers are those of what is claimed, not of the suspects behind it.
-    return fmt::format("{}: with {}, the force gap shrinks from {} to {} (floor {}){}.", what,
-                       first != last ? "them" : "it", quantity(first->gap_before_force_rms_N.value, "N"),
+    return fmt::format("{}: {} {}, the force gap shrinks from {} to {} (floor {}){}.", what,
+                       first->waveform ? "without" : "with", first != last ? "them" : "it", quantity(first->gap_before_force_rms_N.value, "N"),
                        quantity(last->gap_after_force_rms_N.value, "N"), floor,
                        a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
 }

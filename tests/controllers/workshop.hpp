@@ -70,7 +70,7 @@ inline controller_finding judged(const axis_description& axis, const controller_
                                  const axis_log& log) {
     const double period = machine().sample_period_s, count = axis.encoder.resolution_m;
     return judge_controller(c, axis.actuator, log,
-                            prepare(log, period, count, scales_of(axis.plant, log, period, count)));
+                            prepare(log, period, count, scales_of(axis.plant, log, period, count)), count);
 }
 
 } // namespace controllers_workshop

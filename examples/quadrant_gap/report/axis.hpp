@@ -2,6 +2,8 @@
 #pragma once
 #include "chart.hpp"
 
+#include "quadrant/diagnosis/signals.hpp"
+
 /// One axis in pictures: its charts, and where the gap sits.
 namespace quadrant_gap {
 
@@ -89,6 +91,31 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
                 s.t,
                 {{"logged", &s.command}, {"replayed", &s.command_replayed}},
                 "the diagnosis holds no command for this axis"});
+    std::vector<double> beyond; // what the log commands beyond the replay
+    if (!s.command_added.empty() && s.command_replayed.size() == s.command.size()) {
+        std::vector<double> rest(s.command.size());
+        for (std::size_t k = 0; k < rest.size(); ++k)
+            rest[k] = s.command[k] - s.command_replayed[k] - s.command_added[k];
+        const double constant =
+            quadrant::diagnosis::quantile(std::move(rest), 0.5); // of the first integral, which no log holds
+        for (std::size_t k = 0; k < s.command.size(); ++k)
+            beyond.push_back(s.command[k] - s.command_replayed[k] - constant);
+    }
+    const std::string added =
+        beyond.empty()
+            ? ""
+            : book.figure(index,
+                          {"time",
+                           "Added command",
+                           "What the log commands beyond the replayed controller, and the waveform that was "
+                           "recognised in it.",
+                           "time",
+                           "s",
+                           "command",
+                           voice.in_command_unit("V"),
+                           s.t,
+                           {{"logged minus replayed", &beyond}, {"waveform", &s.command_added}},
+                           ""});
     const std::string velocity = book.figure(
         index, {"scatter", voice("Residual force against velocity"),
                 "Samples as dots, medians as lines: a step at zero is friction.", "velocity", voice("m/s"),
@@ -116,7 +143,7 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
         "time move together, and those over velocity and position show the samples of that time.</p><button "
         "type=\"button\" data-axis=\"{1}\">Whole record</button></div>\n"
         "{2}{3}{4}<div class=\"still\">{5}{6}{7}</div>\n<h3>Where the gap sits</h3>\n{8}</section>\n",
-        escape(a.name), index, force, position, command, velocity, place, spectrum, shares(a));
+        escape(a.name), index, force, position, command + added, velocity, place, spectrum, shares(a));
 }
 
 } // namespace quadrant_gap

@@ -73,7 +73,9 @@ inline std::string causes(const diagnosis_result& d) {
             "by\">{}</td></tr>\n",
             escape(c.effect), escape(capital(voice(name_of_effect(c.effect)))), escape(c.axis),
             box.empty() ? "" : ", ", box, claimed(c) ? "" : "<br>a suspect, not a claim", probability_bar(c),
-            values(c.parameters, voice), lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, 1));
+            (c.waveform ? fmt::format("<div>{}</div>", escape(capital(waveform_in_words(d, c)))) : "") +
+                values(c.parameters, voice),
+            lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, 1));
         std::string more;
         if (!c.confusable_with.empty())
             more += fmt::format("On this record it cannot be told apart from {}.",

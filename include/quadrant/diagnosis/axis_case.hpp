@@ -28,8 +28,10 @@ public:
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
         if (axis.controller && log.has_reference)
-            controller = judge_controller(*axis.controller, axis.actuator, log, record);
-        controller_unnamed = controller_differs() && is_excluded("controller_mismatch");
+            controller = judge_controller(*axis.controller, axis.actuator, log, record,
+                                          coarse() ? count : axis.encoder.resolution_m);
+        if (controller && is_excluded("added_command")) controller->added.reset();
+        controller_unnamed = controller_differs() && !command_is_added() && is_excluded("controller_mismatch");
         if (controller_unnamed) controller->mended = false;
         if (holdout)
             second = for_machine(
@@ -104,7 +106,8 @@ public:
                                    second->left_out))};
     }
     bool controller_differs() const { return controller && controller->differs; }
-    bool controller_open() const { return controller_differs() && !controller->mended; }
+    bool command_is_added() const { return controller_differs() && controller->is_added(); }
+    bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
     double floor_force() const {
         return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz);
     }
@@ -115,6 +118,20 @@ public:
             for (const auto& key : detail::searched_keys(c))
                 if (controller->key == key.key) key.of(c) = controller->value;
         return c;
+    }
+    /// What the corrected controller commands otherwise than this log, as a force on the axis [N]: with the
+    /// signal that is added to the command taken off, or not. A constant of the unknown first integral is no
+    /// part of it.
+    std::vector<double> command_left(bool without_added = true) const {
+        auto d = command_difference(log, mended());
+        if (!command_is_added()) return d;
+        std::vector<double> left = d;
+        for (std::size_t k = 0; k < d.size(); ++k)
+            left[k] += controller->added->waveform.values[k] * axis.plant.force_constant_N_per_V;
+        const double constant = quantile(left, 0.5);
+        if (without_added) d = std::move(left);
+        for (double& x : d) x -= constant;
+        return d;
     }
     /// What a controller commands otherwise than logged, as a force on the axis [N].
     std::vector<double> command_difference(const axis_log& l, const controller_description& c) const {

@@ -285,10 +285,29 @@ inline std::optional<cause> count_cause(const axis_case& c) {
     return out;
 }
 
+/// A signal that is added to the command, where that is more probable than another controller.
+inline cause added_cause(const axis_case& c) {
+    const added_finding& found = *c.controller->added;
+    cause out;
+    out.axis = c.axis.name;
+    out.effect = "added_command";
+    out.exciting_motion = "any: the controller is replayed from the log";
+    out.probability = out.group_probability = found.probability;
+    out.waveform = found.waveform;
+    if (found.of_controller > 0.01) {
+        out.confusable_with = {"controller_mismatch"};
+        out.group_probability += found.of_controller;
+        const double value = c.controller->value;
+        out.readings.push_back({out.confusable_with.front(), {{c.controller->key, {{value, value, value}}}}});
+    }
+    return out;
+}
+
 /// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to rounding is
 /// the cause; one that does not is a guess.
 inline std::optional<cause> controller_cause(const axis_case& c) {
     if (!c.controller_differs() || c.controller_unnamed) return {};
+    if (c.command_is_added()) return added_cause(c);
     cause out;
     out.axis = c.axis.name;
     out.effect = "controller_mismatch";

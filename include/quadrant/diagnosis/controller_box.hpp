@@ -46,6 +46,16 @@ struct loop_columns {
         return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
                 log.velocity};
     }
+    /// The rows from one on.
+    loop_columns from(std::size_t row) const {
+        const auto part = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(row); };
+        return {part(reference),
+                part(position),
+                part(command),
+                part(reference_velocity),
+                part(reference_acceleration),
+                part(velocity)};
+    }
 };
 
 /// The inputs of a controller row by row. Before row 0 both motions were even, as from row 0 to row 1.

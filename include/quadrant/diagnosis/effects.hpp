@@ -3,6 +3,7 @@
 #include "effect/actuator_dead_zone.hpp"
 #include "effect/actuator_lag.hpp"
 #include "effect/actuator_saturation.hpp"
+#include "effect/added_command.hpp"
 #include "effect/arm_length.hpp"
 #include "effect/asymmetric_friction.hpp"
 #include "effect/backlash.hpp"
@@ -68,6 +69,7 @@ inline constexpr std::array listed_effects{
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,
     &suspect::controller_mismatch,
+    &suspect::added_command,
 };
 // clang-format on
 

@@ -31,6 +31,15 @@ public:
                 compare_rounding(c, before);
                 continue;
             }
+            if (c.waveform) { // of this log: the hold-out log may have another, or none
+                const auto there = [&](const auto& x) {
+                    return segment_energy(x, case_.record.segment, case_.record.segments,
+                                          case_.record.score.skip);
+                };
+                compare(c, there(case_.command_left(false)), there(case_.command_left()),
+                        case_.record.segments);
+                continue;
+            }
             if (of_controller)
                 controller = case_.mended();
             else
@@ -49,6 +58,8 @@ public:
         if (as_given) before = at(case_.path.front(), controller); // calibration inside the tolerance alone
         result.gap_after = numbers(before);
         draw(result.signals, before);
+        if (case_.command_is_added() && !case_.holdout)
+            result.signals.command_added = case_.controller->added->waveform.values;
     }
 
 private:
@@ -85,9 +96,15 @@ private:
         return resampled(draws_, judged_.segments, [&](const auto& w) { return e.rms(w); });
     }
     void compare(cause& c, const segment_energy& before, const segment_energy& after) const {
-        c.gap_before_force_rms_N = interval(before);
-        c.gap_after_force_rms_N = interval(after);
-        c.shrink = resampled(draws_, judged_.segments, [&](const auto& w) {
+        compare(c, before, after, judged_.segments);
+    }
+    static void compare(cause& c, const segment_energy& before, const segment_energy& after,
+                        std::size_t segments) {
+        const auto draws = segment_draws(segments);
+        const auto interval = [&](auto of) { return resampled(draws, segments, of); };
+        c.gap_before_force_rms_N = interval([&](const auto& w) { return before.rms(w); });
+        c.gap_after_force_rms_N = interval([&](const auto& w) { return after.rms(w); });
+        c.shrink = interval([&](const auto& w) {
             const double b = before.rms(w);
             return b > 0 ? 1 - after.rms(w) / b : 0;
         });

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "added/waveform.hpp"
 #include "axis_words.hpp"
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,7 +81,8 @@ struct cause {
     std::vector<std::string> confusable_with;
     std::vector<parameter_estimate> parameters; ///< of a claim: as fitted with the claims alone, which apply writes
     std::vector<parameter_estimate> with_suspects; ///< of a claim beside suspects: as fitted with all of them
-    std::vector<reading> readings; ///< of the names it is confusable with
+    std::vector<reading> readings;            ///< of the names it is confusable with
+    std::optional<added_waveform> waveform{}; ///< of an added command
     estimate gap_before_force_rms_N, gap_after_force_rms_N;
     estimate gap_before_position_rms_m, gap_after_position_rms_m;
     estimate gap_before_command_rms_V, gap_after_command_rms_V;
@@ -96,6 +99,8 @@ struct axis_signals {
         simulated_position_after;                        ///< closed loop; empty without a controller
     std::vector<double> residual_before, residual_after; ///< force [N]
     std::vector<double> command_replayed;                ///< the described controller on the logged r and y
+    std::vector<double>
+        command_added; ///< the waveform that is added to the command; empty: none, or another log
     std::vector<double> frequency_Hz, spectrum_before, spectrum_after; ///< residual force [N/sqrt(Hz)]
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "added/words.hpp"
 #include "bad_input.hpp"
 #include "result.hpp"
 
@@ -80,28 +81,63 @@ inline ordered_json axis_json(const axis_result& a) {
             {"evaluated_on", a.evaluated_on}};
 }
 
-inline ordered_json cause_json(const cause& c, axis_kind kind) {
+/// What is added to a command. Numbers that the form does not have are left out; the signal itself is in means over
+/// as many rows as leave a thousand of them at most.
+inline ordered_json waveform_json(const added_waveform& w, const std::string& unit) {
+    ordered_json out = {{"form", name_of(w.form)},
+                        {"text", in_words(w, unit)},
+                        {"unit", unit},
+                        {"from_s", w.from_s},
+                        {"to_s", w.to_s},
+                        {"rms", w.rms}};
+    if (w.period_s > 0) out["period_s"] = w.period_s;
+    if (!w.levels.empty()) {
+        out["levels"] = ordered_json::array();
+        for (const auto& l : w.levels)
+            out["levels"].push_back({{"value", l.value}, {"from_s", l.from_s}, {"duration_s", l.duration_s}});
+    }
+    if (w.frequency_Hz > 0) {
+        out["amplitude"] = w.amplitude;
+        out["frequency_Hz"] = w.frequency_Hz;
+        out["phase_rad"] = w.phase_rad;
+        if (w.form == waveform_form::chirp) out["sweep_Hz_per_s"] = w.sweep_Hz_per_s;
+    }
+    const std::size_t rows = (w.values.size() + 999) / 1000;
+    ordered_json values = ordered_json::array();
+    for (std::size_t k = 0; k < w.values.size(); k += rows) {
+        const std::size_t end = std::min(k + rows, w.values.size());
+        double sum = 0;
+        for (std::size_t i = k; i < end; ++i) sum += w.values[i];
+        values.push_back(sum / static_cast<double>(end - k));
+    }
+    out["samples"] = {{"period_s", w.sample_period_s * static_cast<double>(rows)}, {"values", values}};
+    return out;
+}
+
+inline ordered_json cause_json(const cause& c, axis_kind kind, const std::string& unit) {
     ordered_json readings = ordered_json::array();
     for (const auto& r : c.readings)
         readings.push_back({{"effect", r.effect}, {"parameters", parameters_json(r.parameters)}});
-    return {{"axis", c.axis},
-            {"effect", c.effect},
-            {"described", c.described},
-            {"probability", c.probability},
-            {"group_probability", c.group_probability},
-            {"confusable_with", c.confusable_with},
-            {"parameters", parameters_json(c.parameters)},
-            {"with_suspects", parameters_json(c.with_suspects)},
-            {"readings", readings},
-            {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
-            {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},
-            {key_of("gap_before_position_rms_m", kind), c.gap_before_position_rms_m.value},
-            {key_of("gap_after_position_rms_m", kind), c.gap_after_position_rms_m.value},
-            {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
-            {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
-            {"shrink", c.shrink.value},
-            {"shrink_ci95", interval_json(c.shrink)},
-            {"exciting_motion", c.exciting_motion}};
+    ordered_json out = {{"axis", c.axis},
+                        {"effect", c.effect},
+                        {"described", c.described},
+                        {"probability", c.probability},
+                        {"group_probability", c.group_probability},
+                        {"confusable_with", c.confusable_with},
+                        {"parameters", parameters_json(c.parameters)},
+                        {"with_suspects", parameters_json(c.with_suspects)},
+                        {"readings", readings},
+                        {key_of("gap_before_force_rms_N", kind), c.gap_before_force_rms_N.value},
+                        {key_of("gap_after_force_rms_N", kind), c.gap_after_force_rms_N.value},
+                        {key_of("gap_before_position_rms_m", kind), c.gap_before_position_rms_m.value},
+                        {key_of("gap_after_position_rms_m", kind), c.gap_after_position_rms_m.value},
+                        {"gap_before_command_rms_V", c.gap_before_command_rms_V.value},
+                        {"gap_after_command_rms_V", c.gap_after_command_rms_V.value},
+                        {"shrink", c.shrink.value},
+                        {"shrink_ci95", interval_json(c.shrink)},
+                        {"exciting_motion", c.exciting_motion}};
+    if (c.waveform) out["waveform"] = waveform_json(*c.waveform, unit);
+    return out;
 }
 
 } // namespace detail
@@ -115,7 +151,10 @@ inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
         unseen.push_back({{"axis", u.axis}, {"what", u.what}, {"instrument", u.instrument}});
     ordered_json axes = ordered_json::object(), causes = ordered_json::array();
     for (const auto& a : d.axes) axes[a.name] = detail::axis_json(a);
-    for (const auto& c : d.causes) causes.push_back(detail::cause_json(c, d.kind_of(c.axis)));
+    for (const auto& c : d.causes) {
+        const axis_result* axis = detail::named(d.axes, c.axis);
+        causes.push_back(detail::cause_json(c, d.kind_of(c.axis), axis ? axis->command_unit : "V"));
+    }
     ordered_json out = {
         {"schema", "quadrant.diagnosis/1"},
         {"verdict", name_of(d.verdict)},

@@ -120,15 +120,6 @@ inline constexpr controller_kind cascade_p_pi{
                 stock{std::move(loop), v["velocity_integral_V_per_m"] != 0});
         });
     },
-    .rounding =
-        [](const given_values& v, double reference_step, double position_step, double period) {
-            const double r = 0.5 * reference_step, y = 0.5 * position_step;
-            return r * (v["velocity_gain_V_s_per_m"] *
-                            (v["position_gain_per_s"] + 2 * v["velocity_feedforward"] / period) +
-                        4 * v["acceleration_feedforward_V_s2_per_m"] / (period * period) +
-                        2 * v["viscous_feedforward_V_s_per_m"] / period) +
-                   y * v["velocity_gain_V_s_per_m"] * (v["position_gain_per_s"] + 2 / period);
-        },
     .coulomb = {"coulomb_feedforward_V"},
     .viscous = {"viscous_feedforward_V_s_per_m"},
     .acceleration = {"acceleration_feedforward_V_s2_per_m"}};

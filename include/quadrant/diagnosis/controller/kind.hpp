@@ -61,10 +61,6 @@ struct controller_kind {
     /// notes.
     void (*examine)(const given_values&, const std::function<void(std::string_view, std::string)>& refuse,
                     const std::function<void(std::string)>& note) = nullptr;
-    /// The largest command that the rounding of the columns explains, where it is known in closed form.
-    /// Otherwise the columns are perturbed. The steps are those of reference and position.
-    double (*rounding)(const given_values&, double reference_step, double position_step,
-                       double period) = nullptr;
     feedforward_key coulomb{}, viscous{}, acceleration{}; ///< what `compensate` may set
     bool motions = false; ///< it reads velocities: of the log's columns where there are any, else differences
 

@@ -46,7 +46,7 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     std::string text = "axis " + c.axis.name + ": ";
     if (c.controller_differs()) {
         before += square(rms(c.command_difference(c.log, *c.axis.controller)));
-        after += square(rms(c.command_difference(c.log, c.mended())));
+        after += square(rms(c.command_left()));
         if (c.controller_open())
             text += std::string("the controller that ran is not the one described") +
                     (c.controller_unnamed ? ", which the machine file excludes; "
