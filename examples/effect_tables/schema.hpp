@@ -42,7 +42,8 @@ inline void add_others(std::string_view box, ordered_json& properties, ordered_j
 inline ordered_json box(std::string_view name, axis_kind kind) {
     ordered_json properties = ordered_json::object(), together = ordered_json::object(),
                  needed = ordered_json::array(), either = ordered_json::array();
-    for_each_key(name, [&](const machine_key& k, const effect&) {
+    for_each_key(name, [&](const machine_key& k, const effect& e) {
+        if (e.rotary_only && kind == axis_kind::linear) return;
         std::string key = k.key_for(kind);
         if (k.unit_of_command)
             for (const char unit : detail::command_units) {
@@ -68,7 +69,8 @@ inline ordered_json box(std::string_view name, axis_kind kind) {
 
 inline ordered_json tolerance(axis_kind kind) {
     ordered_json properties = ordered_json::object();
-    for (const auto& t : detail::tolerance_names()) properties[key_of(t.name, kind)] = reference("relative");
+    for (const auto& t : detail::tolerance_names(kind))
+        properties[key_of(t.name, kind)] = reference("relative");
     return {{"description",
              "Relative uncertainty of a value as the owner knows it: a hard bound, uniform inside; "
              "absent means 0.05."},

@@ -37,9 +37,9 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
         CHECK(!e->prior.reason.empty());
         CHECK(e->prior.odds > 0);
         CHECK((e->starts == nullptr) == (e->read == nullptr));
-        CHECK((e->trial.into != nullptr));
-        CHECK(e->trial.low < e->trial.high);
-        CHECK((e->equivalent.empty() || effect_named(e->equivalent) != nullptr));
+        CHECK((e->trial.into != nullptr) != e->rotary_only); // the trial's machines are linear
+        CHECK((e->rotary_only || e->trial.low < e->trial.high));
+        for (const auto other : e->equivalent) CHECK((other.empty() || effect_named(other) != nullptr));
         for (const machine_key& k : e->keys) {
             CAPTURE(k.name);
             CHECK(keys.insert(k.name).second);

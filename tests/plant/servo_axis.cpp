@@ -34,6 +34,9 @@ axis::parameters full_axis() {
     p.ripple.sine[0] = 0.03;
     p.constant = 4;
     p.spring = 300;
+    p.gravity = 9;
+    p.gravity_phase = 0.4;
+    p.load_friction = 0.15;
     p.coupling = 0.02;
     p.cogging.period = 0.032;
     p.cogging.cosine = {3, 0, 1};
@@ -47,6 +50,7 @@ axis::parameters full_axis() {
     p.friction.asymmetry = 0.1;
     p.friction.weights[0] = 1;
     p.friction.stiffness[0] = gain_of<signal::force, signal::position>::from_value(2e7);
+    p.friction.give[0] = quantity_of<signal::position>::from_value(1e-6);
     p.along.period = 0.1;
     p.along.sine[0] = 0.2;
     p.drift = -0.2;
@@ -91,6 +95,12 @@ TEST_CASE("servo_axis: every joint at its neutral value, and at 1e-9 of its size
     small([](auto& p, auto& f, double by) { p.ripple = f.ripple, p.ripple.sine[0] *= by; });
     small([](auto& p, auto& f, double by) { p.constant = by * f.constant; });
     small([](auto& p, auto& f, double by) { p.spring = by * f.spring; });
+    small([](auto& p, auto& f, double by) { p.gravity = by * f.gravity, p.gravity_phase = f.gravity_phase; });
+    small([](auto& p, auto& f, double by) {
+        p.load_friction = by * f.load_friction;
+        p.friction.weights = f.friction.weights;
+        p.friction.give = f.friction.give;
+    });
     small([](auto& p, auto& f, double by) { p.coupling = by * f.coupling; });
     small([](auto& p, auto& f, double by) {
         p.cogging = f.cogging;
@@ -174,7 +184,8 @@ TEST_CASE("servo_axis: pushed at random with every joint filled, it gives back l
         const double m2 = p.second.mass.value(), w0 = 2 * std::numbers::pi * p.second.centre.value();
         const double stored = 0.5 * (p.mass - m2) * s.v * s.v +
                               0.5 * m2 * (s.v + s.second.w) * (s.v + s.second.w) +
-                              0.5 * m2 * w0 * w0 * s.second.q * s.second.q + 0.5 * p.spring * s.x * s.x;
+                              0.5 * m2 * w0 * w0 * s.second.q * s.second.q + 0.5 * p.spring * s.x * s.x +
+                              p.gravity * (std::cos(p.gravity_phase) - std::cos(s.x - p.gravity_phase));
         least = std::min(least, put_in - stored);
     }
     CHECK(put_in > 0);

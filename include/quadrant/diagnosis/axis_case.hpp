@@ -37,9 +37,8 @@ public:
         path = models.run();
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         noise = models.noise(path.back());
-        structure = models.structure(path.back(), noise);
-        immaterial = models.immaterial(path.back());
-        if (second) structure_on_second = second_log(path.back()).structure;
+        settled = models.settled(path.back().fit.ms, record.score, noise);
+        if (second) settled_on_second = second_log(path.back()).settled;
     }
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -57,18 +56,16 @@ public:
     std::optional<controller_finding> controller;
     std::vector<candidate> path; ///< the calibrated machine, then with one cause more each
     double noise = 0;            ///< white noise of the position [m]
-    bool immaterial = false;     ///< what the last model leaves is small beside the cloud of tolerances
     bool count_unnamed = false; ///< a coarser count than described, and the machine file excludes it as a cause
     bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
-    double structure = 0;            ///< what the last model leaves above it, in log-score
-    double structure_on_second = 0;  ///< the same on the hold-out log
+    bool settled = false;            ///< the last model leaves noise, or nothing that matters to the owner
+    bool settled_on_second = true;   ///< the same on the hold-out log
 
     const candidate& best() const { return path.back(); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
-    /// Nothing is left but noise: no other cause can hide behind the names.
-    bool clean() const { return structure < limits.structure; }
-    /// Nothing is left that would matter: noise, or far less than the owner's tolerances make.
-    bool at_floor() const { return (clean() && structure_on_second < limits.structure) || immaterial; }
+    /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
+    /// behind the names.
+    bool at_floor() const { return settled && settled_on_second; }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {
@@ -81,7 +78,7 @@ public:
     /// How a model predicts the hold-out log, which nothing was fitted to.
     struct on_second {
         double score = 0;     ///< log-score
-        double structure = 0; ///< left above the noise
+        bool settled = false; ///< nothing is left that matters
         double force = 0;     ///< residual, rms [N]
     };
     on_second second_log(const candidate& m) const {
@@ -89,7 +86,7 @@ public:
         fitter(second->observer, second->score).evaluate(there);
         std::vector<double> e, a;
         second->observer.run(there.plant, e, &a);
-        return {-there.objective, models.structure(there.ms, there.ms_mean, noise, second->score),
+        return {-there.objective, models.settled(there.ms, second->score, noise),
                 rms(residual_force(there.plant, second->position, a, second->period, second->bandwidth_Hz,
                                    second->left_out))};
     }

@@ -36,8 +36,7 @@ struct fold_sum {
 };
 
 template <class Each> void each_channel(const fit_result& f, const scoring& s, Each each) {
-    each(f.quadratic, s.nu, s.floor);
-    each(f.quadratic_mean, s.nu_mean, s.floor_mean);
+    for (std::size_t i = 0; i < f.quadratic.size(); ++i) each(f.quadratic[i], s.channels[i]);
 }
 
 /// 1/2 ln(blocks) for each parameter that no owner knows.
@@ -45,7 +44,7 @@ inline double flexibility(const fit_result& f) {
     const auto free = std::count_if(f.parameters.begin(), f.parameters.end(),
                                     [](const parameter& p) { return !(p.spread > 0); });
     return 0.5 * static_cast<double>(free) *
-           std::log(static_cast<double>(std::max<std::size_t>(2, f.ms.size())));
+           std::log(static_cast<double>(std::max<std::size_t>(2, f.ms.empty() ? 0 : f.ms.front().size())));
 }
 
 } // namespace detail
@@ -60,14 +59,14 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
     for (auto& f : sums) f = all;
     c.curvature = Eigen::MatrixXd::Zero(n, n);
     c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
-    detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
+    detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double w = nu / (blocks[b].ms + floor * floor);
-            auto& f = sums[fold_of(s.segment_of_block[b])];
+            const double w = view.nu / (blocks[b].ms + view.floor * view.floor);
+            auto& f = sums[fold_of(view.segment_of_block[b])];
             f.a += w * blocks[b].a;
             f.g += w * blocks[b].g;
             c.curvature += w * blocks[b].a;
-            c.gradient.col(static_cast<Eigen::Index>(s.segment_of_block[b])) += w * blocks[b].g;
+            c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks[b].g;
         }
     });
     for (const auto& f : sums) all.a += f.a;
@@ -87,10 +86,11 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
         }
         c.leave.push_back(c.fit.x + step[f]);
     }
-    detail::each_channel(c.fit, s, [&](const auto& blocks, double nu, double floor) {
+    detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const auto segment = s.segment_of_block[b];
-            c.held_out[segment] -= 0.5 * nu * std::log(blocks[b].at(step[fold_of(segment)]) + floor * floor);
+            const auto segment = view.segment_of_block[b];
+            c.held_out[segment] -=
+                0.5 * view.nu * std::log(blocks[b].at(step[fold_of(segment)]) + view.floor * view.floor);
         }
     });
     c.penalty = detail::flexibility(c.fit) + c.fit.choices;
@@ -160,7 +160,7 @@ inline void judge(const axis_record& record, candidate& c) {
     cross_validate(c, record.score, curvature);
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.fit.innovation = {};
-    c.fit.quadratic = c.fit.quadratic_mean = {};
+    c.fit.quadratic = {};
 }
 
 /// Fits sketches to the end, side by side, and scores them.

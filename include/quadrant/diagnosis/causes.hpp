@@ -71,11 +71,11 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met.
-                if (e->name == own->equivalent) finish(c.record, out.back().model);
+                if (may_be_one(*e, *own)) finish(c.record, out.back().model);
             }
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
-    if (!c.clean()) {
+    if (!c.settled) {
         const auto models =
             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
@@ -86,7 +86,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     weigh(out, c);
 
     const double energy = square(c.models.held_out_force(c.best()));
-    const double unexplained = c.clean() ? 0 : std::max(0.0, energy - square(c.floor_force()));
+    const double unexplained = c.settled ? 0 : std::max(0.0, energy - square(c.floor_force()));
     double sum = 0;
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
@@ -96,7 +96,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
-        const bool equivalent = r.name->name == own->equivalent && excess() < alike * energy;
+        const bool equivalent = may_be_one(*r.name, *own) && excess() < alike * energy;
         if (within) r.weight = std::max(r.weight, std::exp(-excess() / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
@@ -116,7 +116,7 @@ inline double explained_by(const axis_case& c, std::size_t which) {
 }
 /// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    return c.clean() ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
+    return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
 
 /// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
@@ -129,7 +129,7 @@ inline double unknown(const axis_case& c, std::size_t which) {
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
-    if (c.structure_on_second > c.limits.structure) {
+    if (!c.settled_on_second) {
         const double explained = std::max(explained_by(c, which), between(before.force, after.force));
         out = std::clamp(between(after.force, c.floor_force()) / explained, out, 0.95);
     }

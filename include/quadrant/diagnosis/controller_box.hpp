@@ -41,10 +41,21 @@ inline std::unique_ptr<running_controller> made(const controller_description& c,
 struct loop_columns {
     std::span<const double> reference, position, command;
     std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
+    std::span<const unsigned char> left_out{}; ///< of every row, as axis_log::left_out; empty: none
 
+    /// Some rows of them; none of these may be left out.
+    loop_columns part(std::size_t first, std::size_t rows) const {
+        const auto of = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(first, rows); };
+        return {.reference = of(reference),
+                .position = of(position),
+                .command = of(command),
+                .reference_velocity = of(reference_velocity),
+                .reference_acceleration = of(reference_acceleration),
+                .velocity = of(velocity)};
+    }
     static loop_columns of(const axis_log& log) {
         return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
-                log.velocity};
+                log.velocity,  log.left_out};
     }
 };
 
@@ -115,14 +126,14 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
     return loop;
 }
 
-/// The controller box alone: fed the logged reference and position, it puts out what the described controller
+/// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it puts out what the described controller
 /// would have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of
 /// the encoder is in the first command by way of the velocity. What that leaves open of the initial integral is
 /// a constant offset of the replay, which a second pass takes from the whole record. A law that follows from
 /// what it applied is told so by the log. Rows that a controller is only shown, and those whose look-ahead ends
 /// behind the log, are the logged ones.
-inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
-                                             double period, const loop_columns& log) {
+inline std::vector<double> replay_stretch(const controller_description& c, const actuator_description& a,
+                                          double period, const loop_columns& log) {
     const auto fresh = made(c, a, period);
     const loop_inputs in(log, period);
     const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
@@ -146,6 +157,25 @@ inline std::vector<double> replay_controller(const controller_description& c, co
         std::vector<double> offset(out.size());
         for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
         pass(quantile(offset, 0.5));
+    }
+    return out;
+}
+
+/// The controller box over a whole record: begun anew behind each row that is left out, as at the start of a record. Rows that
+/// are left out, and stretches too short to begin in, are the logged ones.
+inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
+                                             double period, const loop_columns& log) {
+    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
+    std::vector<double> out(log.command.begin(), log.command.end());
+    constexpr std::size_t least = 8;
+    for (std::size_t first = 0; first < out.size();) {
+        std::size_t last = first;
+        while (last < out.size() && !log.left_out[last]) ++last;
+        if (last - first >= least) {
+            const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
+            std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+        first = last + 1;
     }
     return out;
 }

@@ -16,6 +16,7 @@
 #include "effect/force_constant.hpp"
 #include "effect/force_ripple.hpp"
 #include "effect/friction_drift.hpp"
+#include "effect/gravity.hpp"
 #include "effect/mass.hpp"
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
@@ -46,6 +47,7 @@ inline constexpr std::array listed_effects{
     &suspect::backlash,
     &suspect::constant_force,
     &suspect::position_spring,
+    &suspect::gravity,
     &suspect::quadratic_drag,
     &suspect::cross_coupling,
     &suspect::cogging,

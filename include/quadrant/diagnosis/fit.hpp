@@ -46,9 +46,9 @@ struct fit_result {
     std::vector<parameter> parameters{};
     Eigen::VectorXd x{}; ///< fit coordinates
     std::vector<double> innovation{};
-    std::vector<double> ms{}, ms_mean{}; ///< by block
-    double choices = 0;                  ///< score that the model took from the log itself, see predictor::run
-    std::vector<block_quadratic> quadratic{}, quadratic_mean{};
+    std::vector<std::vector<double>> ms{}; ///< by channel and block
+    double choices = 0; ///< score that the model took from the log itself, see predictor::run
+    std::vector<std::vector<block_quadratic>> quadratic{}; ///< by channel and block
     double objective = std::numeric_limits<double>::infinity();
 };
 
@@ -62,10 +62,12 @@ public:
             ps[i].of(plant) = ps[i].from_fit(x[static_cast<Eigen::Index>(i)]);
     }
 
-    double score_ms(const std::vector<double>& ms, const std::vector<double>& ms_mean) const {
+    double score_ms(const std::vector<std::vector<double>>& ms) const {
         double sum = 0;
-        for (double m : ms) sum += 0.5 * scoring_.nu * std::log(m + square(scoring_.floor));
-        for (double m : ms_mean) sum += 0.5 * scoring_.nu_mean * std::log(m + square(scoring_.floor_mean));
+        for (std::size_t i = 0; i < ms.size(); ++i) {
+            const channel& c = scoring_.channels[i];
+            for (double m : ms[i]) sum += 0.5 * c.nu * std::log(m + square(c.floor));
+        }
         return sum;
     }
 
@@ -108,10 +110,14 @@ public:
     /// What the innovations of a model say of it.
     void judge(fit_result& r, double choices) const {
         // As many of a block's rows are independent as its score says.
-        r.choices = choices * (scoring_.nu + scoring_.nu_mean) / static_cast<double>(scoring_.block);
-        r.ms = detail::block_ms(r.innovation, scoring_);
-        r.ms_mean = detail::block_ms(detail::means(r.innovation, scoring_), 0, scoring_.block / scoring_.mean);
-        r.objective = score_ms(r.ms, r.ms_mean) + prior(r) + r.choices;
+        double independent = 0;
+        r.ms.clear();
+        for (const channel& c : scoring_.channels) {
+            independent += c.nu / static_cast<double>(c.block);
+            r.ms.push_back(detail::block_ms(detail::means(r.innovation, c), 0, c.block / c.mean));
+        }
+        r.choices = choices * independent;
+        r.objective = score_ms(r.ms) + prior(r) + r.choices;
         if (!std::isfinite(r.objective)) r.objective = std::numeric_limits<double>::infinity();
     }
 
@@ -162,15 +168,10 @@ private:
             out.push_back(i < known.size() && known[i] ? known[i] : &d[i]);
         return out;
     }
-    std::vector<std::vector<double>> means_of(const columns& d) const {
-        std::vector<std::vector<double>> out;
-        for (const auto* x : d) out.push_back(detail::means(*x, scoring_));
-        return out;
-    }
     /// The blocks as quadratics, with these slopes.
     void linearize(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known) const {
-        r.quadratic.assign(r.ms.size(), {});
-        r.quadratic_mean.assign(r.ms_mean.size(), {});
+        r.quadratic.clear();
+        for (const auto& blocks : r.ms) r.quadratic.emplace_back(blocks.size());
         quadratics(r, found, known, true);
     }
     /// The same at another point with the slopes kept.
@@ -180,12 +181,19 @@ private:
     void quadratics(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known,
                     bool curvature) const {
         const auto d = pointers(found, known);
-        const auto dm = means_of(d);
-        quadratics(r.quadratic, r.innovation, d, scoring_.block, curvature,
-                   [&](std::size_t b) { return scoring_.first_of_block[b]; });
-        const std::size_t means = scoring_.block / scoring_.mean;
-        quadratics(r.quadratic_mean, detail::means(r.innovation, scoring_), pointers(dm), means, curvature,
-                   [&](std::size_t b) { return b * means; });
+        for (std::size_t i = 0; i < scoring_.channels.size(); ++i) {
+            const channel& c = scoring_.channels[i];
+            if (c.mean == 1) {
+                quadratics(r.quadratic[i], r.innovation, d, c.block, curvature,
+                           [&](std::size_t b) { return c.first_of_block[b]; });
+                continue;
+            }
+            std::vector<std::vector<double>> slow;
+            for (const auto* x : d) slow.push_back(detail::means(*x, c));
+            const std::size_t means = c.block / c.mean;
+            quadratics(r.quadratic[i], detail::means(r.innovation, c), pointers(slow), means, curvature,
+                       [&](std::size_t b) { return b * means; });
+        }
     }
     /// `first_of(b)`: where block b begins.
     template <class FirstOf>
@@ -209,8 +217,7 @@ private:
         const auto n = r.x.size();
         Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
         Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
-        add(r.quadratic, scoring_.nu, scoring_.floor, a, g);
-        add(r.quadratic_mean, scoring_.nu_mean, scoring_.floor_mean, a, g);
+        for (std::size_t i = 0; i < r.quadratic.size(); ++i) add(r.quadratic[i], scoring_.channels[i], a, g);
         for (Eigen::Index i = 0; i < n; ++i)
             if (const auto& q = p(r.parameters, i); q.spread > 0) {
                 a(i, i) += 1 / square(q.spread);
@@ -248,10 +255,10 @@ private:
         for (auto i : open) out[i] = d[i];
         return out;
     }
-    static void add(const std::vector<block_quadratic>& blocks, double nu, double floor, Eigen::MatrixXd& a,
+    static void add(const std::vector<block_quadratic>& blocks, const channel& c, Eigen::MatrixXd& a,
                     Eigen::VectorXd& g) {
         for (const auto& b : blocks) {
-            const double w = nu / (b.ms + square(floor));
+            const double w = c.nu / (b.ms + square(c.floor));
             a += w * b.a;
             g += w * b.g;
         }
@@ -351,7 +358,6 @@ private:
         if (trial_.objective < best_.objective) {
             gain_ = best_.objective - trial_.objective;
             trial_.quadratic = std::move(best_.quadratic);
-            trial_.quadratic_mean = std::move(best_.quadratic_mean);
             std::swap(best_, trial_);
             better_ = true;
             damping_ = std::max(1e-6, damping_ / 24);

@@ -43,6 +43,9 @@ struct plant_description {
     std::optional<double> backlash_m, spring_N_per_m;
     std::optional<double> coupling; ///< this axis' acceleration gains coupling times the other's
     std::optional<double> ripple, ripple_period_m, ripple_phase_rad;
+    /// Torque on a rotary axis: -gravity_torque_Nm sin(q - gravity_phase_rad).
+    std::optional<double> gravity_torque_Nm, gravity_phase_rad;
+    std::optional<double> load_friction; ///< growth of the Coulomb level with the transmitted force
 };
 
 /// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb", "static", ...).

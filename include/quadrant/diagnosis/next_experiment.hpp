@@ -79,7 +79,7 @@ inline std::vector<confusable> readings_of(const std::vector<rival>& rivals, con
     std::stable_sort(others.begin(), others.end(), [](auto a, auto b) { return a->weight > b->weight; });
     constexpr double in_question = 0.05; // the most probable is in any case
     while (others.size() > 1 && others.back()->weight < in_question) others.pop_back();
-    const auto equivalent = [&](const rival* r) { return r->name->name == rivals.front().name->equivalent; };
+    const auto equivalent = [&](const rival* r) { return may_be_one(*r->name, *rivals.front().name); };
     if (!std::all_of(others.begin(), others.end(), equivalent)) std::erase_if(others, equivalent);
     std::vector<confusable> out{{rivals.front().name, rivals.front().model}};
     for (const rival* r : others)
@@ -140,7 +140,7 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
         take(best.motion);
         out.finding = "simulated beforehand, each name as the truth and the others fitted again: the best of " +
                       inside + worded(", which itself separates them by %.1f", out.gain_of_log);
-        if (out.gain_of_log >= c.limits.margin && !c.clean())
+        if (out.gain_of_log >= c.limits.margin && !c.settled)
             out.finding +=
                 "; what keeps them together is the force that is left unexplained, which is larger than "
                 "their difference: find that first";

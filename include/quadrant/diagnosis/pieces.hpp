@@ -10,16 +10,18 @@ namespace quadrant::diagnosis {
 /// as they are. `motions`: how many the record holds.
 inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     motions = r.segments;
-    auto& of_block = r.score.segment_of_block;
-    if (r.segments > 1 || of_block.size() < 2) return r;
-    const std::size_t blocks = of_block.size(), pieces = std::min(folds, blocks);
+    const std::size_t blocks = r.score.channels.front().segment_of_block.size(),
+                      pieces = std::min(folds, blocks);
+    if (r.segments > 1 || blocks < 2) return r;
     const auto piece_of = [&](std::size_t block) { return std::min(block, blocks - 1) * pieces / blocks; };
-    for (std::size_t b = 0; b < blocks; ++b) of_block[b] = piece_of(b);
-    const auto& first = r.score.first_of_block;
+    const auto& first = r.score.channels.front().first_of_block;
     for (std::size_t k = 0, b = 0; k < r.segment.size(); ++k) {
         while (b + 1 < blocks && k >= first[b + 1]) ++b;
         r.segment[k] = piece_of(b);
     }
+    for (channel& c : r.score.channels)
+        for (std::size_t b = 0; b < c.segment_of_block.size(); ++b)
+            c.segment_of_block[b] = r.segment[c.first_of_block[b] + c.block / 2];
     r.segments = r.score.segments = pieces;
     return r;
 }

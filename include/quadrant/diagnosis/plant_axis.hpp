@@ -99,6 +99,9 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     out.ripple = repeating(p.ripple);
     out.constant = p.constant_force;
     out.spring = p.spring;
+    out.gravity = p.gravity.torque;
+    out.gravity_phase = p.gravity.phase;
+    out.load_friction = p.friction.load;
     out.coupling = p.coupling;
     out.cogging = repeating(p.cogging);
     out.process = repeating(p.cutting);
@@ -129,6 +132,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     for (std::size_t i = 0; i < std::min(contact.elements, plant_axis::springs); ++i) {
         f.weights[i] = contact.weights[i];
         typed(f.stiffness[i], p.friction.stiffness(i));
+        typed(f.give[i], contact.lengths()[i]);
     }
     return out;
 }

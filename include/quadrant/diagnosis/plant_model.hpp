@@ -34,6 +34,7 @@ struct plant_model {
         double excess_asymmetry = 0, velocity_asymmetry = 0; ///< of excess and Stribeck velocity
         friction_contact contact;
         harmonics along;                  ///< of the Coulomb level, relative, over position
+        double load = 0;                  ///< growth of the level with the transmitted force
         double drift = 0, drift_time = 1; ///< Coulomb level times 1 + drift (1 - exp(-t/drift_time))
         /// Stiffness of a spring of the contact: its share of the breakaway level over its length [N/m].
         double stiffness(std::size_t i) const {
@@ -43,9 +44,13 @@ struct plant_model {
     } friction;
     double constant_force = 0; ///< [N]
     double spring = 0;         ///< [N/m], about position 0
-    double coupling = 0;       ///< of the other axis' acceleration
-    harmonics cogging;         ///< [N] over position
-    own_laws own;              ///< laws of effects that have no member here
+    /// Of an axis that carries its weight round: torque -torque sin(q - phase).
+    struct gravity_box {
+        double torque = 0, phase = 0; ///< [N m], [rad]
+    } gravity;
+    double coupling = 0; ///< of the other axis' acceleration
+    harmonics cogging;   ///< [N] over position
+    own_laws own;        ///< laws of effects that have no member here
     /// A second mass on a spring, not seen by the encoder.
     struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
@@ -99,6 +104,8 @@ struct plant_model {
         friction.drift_time = d.friction_drift_time_s.value_or(1);
         constant_force = d.constant_force_N.value_or(0);
         spring = d.spring_N_per_m.value_or(0);
+        gravity = {d.gravity_torque_Nm.value_or(0), d.gravity_phase_rad.value_or(0)};
+        friction.load = d.load_friction.value_or(0);
         coupling = d.coupling.value_or(0);
         cogging = {d.cogging_period_m.value_or(0), d.cogging_N, d.cogging_phase_rad};
         if (d.mode_mass_kg)

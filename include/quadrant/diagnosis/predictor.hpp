@@ -63,6 +63,9 @@ struct predictor {
         }
     }
 
+    /// Both poles of the observer.
+    double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
+
     /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss tell it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
                                       const loss_assumption& a) const {
@@ -76,7 +79,6 @@ private:
     }
     double l1() const { return 1 - pole() * pole(); }
     double l2() const { return (1 - pole()) * (1 - pole()) / period; }
-    double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
 
     /// Innovations after one volt too much in one period, on a free axis, until the observer has forgotten it.
     std::vector<double> loss_response(const plant_model& plant) const {

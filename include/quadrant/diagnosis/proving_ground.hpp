@@ -11,7 +11,7 @@ struct confusable {
     const effect* name = nullptr;
     candidate model;
 
-    bool equivalent(const confusable& other) const { return other.name->name == name->equivalent; }
+    bool equivalent(const confusable& other) const { return may_be_one(*name, *other.name); }
 };
 
 /// Where a motion is tried before the machine drives it: the axis as described, under the controller that runs it or a
@@ -35,7 +35,9 @@ public:
         log.reference = m.reference;
         const double start = m.reference[0];
         const double held =
-            (plant.spring * start - plant.constant_force - plant.cutting_mean) / plant.force_constant;
+            (plant.spring * start + plant.gravity.torque * std::sin(start - plant.gravity.phase) -
+             plant.constant_force - plant.cutting_mean) /
+            plant.force_constant;
         log.position.assign(m.reference.size(), start);
         log.command.assign(m.reference.size(), held);
         auto run =

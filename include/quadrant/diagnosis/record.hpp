@@ -82,7 +82,8 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     std::vector<double> half_difference(innovation.size());
     for (std::size_t k = 1; k < half_difference.size(); ++k)
         half_difference[k] = (innovation[k] - innovation[k - 1]) * std::numbers::sqrt2 / 2;
-    const auto ms = detail::block_ms(half_difference, s);
+    const channel& all = s.channels.front();
+    const auto ms = detail::block_ms(detail::means(half_difference, all), 0, all.block);
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
@@ -126,23 +127,6 @@ inline gap_rows long_gaps(std::span<const unsigned char> left_out, double respon
     return out;
 }
 
-/// Lays the blocks of the score from `skip` on, one behind the other, around the rows that are not judged.
-inline gap_rows lay_blocks(scoring& s, std::span<const unsigned char> left_out, std::size_t rows,
-                           double response_rows) {
-    gap_rows out = long_gaps(left_out, response_rows, s.skip);
-    for (std::size_t first = s.skip; first + s.block <= rows;) {
-        std::size_t clear = first + s.block;
-        while (!out.settling.empty() && clear > first && !out.settling[clear - 1]) --clear;
-        if (!out.settling.empty() && clear > first) {
-            first = clear; // behind the last row of it that is not judged
-            continue;
-        }
-        s.first_of_block.push_back(first);
-        first += s.block;
-    }
-    return out;
-}
-
 /// These rows and their neighbours: a second difference reaches over one row on each side.
 inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows) {
     std::vector<unsigned char> out = rows;
@@ -174,15 +158,12 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     r.bandwidth_Hz = scale.bandwidth_Hz();
     r.resolution = std::max({resolution, log.position_step, scale.count});
     auto& s = r.score;
-    s.mean = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
-    s.block = 5 * s.mean;
-    s.skip = s.block;
-    s.floor = 0.4 * r.resolution;
-    s.floor_mean = 0.2 * r.resolution;
-    const auto settling = lay_blocks(s, log.left_out, log.position.size(), scale.response() / period);
-    for (const std::size_t first : s.first_of_block)
-        s.segment_of_block.push_back(r.segment[first + s.block / 2]);
-    r.left_out = around(settling.gap);
+    const auto mean =
+        std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
+    s.block = s.skip = 5 * mean;
+    const gap_rows gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
+    s.channels = detail::channels_of(mean, s.skip, r.resolution, r.observer.pole(), r.segment, gaps.settling);
+    r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;
 }

@@ -21,8 +21,7 @@ public:
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
         fit.evaluate(given_.fit);
-        given_.total =
-            -fit.score_ms(given_.fit.ms, given_.fit.ms_mean); // nothing was fitted: every motion is held out
+        given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
@@ -116,7 +115,8 @@ public:
     std::vector<const effect*> suspects() const {
         std::vector<const effect*> out;
         const auto allowed = [&](const effect* e) {
-            return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end();
+            return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
+                   !(e->rotary_only && axis_.kind == axis_kind::linear);
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
         std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
@@ -142,22 +142,43 @@ public:
         return position_noise(innovation, record_.score, record_.resolution);
     }
 
-    /// Structure that a model leaves: log-score of the blocks above twice the rms of noise and half a count. Below
-    /// rules.structure the model is at the floor.
-    double structure(const candidate& c, double sigma) const {
-        return structure(c.fit.ms, c.fit.ms_mean, sigma, record_.score);
+    /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it sees of noise and
+    /// half a count.
+    double structure(const std::vector<double>& ms, const channel& c, double sigma) const {
+        const double limit = 4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
+        double sum = 0;
+        for (double block : ms) sum += 0.5 * c.nu * std::max(0.0, std::log(block / limit));
+        return sum;
     }
-    double structure(const std::vector<double>& ms, const std::vector<double>& ms_mean, double sigma,
-                     const scoring& score) const {
-        const auto over = [&](const std::vector<double>& blocks, double noise2, double nu) {
-            double sum = 0;
-            for (double block : blocks)
-                sum +=
-                    0.5 * nu * std::max(0.0, std::log(block / (4 * (noise2 + square(record_.resolution) / 4))));
-            return sum;
-        };
-        return over(ms, sigma * sigma, score.nu) +
-               over(ms_mean, sigma * sigma / static_cast<double>(score.mean), score.nu_mean);
+    /// In all channels: of a model that leaves noise alone it is below rules.structure.
+    double structure(const candidate& c, double sigma) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < c.fit.ms.size(); ++i)
+            sum += structure(c.fit.ms[i], record_.score.channels[i], sigma);
+        return sum;
+    }
+    /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what machines inside
+    /// the owner's tolerances leave there.
+    bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const {
+        double mean = 0;
+        for (double block : ms) mean += block / static_cast<double>(ms.size());
+        const double left = mean - square(c.noise_gain * sigma);
+        return left < square(rules_.immaterial) * tolerance_cloud()[i];
+    }
+    bool immaterial(const candidate& c) const {
+        const double sigma = noise(c);
+        for (std::size_t i = 0; i < c.fit.ms.size(); ++i)
+            if (!immaterial(c.fit.ms[i], record_.score.channels[i], sigma, i)) return false;
+        return true;
+    }
+    /// Whether every channel is at the floor: noise, or nothing that would matter. Of a model on this record or, with its
+    /// mean squares there, on another.
+    bool settled(const std::vector<std::vector<double>>& ms, const scoring& score, double sigma) const {
+        for (std::size_t i = 0; i < ms.size(); ++i)
+            if (structure(ms[i], score.channels[i], sigma) >= rules_.structure &&
+                (i >= record_.score.channels.size() || !immaterial(ms[i], score.channels[i], sigma, i)))
+                return false;
+        return true;
     }
 
     /// The residual force that noise and rounding alone leave [N].
@@ -170,32 +191,31 @@ public:
         return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
-    /// How far apart machines are that the owner calls the same: the residual force by which a machine drawn from inside
-    /// the tolerances differs from the calibrated one on this motion; 19 of 20 differ less [N]. Only what sticks out of
-    /// that cloud matters to him (gap/FORMAT.md, `tolerance`).
-    double tolerance_cloud() const {
-        const auto calibrated = residual(calibrated_);
+    /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
+    /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
+    /// [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
+    const std::vector<double>& tolerance_cloud() const {
+        if (!cloud_.empty()) return cloud_;
         std::mt19937_64 random(20080901);
-        std::vector<plant_model> others(20, calibrated_.fit.plant);
-        for (plant_model& other : others)
+        std::vector<plant_model> plants(21,
+                                        calibrated_.fit.plant); // the first is the calibrated machine itself
+        for (std::size_t j = 1; j < plants.size(); ++j)
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m") p.of(other) = p.from_fit(low + share * (high - low));
+                if (p.key != "presliding_length_m") p.of(plants[j]) = p.from_fit(low + share * (high - low));
             }
-        std::vector<double> sizes;
-        residuals(others, [&](std::size_t, std::vector<double> there) {
-            for (std::size_t k = 0; k < there.size(); ++k) there[k] -= calibrated[k];
-            sizes.push_back(rms(there));
-        });
-        return quantile(sizes, 0.95);
-    }
-
-    /// What a model leaves above the floor is small beside that cloud: nobody would call it a gap.
-    bool immaterial(const candidate& c) const {
-        const double left = square(held_out_force(c)) - square(floor_force(c));
-        if (!cloud_) cloud_ = tolerance_cloud();
-        return std::sqrt(std::max(0.0, left)) < rules_.immaterial * *cloud_;
+        std::vector<std::vector<double>> e(plants.size());
+        record_.observer.run(plants, e);
+        const auto& channels = record_.score.channels;
+        std::vector<std::vector<double>> sizes(channels.size());
+        for (std::size_t j = 1; j < e.size(); ++j) {
+            for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
+            for (std::size_t i = 0; i < channels.size(); ++i)
+                sizes[i].push_back(square(rms(detail::means(e[j], channels[i]))));
+        }
+        for (auto& of_channel : sizes) cloud_.push_back(quantile(of_channel, 0.95));
+        return cloud_;
     }
 
     /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; then takes out what
@@ -225,7 +245,7 @@ public:
             best = *paying;
         }
         // What does not take the gap of the machine file as it stands down explains nothing, however well it scores.
-        if (held_out_force(best) > (1 - rules_.least_shrink) * held_out_force(given_)) best = calibrated_;
+        if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
         std::vector<candidate> path{best};
         while (!path.back().effects.empty()) {
             const candidate& whole = path.back();
@@ -253,7 +273,13 @@ public:
     bool pays(const candidate& more, const candidate& less) const {
         const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
         if (gain < std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
-        return held_out_force(more) < (1 - rules_.least_shrink) * held_out_force(less);
+        return shrinks(more, less);
+    }
+    /// Less force is left above the noise of the reading, on held-out motion and by more than a hair.
+    bool shrinks(const candidate& more, const candidate& less) const {
+        const double floor = square(floor_force(more));
+        const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
+        return left(more) < square(1 - rules_.least_shrink) * left(less);
     }
 
     static bool has(const candidate& c, const effect* e) {
@@ -352,7 +378,7 @@ private:
     progress tell_;
     candidate given_, calibrated_;
     mutable std::deque<candidate> tried_;
-    mutable std::optional<double> cloud_; ///< found when it is asked for
+    mutable std::vector<double> cloud_{}; ///< found when it is asked for
 };
 
 } // namespace quadrant::diagnosis

@@ -15,12 +15,13 @@ namespace quadrant {
 /// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved together with
 /// the mass that it brakes.
 ///   M (v' - v)/h = drive - viscous v' - sum F_i',   F_i as in `maxwell_slip` with the level s(v) of the step's start,
-///   s(v) = level (1 + asymmetry sign v) (1 + change) + excess (1 + excess_asymmetry sign v) exp(-|v|/vs(sign v))
-/// A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found in at most
+///   s(v) = level (1 + asymmetry sign v) (1 + change) + added + excess (1 + excess_asymmetry sign v) exp(-|v|/vs(sign v))
+/// `added`, a level that a load presses onto the contact, also stiffens each spring by weight_i added / give_i. A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found in at most
 /// 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity. Velocity and spring forces are
 /// implicit, so no step adds energy and a stiff contact neither rings nor needs a small h; the level is that of the start.
 /// Source: [AlBender2005]; [Jamaludin2008] eqs. (3.6-3.8). Derivation: docs/derivations/maxwell_slip.md.
-/// Ports: the momentum p = M v + h (all other forces) [N s], velocity v and change (relative, of the level) in, v' out.
+/// Ports: the momentum p = M v + h (all other forces) [N s], velocity v, change (relative, of the level) and added >= 0 [N]
+/// in, v' out.
 /// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many contacts by one law.
 /// Range: level, excess >= 0; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at once.
 /// A spring with the weight 0 and the stiffness 0 is not there.
@@ -45,6 +46,9 @@ public:
         number viscous_asymmetry{0};     ///< -1 ... 1
         std::array<number, N> weights{}; ///< shares of the level
         std::array<gain_of<signal::force, signal::position, number>, N> stiffness{}; ///< >= 0
+        std::array<of<signal::position>, N>
+            give{}; ///< displacement at which a spring holds its share of an added level;
+                    ///< >= 0; 0: the stiffness stays
         quantity<unit_quotient<si::force, si::time>, number> attraction =
             quantity<unit_quotient<si::force, si::time>, number>::from_value(
                 number(std::numeric_limits<double>::infinity())); ///< C; > 0
@@ -67,6 +71,9 @@ public:
         for (std::size_t i = 0; i < N; ++i) {
             weight_[i] = Real(p.weights[i]);
             stiffness_[i] = in_real<Real>(p.stiffness[i]).value();
+            const Real give = in_real<Real>(p.give[i]).value();
+            const auto gives = greater(give, Real(0));
+            stiffening_[i] = select(gives, weight_[i] / select(gives, give, Real(1)), Real(0));
             if (any(greater(weight_[i], Real(0))) || any(greater(stiffness_[i], Real(0)))) springs_ = i + 1;
         }
         for (const bool forward : {false, true}) {
@@ -88,10 +95,16 @@ public:
 
     /// The velocity at the end of the step.
     Real operator()(state& s, Real momentum, Real v) const noexcept {
-        return step(s, momentum, v, [](const Real& level) { return level; });
+        return step(
+            s, momentum, v, [](const Real& level) { return level; }, none_added());
     }
     Real operator()(state& s, Real momentum, Real v, Real change) const noexcept {
-        return step(s, momentum, v, [&](const Real& level) { return level * (Real(1) + change); });
+        return step(
+            s, momentum, v, [&](const Real& level) { return level * (Real(1) + change); }, none_added());
+    }
+    Real operator()(state& s, Real momentum, Real v, Real change, Real added) const noexcept {
+        return step(
+            s, momentum, v, [&](const Real& level) { return level * (Real(1) + change) + added; }, added);
     }
 
 private:
@@ -99,6 +112,7 @@ private:
         Real level{}, excess{}, inverse_velocity{}, inertia{};
         Real slipping{}, sticking{}; ///< one over the inertia while the first spring slips, and while it sticks
     };
+    struct none_added {};
     using law = detail::spring_law<Real, Real>;
     static Real along(const auto& positive, Real force) noexcept { return select(positive, force, -force); }
 
@@ -125,10 +139,23 @@ private:
         for (std::size_t i = 0; i < N; ++i) {
             require_not_negative("slip_contact.weights", p.weights[i]);
             require_not_negative("slip_contact.stiffness", p.stiffness[i]);
+            require_not_negative("slip_contact.give", p.give[i]);
         }
         return p;
     }
-    Real step(state& s, Real momentum, Real v, const auto& changed) const noexcept {
+    Real stiffness(std::size_t i, none_added) const noexcept { return stiffness_[i]; }
+    Real stiffness(std::size_t i, const Real& added) const noexcept {
+        return stiffness_[i] + added * stiffening_[i];
+    }
+    /// One over the inertia of one side while the first spring sticks.
+    Real sticking(const auto& forward, none_added) const noexcept {
+        return select(forward, forward_.sticking, backward_.sticking);
+    }
+    Real sticking(const auto& forward, const Real& added) const noexcept {
+        return Real(1) / (select(forward, forward_.inertia, backward_.inertia) +
+                          h_ * (h_ + damping_) * stiffness(0, added));
+    }
+    Real step(state& s, Real momentum, Real v, const auto& changed, const auto& added) const noexcept {
         using std::abs, std::exp;
         const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
         Real level = changed(select(forward, forward_.level, backward_.level));
@@ -143,25 +170,26 @@ private:
             const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
             kept = exp(-select(less(by, Real(700)), by, Real(700)));
         }
-        return springs_ > 1
-                   ? several(s, momentum, level, kept, select(forward, forward_.inertia, backward_.inertia))
-                   : one(s, momentum, level, kept, forward);
+        return springs_ > 1 ? several(s, momentum, level, kept,
+                                      select(forward, forward_.inertia, backward_.inertia), added)
+                            : one(s, momentum, level, kept, forward, added);
     }
 
     /// A contact of one spring, which most guides are: all three ways, and the one that is true.
-    Real one(state& s, Real momentum, Real level, Real kept, const auto& forward) const noexcept {
+    Real one(state& s, Real momentum, Real level, Real kept, const auto& forward,
+             const auto& added) const noexcept {
         using std::abs;
         const law spring{weight_[0] * level, kept};
         const Real slipping = select(forward, forward_.slipping, backward_.slipping),
-                   sticking = select(forward, forward_.sticking, backward_.sticking);
+                   braked = sticking(forward, added);
         Real& force = s.force[0];
         const auto bent = greater_equal(force, Real(0));
         const Real on = along(bent, relaxes_ ? spring.slips_on(abs(force)) : spring.share);
         const Real v_on = (momentum - h_ * on) * slipping;
         const auto slips_on = both(s.slips[0], greater(v_on * force, Real(0)));
 
-        const Real v_stuck = (momentum - h_ * force) * sticking;
-        const Real reached = force + h_ * stiffness_[0] * v_stuck;
+        const Real v_stuck = (momentum - h_ * force) * braked;
+        const Real reached = force + h_ * stiffness(0, added) * v_stuck;
         const auto ahead = greater(v_stuck, Real(0));
         const auto rests =
             both(!slips_on, either(spring.sticks(along(ahead, reached)), equal(v_stuck, Real(0))));
@@ -174,7 +202,8 @@ private:
     }
 
     /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was wrong.
-    Real several(state& s, Real momentum, Real level, Real kept, Real inertia) const noexcept {
+    Real several(state& s, Real momentum, Real level, Real kept, Real inertia,
+                 const auto& added) const noexcept {
         using std::abs;
         std::array<Real, N> end{};                             // force of the springs that slip, at the end
         std::array<mask_of<Real>, N> slips = s.slips, fresh{}; // fresh: broke away in this step
@@ -184,12 +213,12 @@ private:
         }
         Real v(0);
         for (std::size_t round = 0; round <= 2 * springs_; ++round) {
-            Real pull(0), stiffness(0);
+            Real pull(0), stuck(0);
             for (std::size_t i = 0; i < springs_; ++i) {
                 pull = pull + select(slips[i], end[i], s.force[i]);
-                stiffness = stiffness + select(slips[i], Real(0), stiffness_[i]);
+                stuck = stuck + select(slips[i], Real(0), stiffness(i, added));
             }
-            v = (momentum - h_ * pull) / (inertia + h_ * (h_ + damping_) * stiffness);
+            v = (momentum - h_ * pull) / (inertia + h_ * (h_ + damping_) * stuck);
             const auto ahead = greater(v, Real(0)), moves = !equal(v, Real(0));
             auto changed = !equal(v, v); // none, but for NaN
             for (std::size_t i = 0; i < springs_; ++i) {
@@ -197,7 +226,7 @@ private:
                 const auto turned = both(both(slips[i], !fresh[i]), less_equal(end[i] * v, Real(0)));
                 const Real before = along(ahead, s.force[i]);
                 const auto breaks =
-                    both(both(!slips[i], moves), !spring.sticks(before + h_ * stiffness_[i] * abs(v)));
+                    both(both(!slips[i], moves), !spring.sticks(before + h_ * stiffness(i, added) * abs(v)));
                 end[i] = select(breaks, along(ahead, spring.breaks_away(before)), end[i]);
                 fresh[i] = either(fresh[i], breaks);
                 slips[i] = either(both(slips[i], !turned), breaks);
@@ -206,7 +235,7 @@ private:
             if (none(changed)) break;
         }
         for (std::size_t i = 0; i < springs_; ++i) {
-            s.force[i] = select(slips[i], end[i], s.force[i] + h_ * stiffness_[i] * v);
+            s.force[i] = select(slips[i], end[i], s.force[i] + h_ * stiffness(i, added) * v);
             s.slips[i] = slips[i];
         }
         return v;
@@ -216,7 +245,7 @@ private:
     bool relaxes_ = false, falls_ = false,
          falls_by_side_ = false; ///< a finite attraction; a level that falls with the speed
     std::size_t springs_ = 1;
-    std::array<Real, N> weight_{}, stiffness_{};
+    std::array<Real, N> weight_{}, stiffness_{}, stiffening_{};
     side forward_, backward_;
 };
 

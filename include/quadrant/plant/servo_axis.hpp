@@ -16,8 +16,10 @@ namespace quadrant {
 /// One axis with whatever sits at its joints: what simulates a machine file, and what the diagnosis fits to a log.
 ///   command       dead zone, then limit, then lag of the amplifier
 ///   motor gain    force constant (1 + ripple(x))
-///   force         constant - spring x + cogging(x) + process(t) + M coupling a_other
-///   friction      `slip_contact`: Stribeck level by direction, springs that stick and slip
+///   force         constant - spring x - gravity sin(x - gravity_phase) + cogging(x) + process(t) + M coupling a_other
+///   friction      `slip_contact`: Stribeck level by direction, springs that stick and slip; load_friction adds
+///                 load_friction |motor - (constant - spring x - gravity sin(x - gravity_phase))| to the level: what a gear
+///                 carries between the motor and the forces on its load
 ///   transmission  `sprung_mass` on the axis; play between motor and load
 ///   reading       load + cyclic(load)
 /// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints (`no_joint_laws`: nothing).
@@ -52,6 +54,7 @@ public:
         repeating ripple{};                       ///< of the force constant, relative, over position
         number constant{0};                       ///< [N]
         number spring{0};                         ///< [N/m], about position 0
+        number gravity{0}, gravity_phase{0};      ///< [N m], [rad], of an axis whose position is an angle
         number coupling{0};                       ///< of the other axis' acceleration
         repeating cogging{};                      ///< [N] over position
         repeating process{};                      ///< [N] over time
@@ -59,6 +62,7 @@ public:
         typename contact::parameters friction{};
         repeating along{};              ///< of the friction's level, relative, over position
         number drift{0}, drift_time{1}; ///< level times 1 + drift (1 - exp(-t/drift_time))
+        number load_friction{0};        ///< growth of the level with the force that the drive transmits; >= 0
         typename sprung_mass<Real>::parameters second{};
         number play{0};     ///< between motor and load [m]
         repeating cyclic{}; ///< of the reading [m] over position
@@ -95,6 +99,9 @@ public:
         out.ripple = waves([](const Single& p) -> auto& { return p.ripple; });
         out.constant = each([](const Single& p) { return p.constant; });
         out.spring = each([](const Single& p) { return p.spring; });
+        out.gravity = each([](const Single& p) { return p.gravity; });
+        out.gravity_phase = each([](const Single& p) { return p.gravity_phase; });
+        out.load_friction = each([](const Single& p) { return p.load_friction; });
         out.coupling = each([](const Single& p) { return p.coupling; });
         out.cogging = waves([](const Single& p) -> auto& { return p.cogging; });
         out.process = waves([](const Single& p) -> auto& { return p.process; });
@@ -122,6 +129,7 @@ public:
         for (std::size_t i = 0; i < springs; ++i) {
             f.weights[i] = each([&](const Single& p) { return p.friction.weights[i]; });
             typed(f.stiffness[i], [&](const Single& p) { return p.friction.stiffness[i]; });
+            typed(f.give[i], [&](const Single& p) { return p.friction.give[i]; });
         }
         if constexpr (requires { Laws(count, axis_of); }) out.laws = Laws(count, axis_of);
         return out;
@@ -178,6 +186,7 @@ public:
     servo_axis(const parameters& p, Real h, already_checked)
         : h_(h), half_(Real(0.5) * h), mass_(p.mass), force_constant_(p.force_constant),
           dead_zone_(p.dead_zone), limit_(p.limit), constant_(p.constant), spring_(p.spring),
+          gravity_(p.gravity), gravity_phase_(p.gravity_phase), load_friction_(p.load_friction),
           coupling_(p.mass * p.coupling), process_mean_(p.process_mean), process_start_(p.process_start),
           drift_(p.drift), inverse_drift_(Real(1) / p.drift_time), half_play_(Real(0.5) * p.play),
           lag_({p.lag}, h, already_checked()), ripple_(p.ripple), cogging_(p.cogging), process_(p.process),
@@ -187,6 +196,8 @@ public:
         has_dead_zone_ = any(greater(dead_zone_, Real(0)));
         has_limit_ = any(less(limit_, Real(std::numeric_limits<double>::infinity())));
         has_spring_ = !all(equal(spring_, Real(0)));
+        has_gravity_ = !all(equal(gravity_, Real(0)));
+        has_load_friction_ = !all(equal(load_friction_, Real(0)));
         has_coupling_ = !all(equal(coupling_, Real(0)));
         has_drift_ = !all(equal(drift_, Real(0)));
         has_mean_ = !all(equal(process_mean_, Real(0)));
@@ -196,10 +207,11 @@ public:
 
     /// One step under a command that is held over it.
     void advance(state& s, Real command, const surroundings& now) const noexcept {
+        using std::abs;
         const Real x = s.x + half_ * s.v, time = now.time + half_; // in the middle of the step
         const joint_point<Real> point{x, s.v, command, time, h_};
-        Real drive = motor(s, command, x, point) + constant_;
-        if (has_spring_) drive -= spring_ * x;
+        const Real push = motor(s, command, x, point), pull = load(x);
+        Real drive = push + pull;
         if (cogging_.present()) drive += cogging_(x);
         if (process_.present()) drive += process_(time + process_start_);
         if (has_mean_) drive += process_mean_;
@@ -208,8 +220,13 @@ public:
         Real momentum = inertia_ * s.v + h_ * drive;
         if (second_.present()) momentum -= second_.impulse(s.second);
         const Real before = s.v;
-        s.v = level_changes_ ? friction_(s.friction, momentum, before, change_of_level(s, time, point))
-                             : friction_(s.friction, momentum, before);
+        if (has_load_friction_)
+            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point),
+                            load_friction_ * abs(push - pull));
+        else if (level_changes_)
+            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point));
+        else
+            s.v = friction_(s.friction, momentum, before);
         if (second_.present()) second_.advance(s.second, before, s.v);
         s.x += half_ * (before + s.v);
         cross_play(s, point);
@@ -246,6 +263,9 @@ private:
         }
         require_finite("servo_axis.constant", p.constant);
         require_finite("servo_axis.spring", p.spring);
+        require_finite("servo_axis.gravity", p.gravity);
+        require_finite("servo_axis.gravity_phase", p.gravity_phase);
+        require_not_negative("servo_axis.load_friction", p.load_friction);
         require_finite("servo_axis.coupling", p.coupling);
         for (const repeating* r : {&p.ripple, &p.cogging, &p.process, &p.along, &p.cyclic}) {
             require_positive("servo_axis: a period", r->period);
@@ -295,6 +315,14 @@ private:
         if (laws_.at(joint::motor_gain)) gain = gain * (Real(1) + laws_(joint::motor_gain, point, s.laws));
         return gain * command;
     }
+    /// What acts on the load whether it moves or not [N].
+    Real load(Real x) const noexcept {
+        using std::sin;
+        Real out = constant_;
+        if (has_spring_) out -= spring_ * x;
+        if (has_gravity_) out -= gravity_ * sin(x - gravity_phase_);
+        return out;
+    }
     /// Relative change of the friction's level here and now; never below -1, a level of zero.
     Real change_of_level(state& s, Real time, const joint_point<Real>& point) const noexcept {
         using std::exp;
@@ -321,16 +349,17 @@ private:
         s.carried = !equal(s.load, before);
     }
 
-    Real h_, half_, mass_, force_constant_, dead_zone_, limit_, constant_, spring_, coupling_, process_mean_,
-        process_start_, drift_, inverse_drift_, half_play_;
+    Real h_, half_, mass_, force_constant_, dead_zone_, limit_, constant_, spring_, gravity_, gravity_phase_,
+        load_friction_, coupling_, process_mean_, process_start_, drift_, inverse_drift_, half_play_;
     amplifier_lag<Real> lag_;
     sum ripple_, cogging_, process_, along_, cyclic_;
     sprung_mass<Real> second_;
     Laws laws_;
     Real inertia_;
     contact friction_;
-    bool has_dead_zone_ = false, has_limit_ = false, has_spring_ = false, has_coupling_ = false,
-         has_drift_ = false, has_play_ = false, has_mean_ = false, level_changes_ = false;
+    bool has_dead_zone_ = false, has_limit_ = false, has_spring_ = false, has_gravity_ = false,
+         has_load_friction_ = false, has_coupling_ = false, has_drift_ = false, has_play_ = false,
+         has_mean_ = false, level_changes_ = false;
 };
 
 } // namespace quadrant

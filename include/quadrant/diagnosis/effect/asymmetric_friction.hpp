@@ -12,7 +12,7 @@ inline constexpr effect asymmetric_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "the same stroke in both directions at a slow and a fast constant speed",
-    .equivalent = "constant_force",
+    .equivalent = {"constant_force"},
     .shows = "differs by direction",
     .keys = {machine_key{.name = "viscous_asymmetry",
                          .rule = detail::rule::asymmetry,

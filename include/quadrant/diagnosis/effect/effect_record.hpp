@@ -30,10 +30,11 @@ struct effect {
         box{}; ///< of the loop; a machine file has boxes of the same names, "plant" for actuator and mechanics
     joint joins = joint::force;
     std::string_view exciting_motion{}; ///< what motion shows it
-    /// A name that is the same model on any motion as far as its other terms agree.
-    std::string_view equivalent{};
+    /// Names that may be the same model on a record: they are one group while their predictions agree.
+    std::array<std::string_view, 3> equivalent{};
     std::string_view shows{}; ///< as what it shows in the residual force
     key_list keys{};
+    bool rotary_only = false;     ///< a linear axis cannot have it: no suspect there, and its keys are refused
     const own_law* law = nullptr; ///< of an effect whose law is no part of plant_model
     /// A rule between values, beyond those of single keys; refuses what no machine can be.
     key_fault (*fault)(const axis_description&) = nullptr;
@@ -56,5 +57,13 @@ struct effect {
     /// value read.
     double by_another_law = 1;
 };
+
+/// Whether one of two effects names the other as the same model on some records.
+constexpr bool may_be_one(const effect& a, const effect& b) {
+    const auto names = [](const effect& one, const effect& other) {
+        return std::find(one.equivalent.begin(), one.equivalent.end(), other.name) != one.equivalent.end();
+    };
+    return names(a, b) || names(b, a);
+}
 
 } // namespace quadrant::diagnosis

@@ -29,7 +29,7 @@ inline std::vector<double> ringing_frequencies(const screening& s, double lowest
                 const double d = there[i][at] - here[at];
                 product += d * here[at], square += d * d;
             }
-            const double w = 1 / (ms[b] + s.record.score.floor * s.record.score.floor);
+            const double w = 1 / (ms[b] + s.record.score.floor() * s.record.score.floor());
             along -= w * product, curvature += w * square;
         }
         gain[i] = along > 0 ? along * along / curvature : 0;

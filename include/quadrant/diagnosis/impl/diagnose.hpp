@@ -170,7 +170,7 @@ inline void diagnose_axis(diagnosis_result& out, const axis_case& c) {
 
 /// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
 inline const axis_case& need_blocks(const axis_case& c, const std::string& file) {
-    if (c.record.score.segment_of_block.empty())
+    if (c.record.score.channels.front().segment_of_block.empty())
         throw bad_input(file,
                         worded("%zu samples of axis %s: a diagnosis needs at least %zu, one block to start "
                                "the observer and one to score",

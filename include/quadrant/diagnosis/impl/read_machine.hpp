@@ -71,7 +71,7 @@ private:
         for (const auto& [box, content] : axis.value->items()) {
             if (!content.is_object()) continue;
             const auto keys_of = [box = std::string_view(box), &content = content](axis_kind kind) {
-                return box == "controller" ? keys_of_controller(content, kind) : keys_of_box(box, kind);
+                return box == "controller" ? keys_of_controller(content, kind) : keys_of_box(box, kind, true);
             };
             const auto mine = keys_of(axis.kind), others = keys_of(other);
             for (const auto& [key, value] : content.items())
@@ -137,7 +137,7 @@ private:
     }
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
-        const auto names = tolerance_names();
+        const auto names = tolerance_names(node.kind);
         std::vector<std::string_view> known;
         for (const tolerance_name& t : names) known.push_back(t.name);
         refuse_unknown_keys(node.object(), known);
@@ -159,7 +159,7 @@ private:
 
     void note_what_is_assumed(const axis_description& axis) {
         std::string missing;
-        for (const tolerance_name& t : tolerance_names()) {
+        for (const tolerance_name& t : tolerance_names(axis.kind)) {
             const auto described = numbers_of(axis, *t.key, *t.of);
             if (!described.empty() && described[0] != 0 && !axis.tolerance.given.contains(std::string(t.name)))
                 missing += (missing.empty() ? "" : ", ") + key_of(t.name, axis.kind);

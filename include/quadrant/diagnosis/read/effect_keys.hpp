@@ -21,24 +21,27 @@ inline std::vector<std::string_view> boxes_of_effects() {
     return out;
 }
 
-/// Names under `tolerance`, each with the key that it is the tolerance of and that key's effect.
+/// Names under `tolerance` of an axis of this kind, each with the key that it is the tolerance of and that key's effect.
 struct tolerance_name {
     std::string_view name;
     const machine_key* key;
     const effect* of;
 };
-inline std::vector<tolerance_name> tolerance_names() {
+inline std::vector<tolerance_name> tolerance_names(axis_kind kind) {
     std::vector<tolerance_name> out;
     for (const effect* e : every_effect())
         for (const machine_key& k : e->keys)
-            if (k.tolerance) out.push_back({k.tolerance_name(), &k, e});
+            if (k.tolerance && !(e->rotary_only && kind == axis_kind::linear))
+                out.push_back({k.tolerance_name(), &k, e});
     return out;
 }
 
-/// The keys of effects in one box of an axis, as a file of this kind of axis has them.
-inline std::vector<std::string> effect_keys(std::string_view box, axis_kind kind) {
+/// The keys of effects in one box of an axis, as a file of this kind of axis has them. `all`: also those that
+/// only a rotary axis has, so that the lists of both kinds are of one order.
+inline std::vector<std::string> effect_keys(std::string_view box, axis_kind kind, bool all = false) {
     std::vector<std::string> out;
-    for_each_key(box, [&](const machine_key& k, const effect&) {
+    for_each_key(box, [&](const machine_key& k, const effect& e) {
+        if (e.rotary_only && kind == axis_kind::linear && !all) return;
         const std::string key = k.key_for(kind);
         if (k.unit_of_command)
             for (char unit : command_units) out.push_back(key.substr(0, key.size() - 1) + unit);
@@ -72,6 +75,7 @@ public:
     /// `others`: keys of this box that belong to no effect.
     void read(key_names others) {
         each([&](const machine_key& k, const effect&) { rename_former(k, node_, content_, note_); });
+        each([&](const machine_key& k, const effect& e) { refuse_rotary(k, e); });
         refuse_unknown(others);
         each([&](const machine_key& k, const effect& e) { read_one(k, e); });
         each([&](const machine_key& k, const effect& e) { check_company(k, e); });
@@ -89,6 +93,12 @@ private:
     }
     std::optional<json_node> find(const machine_key& k) const { return at(k.key_for(node_.kind)); }
 
+    void refuse_rotary(const machine_key& k, const effect& e) const {
+        if (!e.rotary_only || node_.kind == axis_kind::rotary) return;
+        if (const auto given = find(k))
+            given->refuse(fmt::format("only a rotary axis has {}; this one is linear, without {}",
+                                      std::string(e.label), key_of("mass_kg", axis_kind::rotary)));
+    }
     void refuse_unknown(key_names others) const {
         std::vector<std::string> known = effect_keys(box_, node_.kind);
         for (const std::string_view key : others) known.push_back(node_.name(key));

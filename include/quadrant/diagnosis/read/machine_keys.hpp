@@ -20,15 +20,16 @@ inline constexpr std::array<std::string_view, 2> axis_other_keys{"tolerance", "c
 inline constexpr std::array<std::string_view, 4> machine_file_keys{"schema", "sample_period_s",
                                                                    "excluded_effects", "axes"};
 
-/// The keys of one box of an axis, by their names on an axis of this kind.
-inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind) {
-    std::vector<std::string> out = effect_keys(box, kind);
+/// The keys of one box of an axis, by their names on an axis of this kind; `all` as in effect_keys().
+inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind, bool all = false) {
+    std::vector<std::string> out = effect_keys(box, kind, all);
     const auto add = [&](const auto& names) {
         for (const std::string_view name : names) out.push_back(key_of(name, kind));
     };
     if (box == "actuator") add(actuator_other_keys);
     if (box == "tolerance")
-        for (const tolerance_name& t : tolerance_names()) out.push_back(key_of(t.name, kind));
+        for (const tolerance_name& t : tolerance_names(all ? axis_kind::rotary : kind))
+            out.push_back(key_of(t.name, kind));
     return out;
 }
 
