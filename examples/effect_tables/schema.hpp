@@ -55,7 +55,7 @@ inline ordered_json box(std::string_view name, axis_kind kind) {
             properties[key] = one_key(k);
         if (k.required) needed.push_back(key);
         for (const std::string_view other : k.needs)
-            if (!other.empty()) together[key].push_back(key_of(other, kind));
+            if (!other.empty()) together[key].push_back(key_in_box(name, other, kind));
         if (!k.entries_of.empty() && !together.contains(key)) together[key] = {key_of(k.entries_of, kind)};
     });
     add_others(name, properties, together);

@@ -11,7 +11,7 @@
 
 #include "quadrant/diagnosis/effect_list.hpp"
 #include "quadrant/diagnosis/result.hpp"
-#include "quadrant/diagnosis/rules.hpp"
+#include "quadrant/diagnosis/scoring.hpp"
 
 /// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
 namespace quadrant_gap {
@@ -285,7 +285,7 @@ inline std::string verdict_sentence(const diagnosis_result& d) {
 
 inline std::string experiment_gain(const experiment& e) {
     if (e.expected_gain <= 0) return "";
-    const double score = e.expected_gain / rules().temperature; // as the probabilities are weighed
+    const double score = e.expected_gain / score_temperature; // as the probabilities are weighed
     return fmt::format("Expected to separate them by a log-score of {} or more, odds of {} to 1.",
                        number(e.expected_gain), score > 7 ? "more than 1000" : number(std::exp(score)));
 }

@@ -230,6 +230,7 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     };
     for (const effect* e : every_effect())
         for (const machine_key& key : e->keys) {
+            if (e->rotary_only) continue;
             auto& box = x[std::string(key.box())];
             if (key.unit_of_command) continue;
             if (key.shape == key_shape::number)
@@ -239,8 +240,10 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
         }
     for (const auto& key : detail::actuator_keys) fill(x["actuator"], key.name, next += 0.001);
     for (const auto& key : controllers::cascade_p_pi.keys)
-        if (!key.in_box() && key.form == key_form::number) fill(x["controller"], std::string(key.name), next += 0.001);
-    for (const auto& t : detail::tolerance_names()) x["tolerance"][std::string(t.name)] = next += 0.001;
+        if (!key.in_box() && key.form == key_form::number)
+            fill(x["controller"], std::string(key.name), next += 0.001);
+    for (const auto& t : detail::tolerance_names(axis_kind::linear))
+        x["tolerance"][std::string(t.name)] = next += 0.001;
     x["actuator"]["dac_bits"] = 16;
     x["controller"]["velocity_estimator"] = "two_sample_mean";
     const auto machine = read_machine(all.dump(), "m.json");
@@ -259,7 +262,18 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     }
     auto turning = machine; // the same numbers as rotary axes
     for (auto& axis : turning.axes) axis.kind = axis_kind::rotary;
-    const auto rotary = to_json(turning);
+    auto rotary = to_json(turning);
+    auto& arm = rotary["axes"]["x"]; // and what only these have
+    arm["plant"].update({{"gravity_torque_Nm", 30}, {"gravity_phase_rad", 0.1}});
+    arm["payload"] = {{"mass_kg", 5}, {"arm_m", 0.5}, {"link_mass_kg", 1}};
+    arm["tolerance"]["gravity_torque"] = 0.1;
+    for (const effect* e : every_effect())
+        for (const machine_key& key : e->keys)
+            if (e->rotary_only) CHECK(arm[std::string(key.box())].contains(key.key()));
+    rotary = to_json(read_machine(rotary.dump(), "c.json"));
+    CHECK(rotary["axes"]["x"]["payload"] ==
+          nlohmann::json{{"mass_kg", 5}, {"arm_m", 0.5}, {"link_mass_kg", 1}});
+    CHECK(rotary["axes"]["x"]["tolerance"]["gravity_torque"] == 0.1);
     CHECK(to_json(read_machine(rotary.dump(), "c.json")) == rotary);
     CHECK(rotary["axes"]["x"]["plant"]["gms_stiffness_Nm_per_rad"].dump() == "[0.25,0.75]");
     CHECK(rotary["axes"]["x"]["controller"].contains("acceleration_feedforward_V_s2_per_rad"));

@@ -55,6 +55,7 @@ const std::map<std::string, neutral_place>& places() {
           1e-9,
           {{"plant.friction_position_amplitude", 0.2}, {"plant.friction_position_period_m", 0.07}},
           false}},
+        {"plant.load_friction", {0, 1e-10}},
         {"plant.friction_drift", {0, 1e-10, {{"plant.friction_drift_time_s", 3}}}},
         {"plant.mode_mass_kg", {nullptr, 20e-9, {{"plant.mode_frequency_Hz", 70}}}},
         {"plant.backlash_m", {0, 1e-12}},

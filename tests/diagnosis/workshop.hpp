@@ -37,6 +37,8 @@ struct machine {
     double coupling = 0;                                                ///< of `other_acceleration`
     std::function<double(double)> other_acceleration = [](double) { return 0.0; };
     std::function<double(double, double, double)> stranger; ///< a force over position, velocity and time [N]
+    /// Growth of the friction's level [N], from the motor's force and the constant forces on its load.
+    std::function<double(double, double)> more_level;
     double bristle = 2e-7;
     double noise = 8e-8; ///< of the encoder, white [m]
     controller control;
@@ -142,22 +144,23 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
             lagged = m.lag > 0 ? acting + (lagged - acting) * std::exp(-h / m.lag) : acting;
             const double side = v > 0 ? 1 : v < 0 ? -1 : 0;
             const double now = static_cast<double>(k) * period;
+            const double motor = m.force_constant *
+                                 (1 + m.ripple * std::sin(2 * std::numbers::pi * x / m.ripple_period)) * lagged;
             const double level =
                 m.coulomb *
                     (1 + m.friction_along * std::sin(2 * std::numbers::pi * x / m.friction_along_period)) *
                     (1 + m.friction_drift * (1 - std::exp(-now / m.friction_drift_time))) +
-                m.excess * std::exp(-std::abs(v) / m.stribeck_velocity);
+                m.excess * std::exp(-std::abs(v) / m.stribeck_velocity) +
+                (m.more_level ? m.more_level(motor, m.constant_force - m.spring * x) : 0);
             double friction = m.viscous * (1 + m.viscous_asymmetry * side) * v;
-            if (m.coulomb + m.excess > 0) { // LuGre, the bristle's exact exponential step
+            if (level > 0) { // LuGre, the bristle's exact exponential step
                 const double stiffness = level / m.bristle, before = z;
                 z = side * m.bristle + (z - side * m.bristle) * std::exp(-std::abs(v) * h / m.bristle);
                 friction += stiffness * z + 0.7 * std::sqrt(stiffness * m.mass) * (z - before) / h;
             }
             const double angle = 2 * std::numbers::pi * x / m.cogging_period;
-            double force = m.force_constant *
-                               (1 + m.ripple * std::sin(2 * std::numbers::pi * x / m.ripple_period)) * lagged -
-                           friction + m.constant_force - m.spring * x + m.cogging * std::sin(angle + 0.7) +
-                           m.cogging_second * std::sin(2 * angle) +
+            double force = motor - friction + m.constant_force - m.spring * x +
+                           m.cogging * std::sin(angle + 0.7) + m.cogging_second * std::sin(2 * angle) +
                            m.mass * m.coupling * m.other_acceleration(now);
             const double turn = 2 * std::numbers::pi * m.cutting_frequency * now;
             force += m.cutting * (std::sin(turn + 0.4) + m.cutting_second * std::sin(2 * turn));

@@ -32,6 +32,7 @@ inline double* number_in(axis_truth& a, std::string_view key) {
         {"friction_position_period_m", &a.friction.along.period},
         {"friction_drift", &a.friction.drift},
         {"friction_drift_time_s", &a.friction.drift_time},
+        {"load_friction", &a.friction.load},
         {"mode_mass_kg", &a.mechanics.mode_mass},
         {"mode_frequency_Hz", &a.mechanics.mode_frequency},
         {"mode_damping", &a.mechanics.mode_damping},

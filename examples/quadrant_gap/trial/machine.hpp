@@ -26,6 +26,7 @@ struct friction_truth {
     double viscous = 0, viscous_asymmetry = 0, coulomb_asymmetry = 0;
     wave along{};                     ///< relative, of the Coulomb level
     double drift = 0, drift_time = 5; ///< relative, of the Coulomb level
+    double load = 0;                  ///< growth of the level with the transmitted force
     contact_law law = contact_law::lugre;
     double length = 3e-7;                  ///< deflection at 63 % of the level, loaded for the first time
     double exponent = 1;                   ///< of Dahl

@@ -37,7 +37,7 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
         {"mass", "force_constant"},
         {"time_delay", "actuator_lag"},
         {"coulomb_friction", "stribeck_friction", "presliding_friction", "asymmetric_friction",
-         "position_dependent_friction", "friction_drift"},
+         "position_dependent_friction", "friction_drift", "load_friction"},
         {"constant_force", "asymmetric_friction", "position_spring"},
         {"cogging", "force_ripple", "encoder_cyclic_error", "position_dependent_friction"}};
     for (const auto& f : families)

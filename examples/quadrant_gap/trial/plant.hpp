@@ -117,9 +117,12 @@ public:
         const double carrier = m.mass - m.mode_mass;
         x_ += h / 2 * v_;
         second_ += h / 2 * second_v_;
-        double force = motor + m.constant_force - m.spring * x_ + at(m.cogging, x_) + unknown_(x_, t) +
+        const double load = m.constant_force - m.spring * x_;
+        double force = motor + load + at(m.cogging, x_) + unknown_(x_, t) +
                        carrier * m.coupling * other_acceleration - viscous_force(a_.friction, v_) -
-                       friction_(v_, h, (1 + more_friction) * slip_level(a_.friction, x_, v_, t));
+                       friction_(v_, h,
+                                 (1 + more_friction) * slip_level(a_.friction, x_, v_, t) +
+                                     a_.friction.load * std::abs(motor - load));
         if (a_.process.fundamental > 0) {
             force += a_.process.mean;
             for (std::size_t i = 0; i < a_.process.size.size(); ++i)

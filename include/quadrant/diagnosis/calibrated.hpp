@@ -16,7 +16,7 @@ inline constexpr effect described_values{
     .starts = nullptr,
     .read = [](const plant_model& p) -> std::vector<key_value> {
         const auto& f = p.friction;
-        std::vector<key_value> out{{"mass_kg", {p.mass}},
+        std::vector<key_value> out{{"mass_kg", {p.moving_mass()}},
                                    {"force_constant_N_per_V", {p.force_constant}},
                                    {"viscous_N_s_per_m", {f.viscous_slope}},
                                    {"delay_s", {p.delay}},
@@ -25,6 +25,11 @@ inline constexpr effect described_values{
             out.push_back({"static_N", {f.coulomb + f.excess}});
             out.push_back({"stribeck_velocity_m_per_s", {f.stribeck_velocity}});
         }
+        plant_model model = p;
+        for (const effect* e : every_effect())
+            for (const machine_key& key : e->keys)
+                if (key.of && key.tolerance && key.of(model) != key.neutral)
+                    out.push_back({std::string(key.name), {key.of(model)}});
         if (f.coulomb + f.excess > 0 && f.contact.elements == 1) {
             out.push_back({"gms_weights", {1}});
             out.push_back({"gms_stiffness_N_per_m", {(f.coulomb + f.excess) / f.contact.lengths()[0]}});

@@ -14,8 +14,8 @@ struct candidate {
     std::vector<const effect*> effects;
     fit_result fit{};
     std::vector<double> held_out{}; ///< predictive score by motion segment; larger is better
-    double penalty =
-        0; ///< for flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices
+    /// For flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices; and for what is rare.
+    double penalty = 0;
     double total = 0;                     ///< their sum without the penalty
     std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
     Eigen::MatrixXd curvature{};          ///< of the score, without what the owner knows
@@ -45,6 +45,13 @@ inline double flexibility(const fit_result& f) {
                                     [](const parameter& p) { return !(p.spread > 0); });
     return 0.5 * static_cast<double>(free) *
            std::log(static_cast<double>(std::max<std::size_t>(2, f.ms.empty() ? 0 : f.ms.front().size())));
+}
+
+/// What rare effects must bring before they stand beside common ones: their prior odds, as a score.
+inline double rarity(const std::vector<const effect*>& effects) {
+    double sum = 0;
+    for (const effect* e : effects) sum -= score_temperature * std::log(e->prior.odds);
+    return sum;
 }
 
 } // namespace detail
@@ -93,7 +100,7 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
                 0.5 * view.nu * std::log(blocks[b].at(step[fold_of(segment)]) + view.floor * view.floor);
         }
     });
-    c.penalty = detail::flexibility(c.fit) + c.fit.choices;
+    c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
     c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }

@@ -37,7 +37,7 @@ inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
         }
         const double top = *std::max_element(score.begin(), score.end());
         double sum = 0;
-        for (double& v : score) sum += v = std::exp((v - top) / c.limits.temperature);
+        for (double& v : score) sum += v = std::exp((v - top) / score_temperature);
         for (std::size_t j = 0; j < rivals.size(); ++j)
             rivals[j].weight += score[j] / sum / static_cast<double>(draws.size());
     }
@@ -97,8 +97,10 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
         const bool equivalent = may_be_one(*r.name, *own) && excess() < alike * energy;
-        if (within) r.weight = std::max(r.weight, std::exp(-excess() / unexplained) * out.front().weight);
-        if (equivalent) r.weight = std::max(r.weight, 0.5 * out.front().weight);
+        const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
+        if (within)
+            r.weight = std::max(r.weight, odds * std::exp(-excess() / unexplained) * out.front().weight);
+        if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
         sum += r.weight;
     }
@@ -119,22 +121,40 @@ inline double left_beside(const axis_case& c, std::size_t which) {
     return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
 
-/// The probability that the cause is none of the suspects. At the noise nothing is left that could speak for it. While
-/// structure is left, be it too small to matter to the owner, whatever leaves it may also be what the name stands in for: as
-/// probable as what is left is large beside what the name explained. So on the hold-out log, beside what the name explains there or
-/// here (the motion there may not show it), and a name that makes that one worse was not the cause there.
+/// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the
+/// noise nothing is left that could speak for it. While structure is left, the whole may be of a shape that no name has,
+/// and the name its nearest. One law takes at least this share of a shape drawn at random among `shapes` independent
+/// ones with the probability (1 - share)^((shapes - 1)/2); as many laws were tried as there are names.
+inline double by_chance(double left) {
+    constexpr double shapes = 13; // a jump, a slope and a bend in velocity, position, time and command, and a mean
+    const double share = 1 / (1 + square(left));
+    const double names = static_cast<double>(plant_effects.size());
+    return std::min(0.03 + names * std::pow(1 - share, (shapes - 1) / 2), 0.95);
+}
+
+/// The probability that the cause is none of the suspects: on the log, and on the hold-out log, beside what the name
+/// explains there or here (the motion there may not show it); a name that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    double out = std::min(0.03 + left_beside(c, which), 0.95);
+    double out = by_chance(left_beside(c, which));
     if (!c.second) return out;
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
     if (!c.settled_on_second) {
         const double explained = std::max(explained_by(c, which), between(before.force, after.force));
-        out = std::clamp(between(after.force, c.floor_force()) / explained, out, 0.95);
+        out = std::max(out, by_chance(between(after.force, c.floor_force()) / explained));
     }
-    const double gain = std::clamp((after.score - before.score) / c.limits.temperature, -50.0, 0.0);
+    const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
+}
+
+/// The probability of the models that have the cause or one of its other names, against the best one tried that has
+/// none of them: two common effects may do what a rare one does.
+inline double against_others(const axis_case& c, const std::vector<rival>& names) {
+    std::vector<const effect*> same;
+    for (const rival& r : names)
+        if (r.same || &r == &names.front()) same.push_back(r.name);
+    return 1 / (1 + std::exp((c.models.best_without(same) - c.best().total) / score_temperature));
 }
 
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even ones alone repeat
@@ -236,7 +256,7 @@ inline std::vector<cause> plant_causes(const axis_case& c,
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke for it (docs/trial.md).
         constexpr double least = 0.08;
-        const double known = 1 - detail::unknown(c, i);
+        const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
         out.push_back(std::move(named));

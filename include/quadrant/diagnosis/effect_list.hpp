@@ -3,6 +3,8 @@
 #include "effect/effect_record.hpp"
 #include "separate_compilation.hpp"
 
+#include <fmt/format.h>
+
 #include <span>
 
 namespace quadrant::diagnosis {
@@ -39,6 +41,12 @@ inline const machine_key* key_named(std::string_view name) {
         for (const machine_key& k : e->keys)
             if (k.name == name || k.name_for(axis_kind::rotary) == name) return &k;
     return nullptr;
+}
+
+/// A key that a record names without its box, as an axis of this kind has it.
+inline std::string key_in_box(std::string_view box, std::string_view key, axis_kind kind) {
+    const machine_key* known = key_named(box == "plant" ? std::string(key) : fmt::format("{}.{}", box, key));
+    return known ? known->key_for(kind) : key_of(key, kind);
 }
 
 /// A law that a machine file can name: one of an effect of the list.

@@ -3,6 +3,7 @@
 #include "effect/actuator_dead_zone.hpp"
 #include "effect/actuator_lag.hpp"
 #include "effect/actuator_saturation.hpp"
+#include "effect/arm_length.hpp"
 #include "effect/asymmetric_friction.hpp"
 #include "effect/backlash.hpp"
 #include "effect/cogging.hpp"
@@ -17,7 +18,9 @@
 #include "effect/force_ripple.hpp"
 #include "effect/friction_drift.hpp"
 #include "effect/gravity.hpp"
+#include "effect/load_friction.hpp"
 #include "effect/mass.hpp"
+#include "effect/payload_mass.hpp"
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
 #include "effect/presliding_friction.hpp"
@@ -42,12 +45,15 @@ inline constexpr std::array listed_effects{
     &suspect::asymmetric_friction,
     &suspect::position_dependent_friction,
     &suspect::friction_drift,
+    &suspect::load_friction,
     &suspect::mass,
     &suspect::structural_resonance,
     &suspect::backlash,
     &suspect::constant_force,
     &suspect::position_spring,
     &suspect::gravity,
+    &suspect::payload_mass,
+    &suspect::arm_length,
     &suspect::quadratic_drag,
     &suspect::cross_coupling,
     &suspect::cogging,

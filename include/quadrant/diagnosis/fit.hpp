@@ -47,7 +47,7 @@ struct fit_result {
     Eigen::VectorXd x{}; ///< fit coordinates
     std::vector<double> innovation{};
     std::vector<std::vector<double>> ms{}; ///< by channel and block
-    double choices = 0; ///< score that the model took from the log itself, see predictor::run
+    double choices = 0;                    ///< score that the model took from the log itself, see predictor::run
     std::vector<std::vector<block_quadratic>> quadratic{}; ///< by channel and block
     double objective = std::numeric_limits<double>::infinity();
 };
@@ -114,7 +114,7 @@ public:
         r.ms.clear();
         for (const channel& c : scoring_.channels) {
             independent += c.nu / static_cast<double>(c.block);
-            r.ms.push_back(detail::block_ms(detail::means(r.innovation, c), 0, c.block / c.mean));
+            r.ms.push_back(detail::block_ms(r.innovation, c));
         }
         r.choices = choices * independent;
         r.objective = score_ms(r.ms) + prior(r) + r.choices;
@@ -189,9 +189,9 @@ private:
                 continue;
             }
             std::vector<std::vector<double>> slow;
-            for (const auto* x : d) slow.push_back(detail::means(*x, c));
+            for (const auto* x : d) slow.push_back(detail::seen(*x, c));
             const std::size_t means = c.block / c.mean;
-            quadratics(r.quadratic[i], detail::means(r.innovation, c), pointers(slow), means, curvature,
+            quadratics(r.quadratic[i], detail::seen(r.innovation, c), pointers(slow), means, curvature,
                        [&](std::size_t b) { return b * means; });
         }
     }

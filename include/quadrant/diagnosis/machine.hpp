@@ -48,6 +48,11 @@ struct plant_description {
     std::optional<double> load_friction; ///< growth of the Coulomb level with the transmitted force
 };
 
+/// A load on an arm that a rotary axis turns: which part of the inertia and of the gravity torque it makes.
+struct payload_description {
+    std::optional<double> mass_kg, arm_m, link_mass_kg;
+};
+
 /// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb", "static", ...).
 struct tolerance_description {
     std::map<std::string, double> given;
@@ -92,6 +97,7 @@ struct axis_description {
     encoder_description encoder;
     actuator_description actuator;
     process_description process;
+    payload_description payload{};
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
     axis_kind kind = axis_kind::linear;

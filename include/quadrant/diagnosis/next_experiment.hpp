@@ -135,7 +135,7 @@ inline experiment simulated_experiment(const axis_case& c, const std::vector<con
         out.period_s = period;
         out.reference = motions[motion].reference;
     };
-    if (best.gain >= c.limits.temperature) { // better than odds of e to 1
+    if (best.gain >= score_temperature) { // better than odds of e to 1
         out.expected_gain = best.gain;
         take(best.motion);
         out.finding = "simulated beforehand, each name as the truth and the others fitted again: the best of " +

@@ -10,11 +10,10 @@ namespace quadrant::diagnosis {
 /// as they are. `motions`: how many the record holds.
 inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     motions = r.segments;
-    const std::size_t blocks = r.score.channels.front().segment_of_block.size(),
-                      pieces = std::min(folds, blocks);
+    const auto& first = r.score.channels.front().first_of_block;
+    const std::size_t blocks = first.size(), pieces = std::min(folds, blocks);
     if (r.segments > 1 || blocks < 2) return r;
     const auto piece_of = [&](std::size_t block) { return std::min(block, blocks - 1) * pieces / blocks; };
-    const auto& first = r.score.channels.front().first_of_block;
     for (std::size_t k = 0, b = 0; k < r.segment.size(); ++k) {
         while (b + 1 < blocks && k >= first[b + 1]) ++b;
         r.segment[k] = piece_of(b);

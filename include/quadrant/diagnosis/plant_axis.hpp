@@ -91,7 +91,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     const auto typed = []<class Quantity>(Quantity& to, double value) { to = Quantity::from_value(value); };
 
     plant_axis::parameters out;
-    out.mass = p.mass;
+    out.mass = p.moving_mass();
     out.force_constant = p.force_constant;
     out.dead_zone = p.dead_zone;
     out.limit = p.drive_limit;
@@ -99,7 +99,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     out.ripple = repeating(p.ripple);
     out.constant = p.constant_force;
     out.spring = p.spring;
-    out.gravity = p.gravity.torque;
+    out.gravity = p.weight();
     out.gravity_phase = p.gravity.phase;
     out.load_friction = p.friction.load;
     out.coupling = p.coupling;

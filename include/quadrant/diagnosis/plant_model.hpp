@@ -8,6 +8,15 @@
 
 namespace quadrant::diagnosis {
 
+/// A point mass at the end of a slender link, which turns about the other end.
+struct arm_load {
+    double mass = 0, arm = 0, link_mass = 0; ///< [kg], [m], [kg]
+
+    double inertia() const { return (mass + link_mass / 3) * arm * arm; } ///< [kg m^2]
+    /// Torque of its weight when the arm is level [N m].
+    double gravity() const { return (mass + link_mass / 2) * 9.80665 * arm; }
+};
+
 /// The plant that the diagnosis simulates: the described machine plus whatever the effects under trial join to it.
 /// Boxes in the order of the loop; every member is neutral when its effect is absent. SI numbers.
 struct plant_model {
@@ -48,9 +57,12 @@ struct plant_model {
     struct gravity_box {
         double torque = 0, phase = 0; ///< [N m], [rad]
     } gravity;
-    double coupling = 0; ///< of the other axis' acceleration
-    harmonics cogging;   ///< [N] over position
-    own_laws own;        ///< laws of effects that have no member here
+    /// The load on the arm, and that which `mass` and `gravity.torque` hold already.
+    arm_load payload, payload_as_described;
+    bool turns_level = true; ///< no gravity is described: the payload turns in a level plane
+    double coupling = 0;     ///< of the other axis' acceleration
+    harmonics cogging;       ///< [N] over position
+    own_laws own;            ///< laws of effects that have no member here
     /// A second mass on a spring, not seen by the encoder.
     struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
@@ -62,6 +74,20 @@ struct plant_model {
     double cutting_start = 0; ///< time of the process at the first row [s]
     // sensor
     harmonics cyclic; ///< [m] over position
+
+    /// All that moves, with the payload as it is [kg]; the rotor has a hundredth of the inertia at least.
+    double moving_mass() const {
+        return std::max(mass + payload.inertia() - payload_as_described.inertia(), 0.01 * mass);
+    }
+    /// Largest torque of gravity, with the payload as it is [N m].
+    double weight() const {
+        return turns_level ? gravity.torque
+                           : std::max(gravity.torque + payload.gravity() - payload_as_described.gravity(), 0.0);
+    }
+    /// What acts on the load at a position whether the axis moves or not [N].
+    double static_force(double position) const {
+        return constant_force - spring * position - weight() * std::sin(position - gravity.phase);
+    }
 
     plant_model() = default;
     /// `give`: of a contact that is not described, record_scales::give() [m].
@@ -105,6 +131,9 @@ struct plant_model {
         constant_force = d.constant_force_N.value_or(0);
         spring = d.spring_N_per_m.value_or(0);
         gravity = {d.gravity_torque_Nm.value_or(0), d.gravity_phase_rad.value_or(0)};
+        turns_level = !d.gravity_torque_Nm;
+        payload = payload_as_described = {a.payload.mass_kg.value_or(0), a.payload.arm_m.value_or(0),
+                                          a.payload.link_mass_kg.value_or(0)};
         friction.load = d.load_friction.value_or(0);
         coupling = d.coupling.value_or(0);
         cogging = {d.cogging_period_m.value_or(0), d.cogging_N, d.cogging_phase_rad};

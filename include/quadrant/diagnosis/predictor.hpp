@@ -85,7 +85,7 @@ private:
         const double to_position = l1(), to_velocity = l2();
         const double late =
             std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
-        const double per_volt = plant.force_constant / plant.mass;
+        const double per_volt = plant.force_constant / plant.moving_mass();
         std::vector<double> out;
         double x = 0, v = 0;
         const auto rows = static_cast<std::size_t>(6 / (2 * std::numbers::pi * corner_Hz * period)) + 2;

@@ -34,10 +34,7 @@ public:
         log.name = axis_.name;
         log.reference = m.reference;
         const double start = m.reference[0];
-        const double held =
-            (plant.spring * start + plant.gravity.torque * std::sin(start - plant.gravity.phase) -
-             plant.constant_force - plant.cutting_mean) /
-            plant.force_constant;
+        const double held = -(plant.static_force(start) + plant.cutting_mean) / plant.force_constant;
         log.position.assign(m.reference.size(), start);
         log.command.assign(m.reference.size(), held);
         auto run =

@@ -82,8 +82,7 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     std::vector<double> half_difference(innovation.size());
     for (std::size_t k = 1; k < half_difference.size(); ++k)
         half_difference[k] = (innovation[k] - innovation[k - 1]) * std::numbers::sqrt2 / 2;
-    const channel& all = s.channels.front();
-    const auto ms = detail::block_ms(detail::means(half_difference, all), 0, all.block);
+    const auto ms = detail::block_ms(half_difference, s.channels.front());
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
@@ -127,6 +126,23 @@ inline gap_rows long_gaps(std::span<const unsigned char> left_out, double respon
     return out;
 }
 
+/// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not judged.
+inline std::vector<std::size_t> lay_blocks(std::size_t block, std::size_t skip,
+                                           const std::vector<unsigned char>& settling, std::size_t rows) {
+    std::vector<std::size_t> out;
+    for (std::size_t first = skip; first + block <= rows;) {
+        std::size_t clear = first + block;
+        while (!settling.empty() && clear > first && !settling[clear - 1]) --clear;
+        if (!settling.empty() && clear > first) {
+            first = clear; // behind the last row of it that is not judged
+            continue;
+        }
+        out.push_back(first);
+        first += block;
+    }
+    return out;
+}
+
 /// These rows and their neighbours: a second difference reaches over one row on each side.
 inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows) {
     std::vector<unsigned char> out = rows;
@@ -161,8 +177,10 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     const auto mean =
         std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
     s.block = s.skip = 5 * mean;
-    const gap_rows gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
-    s.channels = detail::channels_of(mean, s.skip, r.resolution, r.observer.pole(), r.segment, gaps.settling);
+    const auto gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
+    s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
+        return lay_blocks(block, s.skip, gaps.settling, log.position.size());
+    });
     r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;

@@ -21,7 +21,8 @@ public:
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
         fit.evaluate(given_.fit);
-        given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
+        given_.total =
+            -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
@@ -145,7 +146,8 @@ public:
     /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it sees of noise and
     /// half a count.
     double structure(const std::vector<double>& ms, const channel& c, double sigma) const {
-        const double limit = 4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
+        const double limit =
+            4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
         double sum = 0;
         for (double block : ms) sum += 0.5 * c.nu * std::max(0.0, std::log(block / limit));
         return sum;
@@ -197,8 +199,7 @@ public:
     const std::vector<double>& tolerance_cloud() const {
         if (!cloud_.empty()) return cloud_;
         std::mt19937_64 random(20080901);
-        std::vector<plant_model> plants(21,
-                                        calibrated_.fit.plant); // the first is the calibrated machine itself
+        std::vector<plant_model> plants(21, calibrated_.fit.plant); // the first is the calibrated machine itself
         for (std::size_t j = 1; j < plants.size(); ++j)
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
@@ -212,40 +213,60 @@ public:
         for (std::size_t j = 1; j < e.size(); ++j) {
             for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
             for (std::size_t i = 0; i < channels.size(); ++i)
-                sizes[i].push_back(square(rms(detail::means(e[j], channels[i]))));
+                sizes[i].push_back(square(rms(detail::seen(e[j], channels[i]))));
         }
         for (auto& of_channel : sizes) cloud_.push_back(quantile(of_channel, 0.95));
         return cloud_;
     }
 
-    /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; then takes out what
-    /// is no longer needed. Returns the calibrated machine and the models with one cause more each, the cause that
-    /// matters most first.
+    /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; where no single effect
+    /// pays and something is left, two at once. Returns the calibrated machine and the models with one cause more each.
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
         while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
                (best.effects.empty() || !immaterial(best))) {
             std::vector<candidate> next;
-            for (const candidate& from : beam)
-                for (auto& c : with_each(from))
+            const auto add = [&](std::vector<candidate> some) {
+                for (candidate& c : some)
                     if (std::none_of(next.begin(), next.end(), [&](const auto& n) { return same(n, c); }))
                         next.push_back(std::move(c));
-            std::stable_sort(next.begin(), next.end(),
-                             [](const auto& a, const auto& b) { return a.total > b.total; });
-            const auto paying =
-                std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
-            if (paying == next.end()) break;
-            beam.assign(1, *paying);
-            for (const auto& c : next)
-                if (beam.size() < rules_.beam && !same(c, *paying) &&
-                    c.total - best.total >
-                        std::max(rules_.margin, rules_.abreast * (paying->total - best.total)))
-                    beam.push_back(c);
-            best = *paying;
+            };
+            for (const candidate& from : beam) add(with_each(from));
+            if (const candidate* step = paying(next, best)) {
+                const candidate chosen = *step;
+                beam.assign(1, chosen);
+                for (const auto& c : next)
+                    if (beam.size() < rules_.beam && !same(c, chosen) &&
+                        c.total - best.total >
+                            std::max(rules_.margin, rules_.abreast * (chosen.total - best.total)))
+                        beam.push_back(c);
+                best = chosen;
+                continue;
+            }
+            // What two effects do to the force may cancel: then neither pays alone.
+            const std::vector<candidate> single(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                                rules_.in_pairs, next.size())));
+            next.clear();
+            for (std::size_t i = 0; i < single.size(); ++i) {
+                std::vector<const effect*> others;
+                for (std::size_t j = i + 1; j < single.size(); ++j)
+                    if (!has(single[i], single[j].effects.back())) others.push_back(single[j].effects.back());
+                add(with_these(single[i], others));
+            }
+            const candidate* step = paying(next, best);
+            if (!step || best.effects.size() + 2 > rules_.most_causes) break;
+            best = *step;
+            beam.assign(1, best);
         }
         // What does not take the gap of the machine file as it stands down explains nothing, however well it scores.
         if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
+        return path_to(best);
+    }
+
+    /// The calibrated machine and the models with one cause of `best` more each, the cause that matters most first. What is
+    /// no longer needed beside the others is left out.
+    std::vector<candidate> path_to(const candidate& best) const {
         std::vector<candidate> path{best};
         while (!path.back().effects.empty()) {
             const candidate& whole = path.back();
@@ -256,7 +277,7 @@ public:
                 std::erase(rest, out);
                 if (auto c = with(rest); c.total > kept.total) kept = std::move(c);
             }
-            if (path.size() == 1 && !pays(whole, kept)) path.pop_back(); // no longer needed beside the others
+            if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
             path.push_back(std::move(kept));
         }
         std::reverse(path.begin(), path.end());
@@ -267,6 +288,16 @@ public:
             path[i].effects = order;
         }
         return path;
+    }
+
+    /// Score of the best model that was tried and has none of these effects.
+    double best_without(const std::vector<const effect*>& names) const {
+        double out = calibrated_.total;
+        for (const candidate& c : tried_)
+            if (std::none_of(names.begin(), names.end(), [&](const effect* e) { return has(c, e); }) &&
+                std::isfinite(c.total) && c.total > out)
+                out = c.total;
+        return out;
     }
 
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
@@ -303,6 +334,14 @@ private:
         }
     }
     static double square(double x) { return x * x; }
+    /// The best of these that pays, after sorting them; null: none does.
+    const candidate* paying(std::vector<candidate>& next, const candidate& best) const {
+        std::stable_sort(next.begin(), next.end(),
+                         [](const auto& a, const auto& b) { return a.total > b.total; });
+        const auto found =
+            std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
+        return found == next.end() ? nullptr : &*found;
+    }
     static candidate joined(const candidate& from, const effect* added) {
         candidate c{.effects = from.effects};
         c.effects.push_back(added);

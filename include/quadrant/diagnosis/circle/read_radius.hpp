@@ -84,7 +84,7 @@ inline std::vector<circle_run> read_radius(std::string_view text, std::string_vi
                &nominal = table.columns[3];
     if (t.size() < 100)
         throw bad_input(file, fmt::format("holds {} samples, a circle needs 100 or more", t.size()));
-    const double period = detail::read_clock(t, [&](std::size_t k, std::string_view message) {
+    const double period = detail::read_even_clock(t, [&](std::size_t k, std::string_view message) {
                               refuse(k + 2, "", 0, message);
                           }).period;
 

@@ -18,7 +18,7 @@ inline constexpr effect actuator_dead_zone{
                          .rule = detail::rule::not_negative,
                          .meaning = "commands below it have no effect, larger ones lose it",
                          .at = member<&actuator_description::dead_zone_V>}},
-    .prior = {0.2, "hydraulic valves and cheap output stages have it; servo amplifiers seldom"},
+    .prior = {0.03, "hydraulic valves and cheap output stages have it; servo amplifiers seldom"},
     .remedy = "Invert the dead zone in the drive: it needs the direction of the whole command.",
     .advice =
         [](const plant_model& p, double, std::string_view unit) {

@@ -17,7 +17,7 @@ inline constexpr effect actuator_saturation{
                          .rule = detail::rule::positive,
                          .meaning = "limit of the drive, below the controller's own",
                          .at = member<&actuator_description::drive_limit_V>}},
-    .prior = {0.3, "current limits are set by hand and forgotten"},
+    .prior = {0.2, "current limits are set by hand and forgotten"},
     .remedy = "Command less acceleration or raise the current limit of the drive: what is cut off cannot be "
               "fed forward.",
     .advice =

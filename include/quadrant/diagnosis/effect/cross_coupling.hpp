@@ -18,7 +18,7 @@ inline constexpr effect cross_coupling{
                          .meaning =
                              "this axis' acceleration gains coupling times the other's, of the same kind",
                          .at = member<&plant_description::coupling>}},
-    .prior = {0.2,
+    .prior = {0.1,
               "stacked axes and soft machine beds have it; it shows only while the other axis accelerates"},
     .remedy = "Feed the other axis' reference acceleration forward in this command; check squareness and how "
               "the machine stands.",
@@ -27,7 +27,7 @@ inline constexpr effect cross_coupling{
             return fmt::format(
                 "the other axis' reference acceleration times {:.3g} {} s^2/m in this command (not simulated "
                 "here: the log of one axis does not say what the other is asked for next)",
-                -p.mass * p.coupling / p.force_constant, unit);
+                -p.moving_mass() * p.coupling / p.force_constant, unit);
         },
     .trial = {.low = 0.001,
               .high = 0.5,

@@ -40,7 +40,7 @@ inline constexpr effect cutting_force{
                          .rule = detail::rule::any_number,
                          .meaning = "mean force",
                          .at = member<&process_description::mean_N>}},
-    .prior = {0.3, "only where a process runs while the log is recorded"},
+    .prior = {0.1, "only where a process runs while the log is recorded"},
     .remedy =
         "Use a harmonic force observer or repetitive control at the frequency found; balance spindle and tool.",
     .advice =

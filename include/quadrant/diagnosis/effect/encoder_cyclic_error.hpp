@@ -32,7 +32,7 @@ inline constexpr effect encoder_cyclic_error{
                          .rule = detail::rule::any_number,
                          .meaning = "of that wave",
                          .at = member<&encoder_description::cyclic_phase_rad>}},
-    .prior = {0.3, "interpolated scales have some tens of nanometres; an eccentric ring has more"},
+    .prior = {0.2, "interpolated scales have some tens of nanometres; an eccentric ring has more"},
     .remedy = "Adjust the reading head, or correct the reading by a table over one period; a feedforward would "
               "follow the error.",
     .advice =

@@ -34,7 +34,7 @@ inline constexpr effect force_ripple{
                          .rule = detail::rule::any_number,
                          .meaning = "of that wave",
                          .at = member<&plant_description::ripple_phase_rad>}},
-    .prior = {0.3, "commutation is never perfect, but a few per cent hide behind friction"},
+    .prior = {0.2, "commutation is never perfect, but a few per cent hide behind friction"},
     .remedy = "Correct the commutation table of the drive: the force constant varies with the position of the "
               "magnets.",
     .advice =

@@ -24,7 +24,7 @@ inline constexpr effect friction_drift{
                          .meaning = "time in which it has changed by 1 - 1/e",
                          .at = member<&plant_description::friction_drift_time_s>,
                          .needs = {"friction_drift"}}},
-    .prior = {0.2, "machines warm up, but a log of seconds is short against that"},
+    .prior = {0.1, "machines warm up, but a log of seconds is short against that"},
     .remedy = "Warm the machine up before it works, or add a disturbance observer; one level of feedforward is "
               "right at one time only.",
     .advice = [](const plant_model&, double, std::string_view) -> std::string {

@@ -55,7 +55,7 @@ inline constexpr effect presliding_friction{
             return {"gms_weights", "must add up to 1: shares of the friction level"};
         return {};
     },
-    .prior = {0.5, "every contact gives way, but few logs reverse slowly enough to show by how much"},
+    .prior = {0.4, "every contact gives way, but few logs reverse slowly enough to show by how much"},
     .compensation = "friction with its give (maxwell_slip)",
     .remedy = "Feed the friction forward with the give of the contact (maxwell_slip); it matters where circles "
               "change quadrant.",

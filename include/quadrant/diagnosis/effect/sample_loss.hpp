@@ -37,7 +37,7 @@ inline constexpr effect sample_loss{
                          .meaning = "of a period in which the drive keeps the previous command",
                          .at = member<&actuator_description::loss_probability>,
                          .percent = true}},
-    .prior = {0.1, "a healthy bus loses nothing; one with a bad plug or without real time does"},
+    .prior = {0.03, "a healthy bus loses nothing; one with a bad plug or without real time does"},
     .remedy = "Repair the connection between controller and drive: plugs, shielding, real time of the host.",
     .advice = [](const plant_model&, double, std::string_view) -> std::string {
         return "mend the transmission: which periods lose their command is not known beforehand";

@@ -123,7 +123,8 @@ private:
         const auto given = find(k);
         if (!given) return;
         for (const std::string_view other : k.needs)
-            if (!other.empty() && !at(node_.name(other))) given->refuse("needs " + node_.name(other));
+            if (const auto name = key_in_box(box_, other, node_.kind); !other.empty() && !at(name))
+                given->refuse("needs " + name);
         if (k.entries_of.empty()) return;
         const auto sizes = at(node_.name(k.entries_of));
         if ((sizes ? sizes->value->size() : 0) != numbers_of(axis_, k, e).size())
