@@ -17,9 +17,9 @@ RECORDS = [
      "t_s,q1_pos_rad,q1_torque_Nm,q2_pos_rad,q2_torque_Nm", (5000, 5000), ["no position reference", "measured"]),
     # 16 s at 1 kHz: rows that come late or twice, readings that repeat
     ("laas_anti_cogging", ["laas_anti_cogging/speed_test.txt"], ["--resample"],
-     "t_s,q_pos_rad,q_ref_rad_per_s,q_current_A", (15700, 16001), ["resampled", "repeated readings", "only its speed"]),
+     "t_s,q_pos_rad,q_current_A,q_ref_rad_per_s", (15700, 16001), ["resampled", "repeated readings", "only its speed"]),
     ("laas_anti_cogging", ["laas_anti_cogging/speed_test.txt"], ["--resample", "--to", "8"],
-     "t_s,q_pos_rad,q_ref_rad_per_s,q_current_A", (7800, 8001), ["resampled"]),
+     "t_s,q_pos_rad,q_current_A,q_ref_rad_per_s", (7800, 8001), ["resampled"]),
     ("odrive_slow_move", ["odrive_cogging/odrive_slow2_nocomp_1.csv"], ["--resample"],
      "t_s,q_pos_rad,q_current_A", (4200, 4310), ["resampled", "resampling makes an error"]),
     (None, ["emps/log.csv"], [], "t_s,x_ref_m,x_pos_m,x_cmd_V", (24841, 24841), []),

@@ -43,7 +43,7 @@ struct loop_columns {
     std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
     std::span<const unsigned char> left_out{}; ///< of every row, as axis_log::left_out; empty: none
 
-    /// Some rows of them; none of these may be left out.
+    /// Some rows of them, as if all counted.
     loop_columns part(std::size_t first, std::size_t rows) const {
         const auto of = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(first, rows); };
         return {.reference = of(reference),
@@ -161,21 +161,32 @@ inline std::vector<double> replay_stretch(const controller_description& c, const
     return out;
 }
 
-/// The controller box over a whole record: begun anew behind each row that is left out, as at the start of a record. Rows that
-/// are left out, and stretches too short to begin in, are the logged ones.
+/// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are left out, those
+/// behind them in which the controller forgets what was filled in, and stretches too short to begin in are the logged ones.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, const loop_columns& log) {
     if (log.left_out.empty()) return replay_stretch(c, a, period, log);
+    constexpr std::size_t bridged = 4, forgets = 64, least = 8; // rows
     std::vector<double> out(log.command.begin(), log.command.end());
-    constexpr std::size_t least = 8;
-    for (std::size_t first = 0; first < out.size();) {
-        std::size_t last = first;
-        while (last < out.size() && !log.left_out[last]) ++last;
+    const std::size_t rows = out.size();
+    const auto gap_from = [&](std::size_t k) { // how many rows are left out from here on
+        std::size_t end = k;
+        while (end < rows && log.left_out[end]) ++end;
+        return end - k;
+    };
+    for (std::size_t first = 0; first < rows;) {
+        std::size_t last = first, gap = 0;
+        while (last < rows && (gap = gap_from(last)) <= bridged) last += std::max<std::size_t>(1, gap);
+        last = std::min(last, rows);
         if (last - first >= least) {
             const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
             std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
         }
-        first = last + 1;
+        first = last + std::max<std::size_t>(1, gap);
+    }
+    for (std::size_t k = 0, since = forgets; k < rows; ++k) {
+        since = log.left_out[k] ? 0 : since + 1;
+        if (since < forgets) out[k] = log.command[k];
     }
     return out;
 }

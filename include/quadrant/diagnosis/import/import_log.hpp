@@ -208,6 +208,10 @@ private:
     }
 
     void finish() {
+        if (samples_ > 0 && choice_.resample)
+            out_.notes.push_back(
+                "a controller cannot be replayed sample by sample on a resampled log: leave it out of the "
+                "machine file, or what resampling changed is taken for another controller");
         const std::string& name = files_.front().name;
         out_.log = log_reader(out_.text, name).read();
         const std::string before = one_line(name) + ": ";

@@ -44,7 +44,7 @@ public:
         if (!clock_.even)
             out.push_back(
                 fmt::format("the stamps jitter by up to {:.2g} % of the sample period from step to step: "
-                            "resampled onto an even clock",
+                            "resampled onto an even clock; the controller cannot be replayed",
                             100 * clock_.spread));
         else if (clock_.jitter > 1e-3)
             out.push_back(
