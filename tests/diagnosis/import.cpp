@@ -196,3 +196,147 @@ TEST_CASE("import: the maps that are shipped read their samples, and the machine
     CHECK(near(scope.log.sample_period_s, 0.002, 1e-5));
     CHECK(near(per_acceleration(scope), 120.0 / 350, 0.05)); // A per m/s^2
 }
+
+namespace {
+
+std::string two_files(const char* second) {
+    return fmt::format(R"({{"schema": "quadrant.import/1", "header": 1, "time": {{"column": "t", "unit": "s"}},
+        "files": [{{}}, {}], "axes": {{"q": {{"position": {{"column": "y", "unit": "rad"}},
+        "reference": {{"column": "r", "unit": "mrad", "file": 2}},
+        "command": {{"column": "i", "unit": "A", "is": "measured"}}}}}}}})",
+                       second);
+}
+
+bool told(const imported_log& in, std::string_view words) {
+    return std::any_of(in.notes.begin(), in.notes.end(),
+                       [&](const auto& note) { return note.find(words) != std::string::npos; });
+}
+
+} // namespace
+
+TEST_CASE("import: files with stamps of their own are joined on the clock of the first") {
+    foreign_file files[]{{"t,y,i\n", "a.csv"}, {"t;r\n", "b.csv"}};
+    for (int k = 0; k < 300; ++k)
+        files[0].text += fmt::format("{:.4f},{:.6f},{}\n", 5 + 1e-3 * k, std::sin(0.02 * k), k % 7);
+    for (int k = 0; k < 200; ++k) // begins 20 ms later, every 1.7 ms, decimal comma
+        files[1].text += fmt::format("{},{:04};{},0\n", 5, 200 + 17 * k, 1000 * (200 + 17 * k));
+    const auto map = read_import_map(two_files(R"({"separator": ";", "decimal": ","})"), "map.json");
+    const auto in = import_log(map, files);
+    const auto& q = in.log.axes.at(0);
+    CHECK(in.text.starts_with("t_s,q_pos_rad,q_current_A,q_ref_rad\n"));
+    CHECK(q.command_is == command_origin::measured);
+    CHECK(near(in.log.sample_period_s, 1e-3, 1e-6));
+    CHECK(in.log.samples == 280); // from 20 ms, where the second begins, to the end of the first
+    for (std::size_t k = 0; k < in.log.samples; ++k) {
+        CHECK(std::abs(q.position[k] - std::sin(0.02 * (static_cast<double>(k) + 20))) < 1e-6);
+        CHECK(std::abs(q.reference[k] - (200 + 10 * static_cast<double>(k))) <
+              1e-6); // 10 a sample: a straight line
+    }
+    CHECK(told(in, "the command is a measured one"));
+    CHECK(said([&] { import_log(map, std::span(files).first(1)); }) ==
+          "map.json: describes 2 files; 1 are given");
+    CHECK(of_map(two_files(R"({"colour": 1})")).find("files[1].colour: unknown key") != std::string::npos);
+}
+
+TEST_CASE(
+    "import: stamps that jitter are resampled, and the error that is stated bounds the one that is made") {
+    std::string text = "t_s,x_pos_m,x_cmd_V\n";
+    double t = 0;
+    for (int k = 0; k < 2000; ++k, t += 1e-3 * (1 + 0.55 * std::sin(2.3 * k)))
+        text += fmt::format("{:.7f},{:.9f},{:.1f}\n", t, 0.1 * std::sin(30 * t), k < 1000 ? 1.0 : -1.0);
+    const auto map = map_of_header(text, "in.csv");
+    CHECK(said([&] { import_log(map, text, "in.csv"); }).find("import with --resample") != std::string::npos);
+    const auto in = import_log(map, text, "in.csv", {.period_s = 1e-3});
+    double sum = 0;
+    const auto& x = in.log.axes[0];
+    std::size_t judged = 0;
+    for (std::size_t k = 0; k < in.log.samples; ++k)
+        if (!x.left_out[k]) { // a step of more than one and a half is a missing row
+            sum += std::pow(x.position[k] - 0.1 * std::sin(30 * 1e-3 * static_cast<double>(k)), 2);
+            ++judged;
+        }
+    CHECK(judged > in.log.samples / 2);
+    CHECK(!told(in, "readings"));
+    const double made = std::sqrt(sum / static_cast<double>(judged));
+    const auto note = std::find_if(in.notes.begin(), in.notes.end(), [](const auto& n) {
+        return n.find("makes an error of at most about") != n.npos;
+    });
+    REQUIRE(note != in.notes.end());
+    const double stated = std::stod(note->substr(note->find("about ") + 6));
+    CHECK(made < stated);
+    CHECK(stated < 2e-5); // the acceleration is 90 m/s^2: 1/8 of it times (1 ms)^2 at most
+    CHECK(x.command[10] == 1);
+    CHECK(x.command.back() == -1);
+}
+
+TEST_CASE("import: a part of a record is taken by its time, with and without resampling") {
+    std::string text = "t_ms;x_pos_mm;x_cmd_mV\n";
+    for (int k = 0; k < 100; ++k) text += fmt::format("{};{},5;{}\n", 1000 + 2 * k, k, k);
+    const auto map = map_of_header(text, "in.csv");
+    for (const bool resample : {false, true}) {
+        const auto in = import_log(map, text, "in.csv", {.resample = resample, .from_s = 0.02, .to_s = 0.1});
+        CHECK(in.log.samples == 41);
+        CHECK(near(in.log.sample_period_s, 2e-3, 1e-6));
+        CHECK(std::abs(in.log.axes[0].position[0] - 10.5e-3) < 1e-9);
+    }
+    CHECK(said([&] {
+              import_log(map, text, "in.csv", {.resample = true, .from_s = 7});
+          }).find("the files have no time in common, or --from and --to leave none") != std::string::npos);
+}
+
+TEST_CASE("import: columns with our names need no map, whatever their units") {
+    const auto map =
+        map_of_header("time [us]\tq_pos_deg\tq_ref_deg_per_s\tq_torque_Nm\tq_enabled\tnote\n0\t0,5\t", "in");
+    CHECK(map.files[0].separator == '\t');
+    CHECK(map.files[0].decimal == ',');
+    CHECK(map.files[0].time->factor == 1e-6);
+    const auto& q = map.axes.at(0);
+    CHECK(q.find(signal_role::position)->si == "rad");
+    CHECK(q.find(signal_role::torque)->si == "Nm");
+    CHECK(q.find(signal_role::enabled));
+    CHECK(said([] { map_of_header("a,b\n1,2\n", "in"); }).starts_with("in:1:1: no column t_s"));
+    CHECK(said([] { map_of_header("t_s,b\n1,2\n", "in"); }).starts_with("in:1:1: no column such as x_pos_m"));
+    CHECK(said([] { map_of_header("", "in"); }) == "in: is empty");
+}
+
+TEST_CASE("import: what halscope saves has its period in the first line and one row too many") {
+    const auto map = read_import_map(std::filesystem::path(examples + "halscope.map.json"));
+    std::string text = "Sampling period is 1000000 ns \n";
+    for (int k = 0; k < 50; ++k)
+        text +=
+            fmt::format("\njoint.0.motor-pos-cmd {:+.14f} joint.0.motor-pos-fb {:+.14f} pid.x.output {:+.14f} ",
+                        0.1 * k, k < 49 ? 0.1 * k - 0.02 : 1e6, 0.5);
+    const auto in = import_log(map, text + "\n", "scope.log");
+    CHECK(in.log.samples == 49);
+    CHECK(near(in.log.sample_period_s, 1e-3, 1e-9));
+    CHECK(std::abs(in.log.axes[0].position[48] - 4.78e-3) < 1e-12);
+    CHECK(told(in, "the last row is dropped"));
+    CHECK(said([&] {
+              import_log(map, "t_s,x\n1,2\n", "scope.log");
+          }).find("must be \"Sampling period is N ns\"") != std::string::npos);
+    CHECK(said([&] {
+              import_log(map, "Sampling period is 1000 ns \n\na +1.0 \na +2.0 \na +2.0 \n", "scope.log");
+          }).find("no column \"joint.0.motor-pos-cmd\"") != std::string::npos);
+}
+
+TEST_CASE("import: the units of a log are checked against its machine, and no other machine is refused") {
+    const workshop::machine m;
+    machine_description machine;
+    machine.axes.emplace_back().name = "x";
+    machine.axes[0].plant.mass_kg = m.mass;
+    machine.axes[0].plant.force_constant_N_per_V = m.force_constant;
+    const auto checked = [&](double position, double command, double reference = 0) {
+        auto log = workshop::as_log(workshop::run({}, 6.2));
+        for (double& y : log.axes[0].position) y *= position;
+        for (double& r : log.axes[0].reference) r *= reference != 0 ? reference : position;
+        for (double& u : log.axes[0].command) u *= command;
+        return said([&] { check_physics(machine, log); });
+    };
+    CHECK(checked(1, 1) == "accepted");
+    CHECK(checked(1, 2) == "accepted"); // a wrong force constant is for the diagnosis
+    CHECK(checked(1000, 1).find("1/") != std::string::npos);
+    CHECK(checked(1, 1000).find("mV in it make 1000 times") != std::string::npos);
+    CHECK(checked(1, -1).find("the sign of x_pos_m or of x_cmd_V is turned") != std::string::npos);
+    CHECK(checked(1, 1, 1000).find("the distance of the reference") != std::string::npos);
+    CHECK(checked(1, 1, -1).find("moves against the reference") != std::string::npos);
+}

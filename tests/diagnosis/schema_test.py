@@ -204,7 +204,9 @@ for box in ("plant", "tolerance", "encoder", "actuator", "process", "axis"):
 
 accept(log, ["x_cmd_V", "t_s", "note", "x_ref_m", "x_pos_m", "x_force_N"], "a log of this test")
 accept(log, ["t_s", "c_ref_rad", "c_pos_rad", "c_cmd_Nm", "x_ref_m", "x_pos_m", "x_cmd_V"], "a log with a rotary axis")
-for names in (["x_ref_m", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_ref_m", "x_pos_m", "a"],
+accept(log, ["t_s", "x_pos_m", "x_cmd_V"], "a log without a reference")
+accept(log, ["t_s", "q_pos_rad", "q_torque_Nm", "q_ref_rad_per_s", "q_enabled"], "a log with a measured torque")
+for names in (["x_ref_m", "x_pos_m", "x_cmd_V", "a"], ["t_s", "x_ref_m", "x_cmd_V", "a"], ["t_s", "x_ref_m", "x_pos_m", "a"],
               ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "x_pos_m"], ["t_s", "c_ref_rad", "c_pos_m", "c_cmd_Nm"],
               ["t_s", "x_ref_rad", "x_pos_rad", "x_cmd_V", "x_pos_m"], ["t_s", "c_ref_rad", "c_pos_rad", "c_cmd_N"],
               ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "x_cmd_A"], ["t_s", "x_ref_m", "x_pos_m", "x_cmd_V", "y_pos_m"]):
@@ -264,14 +266,16 @@ accept(forecast, good_forecast, "the forecast of this test")
 for path, to in [(["axes", "x", "gap_after"], ...), (["axes", "x", "shrink"], 1.1), (["schema"], "1"), (["colour"], 1)]:
     refuse(forecast, changed(good_forecast, path, to), f"forecast with {path} = {to}")
 
-units = set(re.findall(r'unit_name\{"(\w+)"', (root / "include/quadrant/diagnosis/import/units.hpp").read_text()))
+units = set(re.findall(r'unit_name\{"([^"]+)"', (root / "include/quadrant/diagnosis/import/units.hpp").read_text()))
 checked += 1
 if units != set(import_map.schema["$defs"]["source"]["properties"]["unit"]["enum"]):
     faults.append("import.schema.json and import/units.hpp name other units")
 good_map = load(root / "examples" / "import" / "twincat_scope.map.json")
 for path, to in [(["time"], ...), (["axes"], {}), (["axes", "y", "command"], ...), (["separator"], "|"), (["header"], 0),
                  (["axes", "y", "command", "scale"], 0), (["axes", "y", "command", "unit"], "furlong"),
-                 (["time"], {"period_s": 0}), (["colour"], 1)]:
+                 (["time"], {"period_s": 0}), (["colour"], 1), (["files"], []), (["layout"], "sampler"),
+                 (["axes", "y", "command", "is"], "guessed"), (["axes", "y", "position", "is"], "measured"),
+                 (["axes", "y", "position", "file"], 0)]:
     refuse(import_map, changed(good_map, path, to), f"map with {path} = {to}")
 
 for fault in faults:

@@ -27,7 +27,7 @@ public:
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
-        if (axis.controller && log.has_reference)
+        if (axis.controller && log.has_reference && log.as_sampled)
             controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                           coarse() ? count : axis.encoder.resolution_m);
         if (controller && is_excluded("added_command")) controller->added.reset();

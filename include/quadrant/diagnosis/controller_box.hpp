@@ -41,10 +41,21 @@ inline std::unique_ptr<running_controller> made(const controller_description& c,
 struct loop_columns {
     std::span<const double> reference, position, command;
     std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
+    std::span<const unsigned char> left_out{}; ///< of every row, as axis_log::left_out; empty: none
 
+    /// Some rows of them, as if all counted.
+    loop_columns part(std::size_t first, std::size_t rows) const {
+        const auto of = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(first, rows); };
+        return {.reference = of(reference),
+                .position = of(position),
+                .command = of(command),
+                .reference_velocity = of(reference_velocity),
+                .reference_acceleration = of(reference_acceleration),
+                .velocity = of(velocity)};
+    }
     static loop_columns of(const axis_log& log) {
         return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
-                log.velocity};
+                log.velocity,  log.left_out};
     }
     /// The rows from one on.
     loop_columns from(std::size_t row) const {
@@ -125,14 +136,14 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
     return loop;
 }
 
-/// The controller box alone: fed the logged reference and position, it puts out what the described controller
+/// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it puts out what the described controller
 /// would have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of
 /// the encoder is in the first command by way of the velocity. What that leaves open of the initial integral is
 /// a constant offset of the replay, which a second pass takes from the whole record. A law that follows from
 /// what it applied is told so by the log. Rows that a controller is only shown, and those whose look-ahead ends
 /// behind the log, are the logged ones.
-inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
-                                             double period, const loop_columns& log) {
+inline std::vector<double> replay_stretch(const controller_description& c, const actuator_description& a,
+                                          double period, const loop_columns& log) {
     const auto fresh = made(c, a, period);
     const loop_inputs in(log, period);
     const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
@@ -156,6 +167,36 @@ inline std::vector<double> replay_controller(const controller_description& c, co
         std::vector<double> offset(out.size());
         for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
         pass(quantile(offset, 0.5));
+    }
+    return out;
+}
+
+/// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are left out, those
+/// behind them in which the controller forgets what was filled in, and stretches too short to begin in are the logged ones.
+inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
+                                             double period, const loop_columns& log) {
+    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
+    constexpr std::size_t bridged = 4, forgets = 64, least = 8; // rows
+    std::vector<double> out(log.command.begin(), log.command.end());
+    const std::size_t rows = out.size();
+    const auto gap_from = [&](std::size_t k) { // how many rows are left out from here on
+        std::size_t end = k;
+        while (end < rows && log.left_out[end]) ++end;
+        return end - k;
+    };
+    for (std::size_t first = 0; first < rows;) {
+        std::size_t last = first, gap = 0;
+        while (last < rows && (gap = gap_from(last)) <= bridged) last += std::max<std::size_t>(1, gap);
+        last = std::min(last, rows);
+        if (last - first >= least) {
+            const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
+            std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+        first = last + std::max<std::size_t>(1, gap);
+    }
+    for (std::size_t k = 0, since = forgets; k < rows; ++k) {
+        since = log.left_out[k] ? 0 : since + 1;
+        if (since < forgets) out[k] = log.command[k];
     }
     return out;
 }

@@ -126,11 +126,13 @@ private:
             put(axis, f, key, *given, "given");
         }
         if (log) read_from_log(axis, *log);
-        if (ask_.command_is != command_origin::asked) {
-            json_["axes"][axis]["actuator"]["command_is"] = name_of(ask_.command_is);
-            rows_ += fmt::format("| `axes.{}.actuator.command_is` | {} | where the log's command column was "
-                                 "taken: behind the amplifier | given |\n",
-                                 axis, name_of(ask_.command_is));
+        const bool by_name = log && log->command_is != command_origin::asked;
+        if (by_name || ask_.command_is != command_origin::asked) {
+            json_["axes"][axis]["actuator"]["command_is"] = name_of(command_origin::measured);
+            rows_ +=
+                fmt::format("| `axes.{}.actuator.command_is` | measured | the log's command column was taken "
+                            "behind the amplifier | {} |\n",
+                            axis, by_name ? "the column's name" : "given");
         }
         if (json_["axes"][axis].contains("controller")) {
             nlohmann::ordered_json with_kind = {{"kind", "cascade_p_pi"}};

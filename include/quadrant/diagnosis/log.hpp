@@ -31,6 +31,9 @@ struct axis_log {
     /// Whether the log has a position reference. Without, `reference` is the integral of the reference's speed where the
     /// log has that, else the position, and nothing is said of the controller.
     bool has_reference = true;
+    /// Whether each sample is what the controller saw and did. Not so where the log was resampled: the controller cannot be
+    /// replayed then.
+    bool as_sampled = true;
     command_origin command_is = command_origin::asked; ///< what the column's name says of it
 };
 

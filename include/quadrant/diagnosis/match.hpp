@@ -9,10 +9,15 @@
 
 namespace quadrant::diagnosis {
 
+/// Whether a log has the sample period of the machine file, to a hundredth.
+inline bool has_period_of(const machine_description& machine, const machine_log& log) {
+    constexpr double allowed = 0.01;
+    return std::abs(log.sample_period_s / machine.sample_period_s - 1) <= allowed;
+}
+
 /// Refuses a log that cannot be of the machine described: bad_input.
 inline void check_match(const machine_description& machine, const machine_log& log) {
-    constexpr double allowed = 0.01;
-    if (std::abs(log.sample_period_s / machine.sample_period_s - 1) > allowed)
+    if (!has_period_of(machine, log))
         throw bad_input(log.file, fmt::format("the sample period is {:.6g} s, sample_period_s of {} is {:.6g}",
                                               log.sample_period_s, machine.file, machine.sample_period_s));
     const auto named = [](const auto& axes, const std::string& name) {

@@ -151,10 +151,9 @@ private:
         log_column* reference = at.reference ? &header_.columns[*at.reference] : nullptr;
         const bool still = is_constant(position.values) && (!reference || is_constant(reference->values));
         if (still && header_.axes.size() == 1)
-            throw bad_input(file_,
-                            fmt::format("axis {} does not move: {}{} never change{}", name,
-                                        reference ? reference->name + " and " : "", position.name,
-                                        reference ? "" : "s"));
+            throw bad_input(file_, fmt::format("axis {} does not move: {}{} never change{}", name,
+                                               reference ? reference->name + " and " : "", position.name,
+                                               reference ? "" : "s"));
         const auto tell = [&](const std::string& text) {
             out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
         };
@@ -181,6 +180,7 @@ private:
         if (std::none_of(axis.left_out.begin(), axis.left_out.end(), [](auto x) { return x != 0; }))
             axis.left_out.clear();
         if (at.command_measured) axis.command_is = command_origin::measured;
+        axis.as_sampled = rows.clock().even;
         return axis;
     }
 

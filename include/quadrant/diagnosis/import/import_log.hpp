@@ -63,7 +63,7 @@ private:
     /// Each row as it stands. What read_log could not take is refused here, with the place in the file.
     void keep_rows() {
         const foreign_table& in = tables_.front();
-        const auto clock = read_clock(in.t, in.written);
+        const auto clock = clock_of_rows(in.t, in.written);
         if (!clock.even && clock.spread > most_spread)
             throw bad_input(
                 files_.front().name, in.line[clock.worst], 1,
@@ -118,7 +118,7 @@ private:
     }
     /// The period of rows that are even, else the median step of their stamps.
     static double usual_period(const foreign_table& table) {
-        const auto clock = read_clock(table.t, table.written);
+        const auto clock = clock_of_rows(table.t, table.written);
         if (clock.even && clock.gaps == 0) return clock.period;
         std::vector<double> steps;
         for (std::size_t k = 1; k < table.t.size(); ++k) steps.push_back(table.t[k] - table.t[k - 1]);
@@ -128,7 +128,7 @@ private:
     }
     void resample(std::size_t file, double begin, double period) {
         foreign_table& table = tables_[file];
-        const auto clock = read_clock(table.t, table.written);
+        const auto clock = clock_of_rows(table.t, table.written);
         // Rows that are even are evener than their stamps, unless the stamps are asked to count.
         const bool by_row =
             clock.even && clock.gaps == 0 && (!choice_.resample || table.written > 0.01 * clock.period);
@@ -208,6 +208,10 @@ private:
     }
 
     void finish() {
+        if (samples_ > 0 && choice_.resample)
+            out_.notes.push_back(
+                "a controller cannot be replayed sample by sample on a resampled log: leave it out of the "
+                "machine file, or what resampling changed is taken for another controller");
         const std::string& name = files_.front().name;
         out_.log = log_reader(out_.text, name).read();
         const std::string before = one_line(name) + ": ";

@@ -89,6 +89,8 @@ private:
             refuse_unknown_keys(node, keys);
             out.period_s = period->number(rule::positive);
         } else {
+            for (const char* key : {"file", "is"})
+                if (const auto given = node.find(key)) given->refuse("is for the signals of an axis");
             out.time = read_source(node, out);
             if (!out.time->si.empty() && out.time->si != "s")
                 node.need("unit").refuse("must be a unit of time");
@@ -156,6 +158,7 @@ private:
         const bool rotary = position.si == "rad";
         if (position.si != "m" && !rotary)
             node.need("position").need("unit").refuse("must be a length or an angle");
+        if (!node.find("current") && !node.find("torque")) node.need("command");
         for (const signal_kind& kind : signal_kinds) {
             const auto given = node.find(std::string(kind.key));
             if (!given) continue;

@@ -106,10 +106,11 @@ private:
     }
     double between(std::span<const double> x, const std::vector<std::size_t>& rows, std::size_t i,
                    double where) const {
-        const bool inside = i > 0 && i + 2 < rows.size();
-        if (!inside || after_gap_[rows[i]] || after_gap_[rows[i + 1]] || after_gap_[rows[i + 2]])
-            return line(x, rows, i, where);
-        const auto of = [&](std::size_t j) { return rows[i - 1 + j]; };
+        if (rows.size() < 4 || after_gap_[rows[i + 1]]) return line(x, rows, i, where);
+        const std::size_t first = std::min(i > 0 ? i - 1 : 0, rows.size() - 4);
+        for (std::size_t j = 1; j < 4; ++j)
+            if (after_gap_[rows[first + j]]) return line(x, rows, i, where);
+        const auto of = [&](std::size_t j) { return rows[first + j]; };
         return cubic_through({at_[of(0)], at_[of(1)], at_[of(2)], at_[of(3)]},
                              {x[of(0)], x[of(1)], x[of(2)], x[of(3)]}, where);
     }

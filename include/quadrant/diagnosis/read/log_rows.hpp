@@ -16,7 +16,7 @@ public:
     /// Stamps of all rows, the rows to keep, and the last digit of the stamps [s].
     log_rows(std::span<const double> stamps, std::vector<std::size_t> kept, double written)
         : kept_(std::move(kept)), doubled_(stamps.size() - kept_.size()), t_(taken(stamps)),
-          clock_(read_clock(t_, written)) {
+          clock_(clock_of_rows(t_, written)) {
         if (clock_.even && clock_.gaps == 0) return;
         std::vector<double> at(t_.size());
         for (std::size_t k = 1; k < t_.size(); ++k) // a long pause is as short as its slots
@@ -44,7 +44,7 @@ public:
         if (!clock_.even)
             out.push_back(
                 fmt::format("the stamps jitter by up to {:.2g} % of the sample period from step to step: "
-                            "resampled onto an even clock",
+                            "resampled onto an even clock; the controller cannot be replayed",
                             100 * clock_.spread));
         else if (clock_.jitter > 1e-3)
             out.push_back(

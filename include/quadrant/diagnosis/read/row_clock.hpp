@@ -28,6 +28,31 @@ struct row_clock {
 /// Stamps within this share of the period of their instants need no resampling.
 inline constexpr double even_enough = 0.2 + 0.01; // the line through the stamps is itself an estimate
 
+/// The mean of the middle half.
+inline double middle_half(std::vector<double> x) {
+    std::sort(x.begin(), x.end());
+    const std::size_t from = x.size() / 4, to = x.size() - from;
+    double sum = 0;
+    for (std::size_t i = from; i < to; ++i) sum += x[i];
+    return sum / static_cast<double>(to - from);
+}
+
+/// The step that a quarter of them do not reach.
+inline double lower_quarter(std::vector<double> steps) {
+    const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4);
+    std::nth_element(steps.begin(), at, steps.end());
+    return *at;
+}
+
+/// Whether all steps are whole multiples of the lower quarter's: rows of an even clock of which many may be missing.
+inline bool on_a_grid(const std::vector<double>& steps) {
+    const double base = lower_quarter(steps);
+    return base > 0 && std::all_of(steps.begin(), steps.end(), [&](double step) {
+               const double rows = std::round(step / base);
+               return rows >= 1 && std::abs(step / base - rows) <= even_enough;
+           });
+}
+
 /// What a usual step is around each step: the mean of the middle half of the steps there, which neither gaps nor stamps that
 /// are early and late in turns disturb. A log may change its rate.
 inline std::vector<double> usual_steps(std::span<const double> steps) {
@@ -38,9 +63,7 @@ inline std::vector<double> usual_steps(std::span<const double> steps) {
                           last = std::min(steps.size(), k + each_way + 1);
         near.assign(steps.begin() + static_cast<std::ptrdiff_t>(first),
                     steps.begin() + static_cast<std::ptrdiff_t>(last));
-        std::sort(near.begin(), near.end());
-        const std::size_t from = near.size() / 4, to = near.size() - from;
-        for (std::size_t i = from; i < to; ++i) out[k] += near[i] / static_cast<double>(to - from);
+        out[k] = middle_half(near);
     }
     return out;
 }
@@ -96,7 +119,7 @@ inline void fit_clock(std::span<const double> t, row_clock& out) {
 
 /// Reads the clock of stamps that never go back. `written`: last digit of the stamps [s]; coarsely written stamps jitter by
 /// half of it and are none the worse.
-inline row_clock read_clock(std::span<const double> t, double written = 0) {
+inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     const std::size_t n = t.size();
     row_clock out;
     out.after_gap.assign(n, 0);
@@ -108,7 +131,6 @@ inline row_clock read_clock(std::span<const double> t, double written = 0) {
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
     out.period = *middle > 0 ? *middle : (t[n - 1] - t[0]) / static_cast<double>(n - 1);
-    const double usual_everywhere = out.period;
     const auto measure_spread = [&] {
         for (std::size_t k = 1; k < n; ++k)
             if (!out.after_gap[k]) out.spread = std::max(out.spread, std::abs(steps[k - 1] / out.period - 1));
@@ -120,15 +142,16 @@ inline row_clock read_clock(std::span<const double> t, double written = 0) {
         out.even = true;
         return out;
     }
-    // Jitter makes steps of 0.6 T to 1.4 T, a lost row at least 1.6 T.
-    const auto usual = usual_steps(steps);
-    std::size_t added = 0;
-    for (std::size_t k = 1; k < n; ++k)
+    const auto usual =
+        on_a_grid(steps) ? std::vector<double>(steps.size(), lower_quarter(steps)) : usual_steps(steps);
+    const double usual_everywhere = middle_half(usual);
+    for (std::size_t k = 1; k < n; ++k) // jitter makes steps of 0.6 T to 1.4 T, a lost row at least 1.6 T
         if (steps[k - 1] > 1.5 * usual[k - 1]) {
             out.after_gap[k] = 1;
             ++out.gaps;
             out.longest_gap = std::max(out.longest_gap, steps[k - 1]);
         }
+    std::size_t added = 0;
     for (std::size_t k = 1; k < n; ++k) {
         if (out.after_gap[k]) { // a pause longer than the record itself is shortened: it holds nothing
             const double rows = std::round(steps[k - 1] / usual_everywhere) - 1;
@@ -139,8 +162,10 @@ inline row_clock read_clock(std::span<const double> t, double written = 0) {
         out.slot[k] = k + added;
     }
     fit_clock(t, out);
-    measure_spread();
     out.even = out.jitter <= std::max(even_enough, coarse + 0.01);
+    if (!out.even)
+        out.period = middle_half(steps); // the clock wanders: what a usual step is, not how far it came
+    measure_spread();
     return out;
 }
 

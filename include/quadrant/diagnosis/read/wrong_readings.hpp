@@ -125,10 +125,12 @@ private:
     void find_wrong() {
         const auto usual = usual_off();
         const std::size_t n = x_.size();
+        const double span = usual_span();
         for (std::size_t k = 2; k + 2 < n; ++k) {
             const double limit = 8 * std::max(usual[k], count_);
             const double here = off(k);
-            if (out_.bad[k] || !(std::abs(here) > limit) || !largest_near(k, here)) continue;
+            if (out_.bad[k] || !(std::abs(here) > limit) || beside_gap(k, span) || !largest_near(k, here))
+                continue;
             const double kept = x_[k];
             x_[k] -= here;
             double left = 0;
@@ -141,6 +143,21 @@ private:
             out_.bad[k] = 1;
             ++out_.wrong;
         }
+    }
+    /// Time that five rows usually take.
+    double usual_span() const {
+        std::vector<double> spans;
+        for (std::size_t k = 2; k + 2 < t_.size(); ++k) spans.push_back(t_[k + 2] - t_[k - 2]);
+        const auto middle = spans.begin() + static_cast<std::ptrdiff_t>(spans.size() / 2);
+        std::nth_element(spans.begin(), middle, spans.end());
+        return *middle;
+    }
+    /// Over a gap the cubic says less: what it leaves there is no measure of a reading.
+    bool beside_gap(std::size_t k, double span) const {
+        const std::size_t first = std::max<std::size_t>(k, 4) - 4, last = std::min(k + 4, t_.size() - 1);
+        for (std::size_t j = first + 1; j <= last; ++j)
+            if (t_[j] - t_[j - 1] > 0.375 * span) return true; // one and a half of its four steps
+        return false;
     }
     bool largest_near(std::size_t k, double here) const {
         const std::size_t n = x_.size();
