@@ -134,6 +134,10 @@ void add_init(CLI::App& app) {
         ->check(CLI::IsMember({"asked", "measured"}));
     command->add_flag("--rotary", o->request.rotary,
                       "rotary axes, in rad and N m (a log says so itself): --inertia for --mass");
+    command->add_flag("--from-log", o->request.from_log,
+                      "mass, friction and gravity that are not given: from the log, where it is sure of them");
+    command->add_flag("--unchecked", o->request.unchecked,
+                      "write the file although the log contradicts mass or force constant, with a note");
     command->add_flag("--questions", o->questions, "ask for what is not given, though no terminal listens");
     for (std::size_t i = 0; i < init_fields.size(); ++i) {
         const init_field& f = init_fields[i];

@@ -47,7 +47,8 @@ TEST_CASE("init: period, axis, unit and resolution come from the log, and the fi
     CHECK(machine.axes[0].name == "x");
     CHECK(workshop::near(machine.axes[0].encoder.resolution_m, workshop::count, 1e-5));
     CHECK_FALSE(machine.axes[0].controller);
-    CHECK(says(begun.notes, "by the log the command moves about"));
+    CHECK(says(begun.notes, "axis x: by the log mass 18")); // 180 kg, to a few per cent
+    CHECK(says(begun.notes, "behind the same zero-phase low-pass of"));
     CHECK(begun.comments.find("| `axes.x.plant.mass_kg` | 180 |") != std::string::npos);
     CHECK(begun.comments.find("smallest step of the position in the log") != std::string::npos);
 }
@@ -57,12 +58,13 @@ TEST_CASE("init: every field goes to its key, each with its line of comment") {
     r.sample_period_s = 0.0005;
     r.axes = {"x", "y"};
     for (const init_field& f : init_fields)
-        if (!r.values.contains(f.option))
+        if (!f.rotary_only && !r.values.contains(f.option))
             r.values[f.option][""] = std::string(f.option) == "dac-bits" ? 16 : 0.25;
     r.values["coulomb"]["y"] = 0.2;
     const auto begun = init_machine(r);
     const auto flat = begun.machine.flatten();
     for (const init_field& f : init_fields) {
+        if (f.rotary_only) continue;
         CAPTURE(f.option);
         std::string path = fmt::format("/axes/x/{}/{}", f.box, f.key);
         std::replace(path.begin(), path.end(), '.', '/');
@@ -131,4 +133,28 @@ TEST_CASE("init: a rotary axis is begun in rad and N m, from its log or because 
     CHECK(init_machine(request(), &log).machine["axes"]["x"]["plant"].contains("torque_constant_Nm_per_V"));
     r.values.clear();
     CHECK(refusal(r, &log).find("axis x: --inertia is missing") != std::string::npos);
+}
+
+TEST_CASE("init: unchecked, a mass that the log contradicts makes a note, and the file is written") {
+    const auto log = workshop_log();
+    auto r = request(1.8);
+    r.unchecked = true;
+    const auto begun = init_machine(r, &log);
+    CHECK(begun.machine["axes"]["x"]["plant"]["mass_kg"] == 1.8);
+    CHECK(says(begun.notes, "1.8 kg and 1100 N/V cannot be of this log"));
+}
+TEST_CASE("init: a rotary axis takes its gravity by option, a linear one refuses it") {
+    init_request r;
+    r.values["mass"][""] = 0.17;
+    r.values["gravity-torque"][""] = 3.2;
+    r.values["gravity-phase"][""] = 0.3;
+    r.sample_period_s = 0.001;
+    CHECK(refusal(r) == "init: axis x: --force-constant is missing");
+    r.command_unit = "N";
+    CHECK(refusal(r) == "init: --gravity-torque: axis x is linear");
+    r.command_unit.clear();
+    r.rotary = true;
+    const auto machine = read_machine(init_machine(r).machine.dump(), "m.json");
+    CHECK(*machine.axes[0].plant.gravity_torque_Nm == 3.2);
+    CHECK(*machine.axes[0].plant.gravity_phase_rad == 0.3);
 }

@@ -166,7 +166,7 @@ every_effect = copy.deepcopy(good_machine)
 every_effect["axes"]["x"]["plant"] |= {
     "coulomb_N": 1, "gms_weights": [0.25, 0.75], "gms_stiffness_N_per_m": [1e6, 1e7], "gms_attraction_N_per_s": 1e5, "presliding_damping_s": 0.001,
     "friction_position_amplitude": -0.2, "friction_position_period_m": 0.1, "friction_position_phase_rad": 1,
-    "friction_drift": 1.5, "friction_drift_time_s": 3, "mode_mass_kg": 0.1, "mode_frequency_Hz": 70, "mode_damping": 0.02,
+    "friction_drift": 1.5, "friction_drift_time_s": 3, "load_friction": 0.2, "mode_mass_kg": 0.1, "mode_frequency_Hz": 70, "mode_damping": 0.02,
     "backlash_m": 1e-6, "spring_N_per_m": -5, "coupling": -0.1, "ripple": 0.02, "ripple_period_m": 0.024, "ripple_phase_rad": 0}
 every_effect["axes"]["x"]["encoder"] = {"resolution_m": 1e-7, "cyclic_m": 1e-7, "cyclic_period_m": 0.0004, "cyclic_phase_rad": 1}
 every_effect["axes"]["x"]["process"] = {"fundamental_Hz": 20, "force_N": [3, 1], "phase_rad": [0, 1], "mean_N": -2}
@@ -196,10 +196,22 @@ accept(machine, of_an_angle, "a rotary machine with every effect")
 refuse(machine, changed(of_an_angle, x + ["plant", "coulomb_N"], 1), "a rotary plant with newtons")
 refuse(machine, changed(of_an_angle, x + ["encoder", "resolution_m"], 1), "a rotary encoder with metres")
 refuse(machine, changed(every_effect, x + ["plant", "coulomb_Nm"], 1), "a linear plant with newton metres")
-for box in ("plant", "tolerance", "encoder", "actuator", "process", "axis"):
+# What only a rotary axis has: gravity, and a payload on an arm.
+only_rotary = {"plant": {"gravity_torque_Nm": 3.2, "gravity_phase_rad": 0.3}, "tolerance": {"gravity_torque": 0.1},
+               "payload": {"mass_kg": 0.35, "arm_m": 0.18, "link_mass_kg": 0.06}}
+for box, keys in only_rotary.items():
+    for key, value in keys.items():
+        refuse(machine, changed(every_effect, x + [box], every_effect["axes"]["x"].get(box, {}) | {key: value}),
+               f"a linear {box} with {key}")
+weighted = of_an_angle
+for box, keys in only_rotary.items():
+    weighted = changed(weighted, x + [box], weighted["axes"]["x"].get(box, {}) | keys)
+accept(machine, weighted, "a rotary machine with gravity and a payload")
+for box in ("plant", "tolerance", "encoder", "actuator", "process", "payload", "axis"):
     checked += 1
     of_line = machine.schema["$defs"][box]["properties"]
-    if rotary(dict.fromkeys(of_line)).keys() != machine.schema["$defs"]["rotary_" + box]["properties"].keys():
+    of_angle = machine.schema["$defs"]["rotary_" + box]["properties"].keys() - only_rotary.get(box, {}).keys()
+    if rotary(dict.fromkeys(of_line)).keys() != of_angle:
         faults.append(f"machine.schema.json: the keys of rotary_{box} are not those of {box} in its words")
 
 accept(log, ["x_cmd_V", "t_s", "note", "x_ref_m", "x_pos_m", "x_force_N"], "a log of this test")

@@ -2,6 +2,7 @@
 #include "arm.hpp"
 
 #include <quadrant/diagnosis/apply.hpp>
+#include <quadrant/diagnosis/init.hpp>
 #include <quadrant/diagnosis/plant_model.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
@@ -123,5 +124,25 @@ TEST_CASE("gravity: of nothing, or of a billionth, it leaves every gap as withou
         file.axes[0].plant.gravity_torque_Nm = torque;
         file.axes[0].plant.gravity_phase_rad = 1;
         CHECK(simulate(file, log).axes[0].gap.force_rms_N == doctest::Approx(without).epsilon(1e-6));
+    }
+}
+TEST_CASE("gravity: init estimates it from a log with friction and a coarse, noisy encoder, in the file and in "
+          "a note") {
+    const arm real{.gravity = 3.2, .phase = 0.3};
+    for (const double count : {least_angle, 100 * least_angle}) {
+        auto log = run(real);
+        for (double& y : log.axes[0].position) y = std::round(y / count) * count;
+        init_request r;
+        r.values["force-constant"][""] = real.torque_constant;
+        r.from_log = true;
+        const auto begun = init_machine(r, &log);
+        const auto& plant = begun.machine["axes"]["q"]["plant"];
+        CAPTURE(plant.dump());
+        CHECK(near(plant["inertia_kg_m2"], 0.17, 0.03));
+        CHECK(near(plant["gravity_torque_Nm"], 3.2, 0.02));
+        CHECK(near(plant["gravity_phase_rad"], 0.3, 0.03));
+        CHECK(near(plant["coulomb_Nm"], 0.16, 0.2)); // shares its slope with viscous friction
+        CHECK(std::any_of(begun.notes.begin(), begun.notes.end(),
+                          [](const std::string& n) { return n.find("gravity 3.2 N m") != n.npos; }));
     }
 }

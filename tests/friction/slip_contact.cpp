@@ -224,3 +224,25 @@ TEST_CASE("slip_contact: each direction breaks away at its own static level and 
         CHECK(slides(1.03 * (level + excess)));
     }
 }
+
+TEST_CASE(
+    "slip_contact: a load that presses on it raises what it holds, also where it holds nothing by itself") {
+    contact<>::parameters p;
+    p.weights[0] = 1;
+    p.give[0] = quantity_of<signal::position>::from_value(1e-6);
+    const contact<> guide(p, mass, step);
+    // The way after a second [m]; the push grows slowly first, as one at once would stretch the contact twice as far.
+    const auto pushed = [&](double push, double added) {
+        contact<>::state s;
+        double v = 0, x = 0;
+        for (int k = -50000; k < 50000; ++k) {
+            v = guide(s, mass * v + step * push * std::min(1.0, (k + 50000) / 50000.0), v, 0, added);
+            x += step * v;
+        }
+        return x;
+    };
+    CHECK(pushed(9, 10) == doctest::Approx(0.9e-6).epsilon(0.1));
+    CHECK(pushed(11, 10) > 0.5 * (11 - 10) / mass);
+    // Without the load it holds nothing: a push that grows for a second and stays for another, 1/6 + 1/2 + 1/2.
+    CHECK(pushed(11, 0) == doctest::Approx(11 / mass * (1.0 / 6 + 0.5 + 0.5)).epsilon(0.001));
+}

@@ -236,3 +236,47 @@ TEST_CASE("servo_axis: what no axis has is refused by name") {
     CHECK_THROWS_WITH(axis(p, step), "servo_axis.play = -1e-06: must be finite and not below 0");
     CHECK_THROWS_WITH(axis(plain_axis(), 0), "servo_axis.step = 0: must be finite and above 0");
 }
+
+TEST_CASE("servo_axis: a weight that hangs swings about its phase with the period of a pendulum") {
+    axis::parameters p;
+    p.mass = 0.2;
+    p.gravity = 3;
+    p.gravity_phase = 0.5;
+    const double fine = 1e-4;
+    const axis arm(p, fine);
+    auto s = axis::state::at(0.51);
+    int turns = 0;
+    double last = 0, before = s.x;
+    for (int k = 1; turns < 10; ++k) {
+        arm.advance(s, 0, {});
+        if (before > 0.5 && s.x <= 0.5) ++turns, last = k * fine;
+        before = s.x;
+    }
+    CHECK(last / 9.25 == // let go at a quarter
+          doctest::Approx(2 * std::numbers::pi * std::sqrt(p.mass / p.gravity)).epsilon(1e-3));
+}
+
+TEST_CASE("servo_axis: an arm in a gear that rubs is lifted by what carries weight, friction and the friction "
+          "of both") {
+    axis::parameters p;
+    p.mass = 0.2;
+    p.gravity = 3; // level at a quarter of a turn
+    p.load_friction = 0.1;
+    p.friction.level = 0.2_N;
+    p.friction.weights[0] = 1;
+    p.friction.stiffness[0] = gain_of<signal::force, signal::position>::from_value(0.2 / 1e-5);
+    p.friction.give[0] = quantity_of<signal::position>::from_value(1e-5);
+    const axis arm(p, step);
+    const auto moved = [&](double torque) {
+        auto s = axis::state::at(std::numbers::pi / 2);
+        for (int k = 0; k < 1600; ++k) // slowly: a push at once would stretch the contact twice as far
+            arm.advance(s, p.gravity + (torque - p.gravity) * std::min(1.0, k / 800.0), {});
+        return s.x - std::numbers::pi / 2;
+    };
+    // It lifts where u = G + Fc + k (u + G), and sinks where u = G - Fc - k (u + G).
+    const double lifts = (3 + 0.2 + 0.1 * 3) / 0.9, sinks = (3 - 0.2 - 0.1 * 3) / 1.1;
+    CHECK(std::abs(moved(lifts - 0.02)) < 1e-4);
+    CHECK(moved(lifts + 0.02) > 1e-4);
+    CHECK(std::abs(moved(sinks + 0.02)) < 1e-4);
+    CHECK(moved(sinks - 0.02) < -1e-4);
+}

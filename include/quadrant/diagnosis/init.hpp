@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "import/check_physics.hpp"
+#include "import/units.hpp"
 #include "init_fields.hpp"
 #include "read_machine.hpp"
+#include "regression.hpp"
 #include "sensor_box.hpp"
 #include "write_machine.hpp"
 
@@ -12,10 +13,12 @@ namespace quadrant::diagnosis {
 
 /// What a machine file is begun from: numbers by option (init_fields.hpp) and axis, in SI.
 struct init_request {
-    std::vector<std::string> axes;                     ///< empty: those of the log, else "x"
-    double sample_period_s = 0;                        ///< 0: the log's
-    std::string command_unit;                          ///< V, A or N (Nm); empty: the log's, else V or Nm
-    bool rotary = false;                               ///< every axis; with a log each says so itself
+    std::vector<std::string> axes; ///< empty: those of the log, else "x"
+    double sample_period_s = 0;    ///< 0: the log's
+    std::string command_unit;      ///< V, A or N (Nm); empty: the log's, else V or Nm
+    bool rotary = false;           ///< every axis; with a log each says so itself
+    bool from_log = false;         ///< the log's own estimate of what is not given, where it is sure
+    bool unchecked = false;        ///< a mass that the log contradicts makes a note, not a refusal
     command_origin command_is = command_origin::asked; ///< of every axis: where the log's command was taken
     std::map<std::string, std::map<std::string, double>> values; ///< option, then axis ("" is every axis)
 
@@ -107,15 +110,21 @@ private:
         if (is_force(unit) && unit != key_of("N", kind_))
             throw bad_input("init", fmt::format("axis {} is {}: its command is in V, A or {}", axis,
                                                 name_of(kind_), key_of("N", kind_)));
-        const std::optional<double> mass = ask_.value("mass", axis),
-                                    constant = ask_.value("force-constant", axis);
-        const unit_check found =
-            log && !log->still ? check_units(*log, json_["sample_period_s"].get<double>()) : unit_check{};
+        const std::optional<double> constant = ask_.value("force-constant", axis);
+        const axis_regression found =
+            log && !log->still ? regress(*log, json_["sample_period_s"].get<double>()) : axis_regression{};
+        const double per_unit = constant.value_or(1);
+        std::optional<double> mass = ask_.value("mass", axis);
+        const bool estimated =
+            !mass && ask_.from_log && (constant || is_force(unit)) && found.acceleration.sure();
+        if (estimated) mass = found.acceleration.value * per_unit;
         if (!mass || (!constant && !is_force(unit)))
             throw bad_input("init", missing(axis, unit, mass, constant, found));
         for (const init_field& f : init_fields) {
             const auto given = ask_.value(f.option, axis);
             if (!given) continue;
+            if (f.rotary_only && kind_ == axis_kind::linear)
+                throw bad_input("init", fmt::format("--{}: axis {} is linear", f.option, axis));
             std::string key = f.key;
             if (key == "force_constant_N_per_V") {
                 if (is_force(unit))
@@ -125,6 +134,7 @@ private:
             }
             put(axis, f, key, *given, "given");
         }
+        if (log && ask_.from_log) estimate(axis, found, per_unit);
         if (log) read_from_log(axis, *log);
         const bool by_name = log && log->command_is != command_origin::asked;
         if (by_name || ask_.command_is != command_origin::asked) {
@@ -139,27 +149,44 @@ private:
             with_kind.update(json_["axes"][axis]["controller"]);
             json_["axes"][axis]["controller"] = std::move(with_kind);
         }
-        if (log) compare(axis, unit, *mass, constant.value_or(1), found);
+        if (!log) return;
+        if (!estimated) compare(axis, unit, *mass, per_unit, found);
+        describe(axis, found, per_unit);
     }
 
     std::string missing(const std::string& axis, const std::string& unit, const std::optional<double>& mass,
-                        const std::optional<double>& constant, const unit_check& found) const {
+                        const std::optional<double>& constant, const axis_regression& found) const {
         std::string text = mass ? "--force-constant is missing" : "--mass is missing";
-        const bool told = found.sign_is_known() && found.command_per_acceleration > 0;
+        const double by_log = found.acceleration.value;
+        const bool told = found.acceleration.sure() && by_log > 0;
         if (told && !mass && (constant || is_force(unit)))
-            text += fmt::format("; the log speaks of about {:.4g} kg",
-                                found.command_per_acceleration * constant.value_or(1));
-        if (told && mass)
-            text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / found.command_per_acceleration,
-                                unit);
+            text += fmt::format("; the log speaks of about {:.4g} kg (--from-log takes it)",
+                                by_log * constant.value_or(1));
+        if (told && mass) text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / by_log, unit);
         return fmt::format("axis {}: {}", axis, text_of(text, kind_));
     }
 
-    void read_from_log(const std::string& axis, const axis_log& log) {
-        const auto field = [](std::string_view option) -> const init_field& {
-            return *std::find_if(init_fields.begin(), init_fields.end(),
-                                 [&](const auto& f) { return f.option == option; });
+    static const init_field& field(std::string_view option) {
+        return *std::find_if(init_fields.begin(), init_fields.end(),
+                             [&](const auto& f) { return f.option == option; });
+    }
+
+    /// What the log is sure of and nobody gave. A negative friction is no friction.
+    void estimate(const std::string& axis, const axis_regression& found, double per_unit) {
+        const auto take = [&](std::string_view option, const regressed& by_log, double value) {
+            if (ask_.value(std::string(option), axis) || !by_log.sure() || !(by_log.value > 0)) return;
+            const init_field& f = field(option);
+            put(axis, f, f.key, value, fmt::format("regression of the log below {:.3g} Hz", found.band_Hz));
         };
+        take("mass", found.acceleration, found.acceleration.value * per_unit);
+        take("viscous", found.speed, found.speed.value * per_unit);
+        take("coulomb", found.direction, found.direction.value * per_unit);
+        if (ask_.value("gravity-phase", axis)) return;
+        take("gravity-torque", found.weight, found.weight.value * per_unit);
+        take("gravity-phase", found.weight, found.phase);
+    }
+
+    void read_from_log(const std::string& axis, const axis_log& log) {
         const double count = observed_count(log.position, log.position_step);
         if (!ask_.value("resolution", axis) && count > 0) {
             const init_field& f = field("resolution");
@@ -176,22 +203,48 @@ private:
         }
     }
 
+    /// The mass given beside the log's own, within four standard deviations of that.
     void compare(const std::string& axis, const std::string& unit, double mass, double constant,
-                 const unit_check& found) {
-        if (!found.sign_is_known()) return;
-        const double by_log = found.command_per_acceleration * constant, times = by_log / mass;
-        if (times > 3 || times < 1.0 / 3)
-            throw bad_input(
-                log_->file,
-                fmt::format("axis {}: {}", axis,
-                            text_of(fmt::format("{:g} kg and {:g} N/{} cannot be of this log, where the "
-                                                "command moves {:.3g} kg: check the units",
-                                                mass, constant, unit, by_log),
-                                    kind_)));
+                 const axis_regression& found) {
+        const regressed& a = found.acceleration;
+        if (!a.sure()) return;
+        const double least = (a.value - 4 * a.spread) * constant, most = (a.value + 4 * a.spread) * constant;
+        if (mass <= 3 * most && mass >= least / 3) return;
+        const std::string text = fmt::format(
+            "axis {}: {}", axis,
+            text_of(fmt::format(
+                        "{:g} kg and {:g} N/{} cannot be of this log, where the command moves {:.3g} kg: check "
+                        "the units",
+                        mass, constant, unit, a.value * constant),
+                    kind_));
+        if (!ask_.unchecked) throw bad_input(log_->file, text + " (--unchecked writes the file all the same)");
+        out_.notes.push_back(text);
+    }
+
+    /// What the regression found and how the signals were treated, in a note.
+    void describe(const std::string& axis, const axis_regression& found, double constant) {
+        if (!(found.band_Hz > 0)) {
+            out_.notes.push_back(
+                fmt::format("axis {}: the log is too short, or its position too noisy, to compare the "
+                            "numbers with it",
+                            axis));
+            return;
+        }
+        std::string sure;
+        const auto add = [&](std::string_view name, const regressed& r, std::string_view unit) {
+            if (r.sure())
+                sure += fmt::format("{}{} {:.3g} {}", sure.empty() ? "" : ", ", name, r.value * constant, unit);
+        };
+        add("mass", found.acceleration, "kg");
+        add("viscous friction", found.speed, "N s/m");
+        add("Coulomb friction", found.direction, "N");
+        add("a constant force of", {-found.mean.value, found.mean.spread}, "N");
+        add("gravity", found.weight, "N");
+        if (found.weight.sure()) sure += fmt::format(" with the weight down at {:.3g} m", found.phase);
         out_.notes.push_back(fmt::format(
             "axis {}: {}", axis,
-            text_of(fmt::format("by the log the command moves about {:.3g} kg ({:.0f} % of the mass given)",
-                                by_log, 100 * times),
+            text_of(fmt::format("by the log {}; all signals behind the same zero-phase low-pass of {:.3g} Hz",
+                                sure.empty() ? "no number is sure" : sure, found.band_Hz),
                     kind_)));
     }
 
@@ -206,8 +259,9 @@ private:
 } // namespace detail
 
 /// Begins a machine file. Sample period, axes, unit of the command, resolution and, where the command stops there, its limit
-/// come from the log when there is one; mass and force constant must fit its motion within a factor of three. What it
-/// returns passes read_machine. Throws bad_input.
+/// come from the log when there is one; mass and force constant must fit its motion within a factor of three (or a note says
+/// that they do not, `unchecked`). With `from_log` the log's regression gives mass, friction and gravity where nobody does. What
+/// it returns passes read_machine. Throws bad_input.
 inline initialised_machine init_machine(const init_request& request, const machine_log* log = nullptr) {
     return detail::machine_starter(request, log).take();
 }

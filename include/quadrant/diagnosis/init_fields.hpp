@@ -15,6 +15,7 @@ struct init_field {
     const char* meaning;
     double low, high;
     bool whole = false;
+    bool rotary_only = false;
 };
 
 inline constexpr std::array init_fields{
@@ -28,6 +29,12 @@ inline constexpr std::array init_fields{
     init_field{"static", "plant", "static_N", "N", "static friction, not below the Coulomb level", 1e-3, 1e5},
     init_field{"stribeck-velocity", "plant", "stribeck_velocity_m_per_s", "m/s",
                "speed at which static friction has faded", 1e-5, 0.2},
+    init_field{"gravity-torque", "plant", "gravity_torque_Nm", "Nm",
+               "largest torque of the weight that the axis turns", 1e-4, 1e5, false, true},
+    init_field{"gravity-phase", "plant", "gravity_phase_rad", "rad", "position at which that weight hangs down",
+               1e-6, 6.3, false, true},
+    init_field{"load-friction", "plant", "load_friction", "",
+               "growth of the Coulomb friction with the transmitted force", 1e-3, 1},
     init_field{"tolerance-mass", "tolerance", "mass", "", "how well the mass is known, relative", 1e-3, 0.3},
     init_field{"tolerance-force-constant", "tolerance", "force_constant", "",
                "how well the force constant is known, relative", 1e-3, 0.3},

@@ -99,7 +99,7 @@ private:
 inline double score_of_blocks(const std::vector<double>& ms, double floor, double numbers) {
     double sum = 0;
     for (double m : ms) sum += std::log(m + floor);
-    return -0.5 * scoring{}.nu * sum - numbers;
+    return -0.5 * channel{}.nu * sum - numbers;
 }
 inline double mean_of(const std::vector<double>& x) {
     double sum = 0;

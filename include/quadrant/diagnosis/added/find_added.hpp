@@ -68,7 +68,7 @@ public:
             }
         }
         const double top = std::max({of_key.score, of_law.score, best.score});
-        const auto weight = [&](double score) { return std::exp((score - top) / rules{}.temperature); };
+        const auto weight = [&](double score) { return std::exp((score - top) / score_temperature); };
         for (double s : weights) scores += weight(s);
         const double all = scores + weight(of_key.score) + weight(of_law.score);
         if (best.score == top && best.ms < 0.5 * before_ms_) {
@@ -92,7 +92,7 @@ private:
         double ms = std::numeric_limits<double>::infinity(); ///< left on what it was not fitted to [V^2]
     };
     reading scored(const std::vector<double>& ms, double numbers, double prior) const {
-        return {score_of_blocks(ms, floor_.ms, numbers) + rules{}.temperature * std::log(prior), mean_of(ms)};
+        return {score_of_blocks(ms, floor_.ms, numbers) + score_temperature * std::log(prior), mean_of(ms)};
     }
     template <class Constant> reading score_of_key(const key_fit& key, Constant constant) const {
         std::vector<double> left(key.left.size());
@@ -159,7 +159,7 @@ private:
         const auto score_where_it_agrees = [&](auto ms_of) {
             double sum = 0;
             for (std::size_t b = 0; b < ms.size(); ++b)
-                if (agrees(b)) sum -= 0.5 * scoring{}.nu * std::log(ms_of(b) + floor_.ms);
+                if (agrees(b)) sum -= 0.5 * channel{}.nu * std::log(ms_of(b) + floor_.ms);
             return sum;
         };
         const double quiet = score_where_it_agrees([&](std::size_t b) { return ms[b]; });
