@@ -70,17 +70,13 @@ public:
         claims = path.size() - 1;
         noise = models.noise(best());
         settled = models.settled(best().fit.ms, record.score, noise) &&
-                  (best().effects.empty() || near_floor(best()));
+                  (best().effects.empty() || models.near_floor(best()));
         if (second) settled_on_second = second_log(best()).settled;
     }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
     /// behind the names.
     bool at_floor() const { return settled && settled_on_second; }
-    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
-    bool near_floor(const candidate& m) const {
-        return models.held_out_force(m) < limits.near_floor * floor_force();
-    }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {

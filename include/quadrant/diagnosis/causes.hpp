@@ -45,6 +45,8 @@ inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
 
 /// Whether a model frees all that the effect `e` freed in another: it holds that effect and more.
 inline bool contains(const candidate& model, const candidate& other, const effect& e) {
+    for (const effect* in : model.effects)
+        if (in->holds == e.name) return true;
     const auto frees = [](const candidate& m, const std::string& key) {
         return std::any_of(m.fit.parameters.begin(), m.fit.parameters.end(),
                            [&](const parameter& p) { return p.key == key && !(p.spread > 0); });

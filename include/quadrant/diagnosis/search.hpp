@@ -196,6 +196,11 @@ public:
         return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
+    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
+    bool near_floor(const candidate& c) const {
+        return held_out_force(c) < rules_.near_floor * floor_force(c);
+    }
+
     /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
     /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
     /// [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
@@ -228,7 +233,7 @@ public:
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
         while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
-               (best.effects.empty() || !immaterial(best))) {
+               (best.effects.empty() || !near_floor(best) || !immaterial(best))) {
             std::vector<candidate> next;
             const auto add = [&](std::vector<candidate> some) {
                 for (candidate& c : some)
@@ -293,13 +298,17 @@ public:
         return path;
     }
 
-    /// Score of the best model that was tried and has none of these effects.
+    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them.
     double best_without(const std::vector<const effect*>& names) const {
+        const auto has_one = [&](const candidate& c) {
+            return std::any_of(names.begin(), names.end(), [&](const effect* e) {
+                return std::any_of(c.effects.begin(), c.effects.end(),
+                                   [&](const effect* in) { return in == e || in->holds == e->name; });
+            });
+        };
         double out = calibrated_.total;
         for (const candidate& c : tried_)
-            if (std::none_of(names.begin(), names.end(), [&](const effect* e) { return has(c, e); }) &&
-                std::isfinite(c.total) && c.total > out)
-                out = c.total;
+            if (!has_one(c) && std::isfinite(c.total)) out = std::max(out, c.total);
         return out;
     }
 

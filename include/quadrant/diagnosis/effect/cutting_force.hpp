@@ -17,6 +17,7 @@ inline constexpr effect cutting_force{
     .box = "process",
     .joins = joint::force,
     .exciting_motion = "rest and slow strokes with the process running, and again with it off",
+    .holds = "constant_force",
     .shows = "lines in frequency that no motion shifts",
     .keys = {machine_key{.name = "process.fundamental_Hz",
                          .rule = detail::rule::positive,
@@ -73,13 +74,16 @@ inline constexpr effect cutting_force{
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
             out.push_back(detail::repeating<detail::cutting_force_harmonics, 4>(
                 "process.fundamental_Hz", "process.force_N", period, duration, most));
-            out.back().push_back({.key = "process.mean_N",
-                                  .of = [](plant_model& p) -> double& { return p.cutting_mean; },
-                                  .start = 0,
-                                  .low = -most,
-                                  .high = most,
-                                  .step = 1e-6 * s.force_scale()});
+            out.push_back(detail::repeating<detail::cutting_force_harmonics, 8>(
+                "process.fundamental_Hz", "process.force_N", period, duration, most));
         }
+        for (auto& start : out)
+            start.push_back({.key = "process.mean_N",
+                             .of = [](plant_model& p) -> double& { return p.cutting_mean; },
+                             .start = 0,
+                             .low = -most,
+                             .high = most,
+                             .step = 1e-6 * s.force_scale()});
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
@@ -88,6 +92,6 @@ inline constexpr effect cutting_force{
                 {"process.phase_rad", p.cutting.phases()},
                 {"process.mean_N", {p.cutting_mean}}};
     },
-    .join = [](plant_model& p, const screening&) { p.cutting.count = 4; }};
+    .join = [](plant_model& p, const screening&) { p.cutting.count = 8; }};
 
 } // namespace quadrant::diagnosis::suspect

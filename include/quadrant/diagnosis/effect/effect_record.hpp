@@ -32,6 +32,8 @@ struct effect {
     std::string_view exciting_motion{}; ///< what motion shows it
     /// Names that may be the same model on a record: they are one group while their predictions agree.
     std::array<std::string_view, 3> equivalent{};
+    /// An effect that this one holds as a part: no second name for it.
+    std::string_view holds{};
     std::string_view shows{}; ///< as what it shows in the residual force
     key_list keys{};
     bool rotary_only = false;     ///< a linear axis cannot have it: no suspect there, and its keys are refused

@@ -13,6 +13,7 @@ inline constexpr effect position_spring{
     .box = "mechanics",
     .joins = joint::force,
     .exciting_motion = "slow strokes over the whole travel in both directions, with rest at both ends",
+    .holds = "constant_force",
     .shows = "proportional to position",
     .keys = {machine_key{.name = "spring_N_per_m",
                          .rule = detail::rule::any_number,
