@@ -19,9 +19,8 @@ namespace detail {
 inline constexpr double slip_of_a_unit = 20;
 /// Between the two a ratio is only noted: a wrong mass, a soft controller or a poor regression can make it.
 inline constexpr double remarkable = 3;
-/// Of the command's variance: the acceleration explains most of what the command does, so a negative sign is
-/// that of a column.
-inline constexpr double most_of_the_command = 0.5;
+/// A turned sign is refused only when it is this many standard deviations sure, and explains a share of the command.
+inline constexpr double sure_of_a_sign = 10;
 
 /// "1000 times": the ratio for a sentence, the larger way round.
 inline std::string times(double ratio) {
@@ -45,8 +44,8 @@ public:
         const double mass = c_.command_per_acceleration * constant_;
         const bool right_size = known_.mass > 0 && constant_ > 0 && -mass < remarkable * known_.mass &&
                                 -mass * remarkable > known_.mass;
-        if (mass_is_known() ? right_size && c_.share > 0.5 * most_of_the_command
-                            : c_.command_per_acceleration < 0 && c_.share > most_of_the_command)
+        const bool turned = c_.command_per_acceleration < -sure_of_a_sign * c_.spread && c_.share > least_share;
+        if (turned && (right_size || !mass_is_known()))
             refuse(fmt::format(
                 "the command drives against the acceleration ({:.3g} {} per {}/s^2): the sign of {} or "
                 "of {} is turned; give one of them a negative scale",
