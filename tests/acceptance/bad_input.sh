@@ -37,8 +37,6 @@ machine '$d'
 refuses 'm.json:' m.json log.csv
 log '500s/,[^,]*,/,nan,/'
 refuses 'l.csv:500:' machine.json l.csv
-log '500d'
-refuses 'l.csv:500:' machine.json l.csv
 log '500s/^[0-9.]*/0.001/'
 refuses 'l.csv:500:1:' machine.json l.csv
 log '500s/$/,7/'

@@ -5,8 +5,8 @@
 
 namespace quadrant::diagnosis {
 
-/// A log on another sample period: smooth signals by the cubic through the nearest rows, the command by the mean of its
-/// staircase. Samples between rows of which one is left out are left out. A note says so.
+/// A log on another sample period: smooth signals by the cubic through the nearest rows, the command by the
+/// mean of its staircase. Samples between rows of which one is left out are left out. A note says so.
 inline machine_log at_period(const machine_log& log, double period) {
     machine_log out;
     out.file = log.file;

@@ -136,12 +136,12 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
     return loop;
 }
 
-/// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it puts out what the described controller
-/// would have commanded. Row 0 is taken from the log. What went before it is unknown, at rest too: the noise of
-/// the encoder is in the first command by way of the velocity. What that leaves open of the initial integral is
-/// a constant offset of the replay, which a second pass takes from the whole record. A law that follows from
-/// what it applied is told so by the log. Rows that a controller is only shown, and those whose look-ahead ends
-/// behind the log, are the logged ones.
+/// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it
+/// puts out what the described controller would have commanded. Row 0 is taken from the log. What went before
+/// it is unknown, at rest too: the noise of the encoder is in the first command by way of the velocity. What
+/// that leaves open of the initial integral is a constant offset of the replay, which a second pass takes from
+/// the whole record. A law that follows from what it applied is told so by the log. Rows that a controller is
+/// only shown, and those whose look-ahead ends behind the log, are the logged ones.
 inline std::vector<double> replay_stretch(const controller_description& c, const actuator_description& a,
                                           double period, const loop_columns& log) {
     const auto fresh = made(c, a, period);
@@ -171,8 +171,9 @@ inline std::vector<double> replay_stretch(const controller_description& c, const
     return out;
 }
 
-/// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are left out, those
-/// behind them in which the controller forgets what was filled in, and stretches too short to begin in are the logged ones.
+/// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are
+/// left out, those behind them in which the controller forgets what was filled in, and stretches too short to
+/// begin in are the logged ones.
 inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
                                              double period, const loop_columns& log) {
     if (log.left_out.empty()) return replay_stretch(c, a, period, log);

@@ -25,20 +25,20 @@ struct axis_log {
     double position_step = 0;  ///< the same for the position column
     double command_step = 0;   ///< the same for the command column
     axis_kind kind = axis_kind::linear;
-    /// Of each row: 1 where there is no reading that counts (a missing row, a wrong or repeated reading, the drive off).
-    /// The position is then filled in and nothing is judged by it. Empty: every row counts.
+    /// Of each row: 1 where there is no reading that counts (a missing row, a wrong or repeated reading, the
+    /// drive off). The position is then filled in and nothing is judged by it. Empty: every row counts.
     std::vector<unsigned char> left_out{};
-    /// Whether the log has a position reference. Without, `reference` is the integral of the reference's speed where the
-    /// log has that, else the position, and nothing is said of the controller.
+    /// Whether the log has a position reference. Without, `reference` is the integral of the reference's speed
+    /// where the log has that, else the position, and nothing is said of the controller.
     bool has_reference = true;
-    /// Whether each sample is what the controller saw and did. Not so where the log was resampled: the controller cannot be
-    /// replayed then.
+    /// Whether each sample is what the controller saw and did. Not so where the log was resampled: the
+    /// controller cannot be replayed then.
     bool as_sampled = true;
     command_origin command_is = command_origin::asked; ///< what the column's name says of it
 };
 
-/// The motion of an axis: that of its reference, or its own where the reference stands still (an axis that is moved by hand or
-/// by gravity).
+/// The motion of an axis: that of its reference, or its own where the reference stands still (an axis that is
+/// moved by hand or by gravity).
 inline const std::vector<double>& motion_of(const axis_log& log) {
     const auto& r = log.reference;
     const bool stands = std::all_of(r.begin(), r.end(), [&](double x) { return x == r.front(); });

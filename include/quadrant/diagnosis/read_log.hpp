@@ -93,8 +93,8 @@ private:
         refuse(line_, line, cells.offset(), message);
     }
 
-    /// The rows on the log's own even clock. Stamps that go back are refused; rows whose stamp is that of the row before are
-    /// dropped, unless the stamps are written too coarsely to differ.
+    /// The rows on the log's own even clock. Stamps that go back are refused; rows whose stamp is that of the
+    /// row before are dropped, unless the stamps are written too coarsely to differ.
     log_rows on_the_clock() {
         const log_column& time = header_.columns[header_.time];
         const auto& t = time.values;
@@ -198,8 +198,8 @@ private:
             tell(fmt::format(": the drive is off in {} samples ({} stretches): left out", off, stretches));
     }
 
-    /// Without a position reference nothing is said of the controller, and the motions are those of its speed, or of the
-    /// axis itself.
+    /// Without a position reference nothing is said of the controller, and the motions are those of its speed,
+    /// or of the axis itself.
     static void settle_reference(machine_log& out, axis_log& axis, const log_header::axis_columns& at) {
         if (at.reference) return;
         axis.has_reference = false;
@@ -246,13 +246,14 @@ private:
 
 } // namespace detail
 
-/// Reads a log (FORMAT.md) or throws bad_input. Missing rows, single wrong readings and rows with the drive off are filled in and
-/// marked (axis_log::left_out); stamps that jitter by up to half a period are resampled; notes say so.
+/// Reads a log (FORMAT.md) or throws bad_input. Missing rows, single wrong readings and rows with the drive off
+/// are filled in and marked (axis_log::left_out); stamps that jitter by up to half a period are resampled;
+/// notes say so.
 inline machine_log read_log(const std::filesystem::path& path) {
     return detail::log_reader(detail::read_whole(path), path.string()).read();
 }
-/// Reads the references of a planned motion (t_s, x_ref_m, ...; other columns of the format are left alone) or throws
-/// bad_input. Positions are the reference, commands 0.
+/// Reads the references of a planned motion (t_s, x_ref_m, ...; other columns of the format are left alone) or
+/// throws bad_input. Positions are the reference, commands 0.
 inline machine_log read_motion(const std::filesystem::path& path) {
     return detail::log_reader(detail::read_whole(path), path.string(), detail::log_purpose::motion).read();
 }

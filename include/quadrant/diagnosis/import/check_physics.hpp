@@ -6,21 +6,21 @@
 
 namespace quadrant::diagnosis {
 
-/// What the owner knows of an axis, to check its units by: mass [kg] (or inertia [kg m^2]) and force constant [N per unit
-/// of the command] (or torque constant). 0: not known.
+/// What the owner knows of an axis, to check its units by: mass [kg] (or inertia [kg m^2]) and force constant
+/// [N per unit of the command] (or torque constant). 0: not known.
 struct known_axis {
     double mass = 0, force_constant = 0;
 };
 
 namespace detail {
 
-/// Beyond this ratio a unit is wrong: the smallest slips are 1000 (mm, mV), 57 (degrees) and 25.4 (inch); no machine is so far
-/// from what its owner believes.
+/// Beyond this ratio a unit is wrong: the smallest slips are 1000 (mm, mV), 57 (degrees) and 25.4 (inch); no
+/// machine is so far from what its owner believes.
 inline constexpr double slip_of_a_unit = 20;
 /// Between the two a ratio is only noted: a wrong mass, a soft controller or a poor regression can make it.
 inline constexpr double remarkable = 3;
-/// Of the command's variance: the acceleration explains most of what the command does, so a negative sign is that of a column.
-inline constexpr double most_of_the_command = 0.5;
+/// A turned sign is refused only when it is this many standard deviations sure, and explains a share of the command.
+inline constexpr double sure_of_a_sign = 10;
 
 /// "1000 times": the ratio for a sentence, the larger way round.
 inline std::string times(double ratio) {
@@ -44,8 +44,8 @@ public:
         const double mass = c_.command_per_acceleration * constant_;
         const bool right_size = known_.mass > 0 && constant_ > 0 && -mass < remarkable * known_.mass &&
                                 -mass * remarkable > known_.mass;
-        if (mass_is_known() ? right_size && c_.share > 0.5 * most_of_the_command
-                            : c_.command_per_acceleration < 0 && c_.share > most_of_the_command)
+        const bool turned = c_.command_per_acceleration < -sure_of_a_sign * c_.spread && c_.share > least_share;
+        if (turned && (right_size || !mass_is_known()))
             refuse(fmt::format(
                 "the command drives against the acceleration ({:.3g} {} per {}/s^2): the sign of {} or "
                 "of {} is turned; give one of them a negative scale",
@@ -118,9 +118,9 @@ private:
 
 } // namespace detail
 
-/// Checks the units of an imported log by physics; notes what it found, and throws bad_input where a unit or a sign cannot
-/// be: the position moves far otherwise than the reference, the command drives against the acceleration, the mass that the
-/// command moves is another one than the known by the factor of a unit.
+/// Checks the units of an imported log by physics; notes what it found, and throws bad_input where a unit or a
+/// sign cannot be: the position moves far otherwise than the reference, the command drives against the
+/// acceleration, the mass that the command moves is another one than the known by the factor of a unit.
 inline void check_physics(imported_log& in, const known_axis& known = {}) {
     for (const axis_log& a : in.log.axes) {
         const detail::axis_physics physics(a, in.log.sample_period_s, in.log.file, known);
@@ -129,7 +129,8 @@ inline void check_physics(imported_log& in, const known_axis& known = {}) {
     }
 }
 
-/// The same of a log and the machine that it is of, before anything is computed with them: bad_input, or nothing.
+/// The same of a log and the machine that it is of, before anything is computed with them: bad_input, or
+/// nothing.
 inline void check_physics(const machine_description& machine, const machine_log& log) {
     for (const axis_description& axis : machine.axes)
         for (const axis_log& a : log.axes)

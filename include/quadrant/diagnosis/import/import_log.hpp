@@ -178,8 +178,8 @@ private:
         return false;
     }
 
-    /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so that its
-    /// rounding is still seen. What was resampled has digits of its own.
+    /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so
+    /// that its rounding is still seen. What was resampled has digits of its own.
     std::pair<int, bool> decimals(const foreign_column& c) const {
         const double step = c.written.step() > 0 ? c.written.step() : 1,
                      power = -std::log10(step * std::abs(c.factor));
@@ -241,9 +241,9 @@ private:
 
 } // namespace detail
 
-/// Reads other programs' files through a map and joins them on time: columns renamed, numbers in SI. Rows stay as they are, or
-/// are resampled onto an even clock. Rows may be missing; a number that is none, a column that is not there, a stamp that
-/// goes back: bad_input with file, line and column.
+/// Reads other programs' files through a map and joins them on time: columns renamed, numbers in SI. Rows stay
+/// as they are, or are resampled onto an even clock. Rows may be missing; a number that is none, a column that
+/// is not there, a stamp that goes back: bad_input with file, line and column.
 inline imported_log import_log(const import_map& map, std::span<const foreign_file> files,
                                const import_choice& choice = {}) {
     return detail::importer(map, files, choice).take();

@@ -24,8 +24,8 @@ enum class signal_role {
     motor_position
 };
 
-/// One role: its key in a map, the middle of its column's name in a log ("x" + "_pos_" + "m"), its units and whether the
-/// signal is held from one row to the next or goes on between them.
+/// One role: its key in a map, the middle of its column's name in a log ("x" + "_pos_" + "m"), its units and
+/// whether the signal is held from one row to the next or goes on between them.
 struct signal_kind {
     signal_role role;
     std::string_view key, infix;

@@ -7,7 +7,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// The layout of a text whose first line names its columns: what separates them, and whether numbers have a decimal comma.
+/// The layout of a text whose first line names its columns: what separates them, and whether numbers have a
+/// decimal comma.
 inline import_map::layout layout_of(std::string_view text) {
     import_map::layout out;
     out.header_line = 1;
@@ -51,8 +52,9 @@ inline std::optional<std::pair<std::string, signal_role>> named_signal(std::stri
 
 } // namespace detail
 
-/// The map of a file whose columns have the names of our logs, in any unit and with any separator ("t_ms;x_pos_mm;..."),
-/// from its first line. Columns of other names are left out. Refuses a file without a time or without a position.
+/// The map of a file whose columns have the names of our logs, in any unit and with any separator
+/// ("t_ms;x_pos_mm;..."), from its first line. Columns of other names are left out. Refuses a file without a
+/// time or without a position.
 inline import_map map_of_header(std::string_view text, std::string_view file) {
     using namespace detail;
     text = without_byte_order_mark(text);

@@ -23,8 +23,8 @@ struct unit_check {
 
 namespace detail {
 
-/// The highest frequency up to which the acceleration of a record is ten times as strong as the noise of its reading,
-/// between 20 cycles in the record and 17 rows in a cycle.
+/// The highest frequency up to which the acceleration of a record is ten times as strong as the noise of its
+/// reading, between 20 cycles in the record and 17 rows in a cycle.
 inline double motion_corner(std::span<const double> position, double period, double count) {
     const double noise = reading_noise(position, count);
     const double most = 0.06 / period,
@@ -38,7 +38,8 @@ inline double motion_corner(std::span<const double> position, double period, dou
     return std::max(corner, least);
 }
 
-/// The sums of a regression over some rows: of products of its terms, of terms and command, of the command's square.
+/// The sums of a regression over some rows: of products of its terms, of terms and command, of the command's
+/// square.
 template <int Terms> struct regression_sums {
     Eigen::Matrix<double, Terms, Terms> left = Eigen::Matrix<double, Terms, Terms>::Zero();
     Eigen::Matrix<double, Terms, 1> right = Eigen::Matrix<double, Terms, 1>::Zero();
@@ -64,8 +65,8 @@ template <int Terms> struct regression_sums {
     }
 };
 
-/// Terms of the command besides the acceleration: speed, direction, a constant, the position, and its sine and cosine where it
-/// is an angle (gravity).
+/// Terms of the command besides the acceleration: speed, direction, a constant, the position, and its sine and
+/// cosine where it is an angle (gravity).
 inline constexpr int unit_terms = 7;
 using unit_sums = regression_sums<unit_terms>;
 
@@ -109,9 +110,9 @@ inline void compare_with_reference(unit_check& out, const axis_log& log) {
 
 } // namespace detail
 
-/// Regression of the command over acceleration, speed, direction and position, and of the position over the reference. A
-/// controller that fights friction or gravity may push against the acceleration for a while: spread and share say how sure
-/// the sign is.
+/// Regression of the command over acceleration, speed, direction and position, and of the position over the
+/// reference. A controller that fights friction or gravity may push against the acceleration for a while:
+/// spread and share say how sure the sign is.
 inline unit_check check_units(const axis_log& log, double period) {
     using namespace detail;
     unit_check out;

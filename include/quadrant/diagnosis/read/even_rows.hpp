@@ -5,13 +5,14 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Puts the columns of a log onto an even clock. A row that stands on the clock keeps its numbers as they are. Between rows a
-/// smooth signal follows the cubic through the four nearest good readings, and a held one (a command) the mean of its
-/// staircase over the sample, which keeps its impulse. Where rows are missing a straight line fills in, and the samples are
-/// marked.
+/// Puts the columns of a log onto an even clock. A row that stands on the clock keeps its numbers as they are.
+/// Between rows a smooth signal follows the cubic through the four nearest good readings, and a held one (a
+/// command) the mean of its staircase over the sample, which keeps its impulse. Where rows are missing a
+/// straight line fills in, and the samples are marked.
 class even_rows {
 public:
-    /// `at`: place of every row on the clock, in samples, increasing; `after_gap` as in row_clock. Samples count from 0.
+    /// `at`: place of every row on the clock, in samples, increasing; `after_gap` as in row_clock. Samples
+    /// count from 0.
     even_rows(std::vector<double> at, std::vector<unsigned char> after_gap, std::size_t samples)
         : at_(std::move(at)), after_gap_(std::move(after_gap)), samples_(samples) {}
 
@@ -59,8 +60,8 @@ public:
         }
         return out;
     }
-    /// rms of what the curvature adds to a straight line between the rows, at the samples: no less than the error of the
-    /// cubic.
+    /// rms of what the curvature adds to a straight line between the rows, at the samples: no less than the
+    /// error of the cubic.
     double interpolation_error(std::span<const double> x, std::span<const unsigned char> bad = {}) const {
         const auto rows = good_rows(bad);
         double sum = 0;

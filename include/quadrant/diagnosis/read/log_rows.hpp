@@ -9,8 +9,8 @@ namespace quadrant::diagnosis::detail {
 /// A step of the stamps may be this share of the period off, if the log is resampled (FORMAT.md).
 inline constexpr double most_spread = 0.5 + 0.01;
 
-/// The rows of a log and the even clock that its columns are put on. Where every row stands on the clock and none is missing
-/// the columns stay as they are.
+/// The rows of a log and the even clock that its columns are put on. Where every row stands on the clock and
+/// none is missing the columns stay as they are.
 class log_rows {
 public:
     /// Stamps of all rows, the rows to keep, and the last digit of the stamps [s].

@@ -10,8 +10,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// What the stamps of a log say: the period of its rows, how far the stamps depart from an even clock, and where rows
-/// are missing.
+/// What the stamps of a log say: the period of its rows, how far the stamps depart from an even clock, and
+/// where rows are missing.
 struct row_clock {
     double period = 0; ///< [s]
     double jitter = 0; ///< half the range of the stamps about an even clock, in periods; gaps are counted out
@@ -44,7 +44,8 @@ inline double lower_quarter(std::vector<double> steps) {
     return *at;
 }
 
-/// Whether all steps are whole multiples of the lower quarter's: rows of an even clock of which many may be missing.
+/// Whether all steps are whole multiples of the lower quarter's: rows of an even clock of which many may be
+/// missing.
 inline bool on_a_grid(const std::vector<double>& steps) {
     const double base = lower_quarter(steps);
     return base > 0 && std::all_of(steps.begin(), steps.end(), [&](double step) {
@@ -53,8 +54,8 @@ inline bool on_a_grid(const std::vector<double>& steps) {
            });
 }
 
-/// What a usual step is around each step: the mean of the middle half of the steps there, which neither gaps nor stamps that
-/// are early and late in turns disturb. A log may change its rate.
+/// What a usual step is around each step: the mean of the middle half of the steps there, which neither gaps
+/// nor stamps that are early and late in turns disturb. A log may change its rate.
 inline std::vector<double> usual_steps(std::span<const double> steps) {
     constexpr std::size_t each_way = 12;
     std::vector<double> out(steps.size()), near;
@@ -68,9 +69,9 @@ inline std::vector<double> usual_steps(std::span<const double> steps) {
     return out;
 }
 
-/// Fits the even clock t = offset + period slot to the stamps, with one offset for each stretch between gaps (a recorder
-/// that paused begins anew), and measures what departs from it. Least squares, because the jitter of the two ends would
-/// weigh on the plain mean.
+/// Fits the even clock t = offset + period slot to the stamps, with one offset for each stretch between gaps (a
+/// recorder that paused begins anew), and measures what departs from it. Least squares, because the jitter of
+/// the two ends would weigh on the plain mean.
 inline void fit_clock(std::span<const double> t, row_clock& out) {
     const std::size_t n = t.size();
     const auto each_stretch = [&](auto use) {
@@ -117,8 +118,8 @@ inline void fit_clock(std::span<const double> t, row_clock& out) {
     });
 }
 
-/// Reads the clock of stamps that never go back. `written`: last digit of the stamps [s]; coarsely written stamps jitter by
-/// half of it and are none the worse.
+/// Reads the clock of stamps that never go back. `written`: last digit of the stamps [s]; coarsely written
+/// stamps jitter by half of it and are none the worse.
 inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     const std::size_t n = t.size();
     row_clock out;

@@ -10,7 +10,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A text of 16-bit units (UTF-16 with its byte order mark, as Windows programs export) in UTF-8; any other as it is.
+/// A text of 16-bit units (UTF-16 with its byte order mark, as Windows programs export) in UTF-8; any other as
+/// it is.
 inline std::string in_utf8(std::string text) {
     const bool little = text.starts_with("\xFF\xFE"), big = text.starts_with("\xFE\xFF");
     if (!little && !big) return text;

@@ -21,19 +21,19 @@ inline double cubic_through(const std::array<double, 4>& at, const std::array<do
     return out;
 }
 
-/// Readings of a position that no motion explains: `wrong` ones (a bus glitch) and `stale` ones (the previous reading
-/// once more, while the axis moved).
+/// Readings of a position that no motion explains: `wrong` ones (a bus glitch) and `stale` ones (the previous
+/// reading once more, while the axis moved).
 struct wrong_readings {
     std::vector<unsigned char> bad{}; ///< of every row: 1 where it is one of them
     std::size_t wrong = 0, stale = 0;
 };
 
-/// Finds them. A reading is compared with the cubic through the two before it and the two after it. What motion and noise
-/// leave there is measured around it, robustly, so the limits follow from the record itself:
-/// - wrong: it departs by more than eight times that, and without it its neighbours agree with theirs (where the velocity
-///   jumps they do not);
-/// - stale: it repeats the reading before it, the axis moved on by more than four times that and two counts, and the next
-///   new reading makes up for it by a jump longer than the steps before and after.
+/// Finds them. A reading is compared with the cubic through the two before it and the two after it. What motion
+/// and noise leave there is measured around it, robustly, so the limits follow from the record itself:
+/// - wrong: it departs by more than eight times that, and without it its neighbours agree with theirs (where
+///   the velocity jumps they do not);
+/// - stale: it repeats the reading before it, the axis moved on by more than four times that and two counts,
+///   and the next new reading makes up for it by a jump longer than the steps before and after.
 class reading_check {
 public:
     /// Stamps that increase, readings, and the step of the reading (its count, or its last digit).
@@ -59,7 +59,8 @@ private:
                                      {x_[k - 2], x_[k - 1], x_[k + 1], x_[k + 2]}, t_[k]);
     }
 
-    /// Usual size of off() around each row: its median, as the standard deviation of noise that has this median.
+    /// Usual size of off() around each row: its median, as the standard deviation of noise that has this
+    /// median.
     std::vector<double> usual_off() const {
         constexpr double of_median = 1.4826;
         const std::size_t n = x_.size();
