@@ -167,6 +167,7 @@ TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metr
     auto file = described(real);
     real.constant_force = 25;
     auto log = as_log(run(real, three_strokes));
+    file.excluded_effects = {"gravity"}; // only an angle can have it
     const auto linear = diagnose(file, log);
     file.axes[0].kind = log.axes[0].kind = axis_kind::rotary;
     const auto rotary = diagnose(file, log);
