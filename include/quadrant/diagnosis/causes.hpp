@@ -73,7 +73,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met.
-                if (may_be_one(*e, *own)) finish(c.record, out.back().model);
+                if (!may_be_one(*e, *own)) continue;
+                if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
+                    out.back().model = std::move(again);
             }
     // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
@@ -118,9 +120,15 @@ inline double between(double before, double after) {
 inline double explained_by(const axis_case& c, std::size_t which) {
     return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
 }
-/// What is left above the noise beside it.
+/// What is left above the noise beside it. No law is better than some five per cent, so that a part of what the others
+/// explain counts as left, too.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
+    if (c.settled) return 0;
+    constexpr double law = 0.05;
+    const double own = explained_by(c, which), best = c.models.held_out_force(c.best());
+    const double all = between(c.models.held_out_force(c.path.front()), best);
+    const double others = all > own ? between(all, own) : 0;
+    return std::hypot(between(best, c.floor_force()), law * others) / own;
 }
 
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the

@@ -116,6 +116,8 @@ inline controller_finding judge_controller(const controller_description& describ
     if (!out.mended)
         out.added = added_search(described, box, floor)
                         .find(fits.empty() ? std::nullopt : std::optional(fits.front()), std::move(slopes));
+    // Below the accuracy of files and recordings only a form that is recognised is a signal.
+    if (out.added && !matters && out.added->waveform.form == waveform_form::unknown) out.added.reset();
     out.differs = matters || (exactly && moved) || out.is_added();
     return out;
 }

@@ -106,11 +106,32 @@ public:
         }
         return out;
     }
-    /// The described machine with these effects, fitted one after the other.
+    /// The described machine with these effects, fitted one after the other, up to one that cannot be told from this record.
     candidate with(const std::vector<const effect*>& effects) const {
         candidate c = calibrated_;
-        for (const effect* e : effects) c = with(c, e);
+        for (const effect* e : effects) {
+            c = with(c, e);
+            if (!std::isfinite(c.total)) break;
+        }
         return c;
+    }
+
+    /// The best model with one of its effects exchanged for another name of the same force; the others keep their numbers
+    /// where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
+    candidate exchanged(const candidate& best, const candidate& without, const effect* added) const {
+        candidate from = without;
+        plant_model known = best.fit.plant;
+        for (std::size_t i = 0; i < from.fit.parameters.size(); ++i) {
+            const parameter& p = from.fit.parameters[i];
+            for (const parameter& q : best.fit.parameters)
+                if (&p.of(known) == &q.of(known))
+                    from.fit.x[static_cast<Eigen::Index>(i)] = std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
+        }
+        fitter::put(from.fit.plant, from.fit.parameters, from.fit.x);
+        std::vector<candidate> out{joined(from, added)};
+        sketch_each(from, {0}, out);
+        if (std::isfinite(out.front().fit.objective)) finish(record_, out.front());
+        return out.front();
     }
 
     std::vector<const effect*> suspects() const {
@@ -241,6 +262,7 @@ public:
                         next.push_back(std::move(c));
             };
             for (const candidate& from : beam) add(with_each(from));
+            if (best.effects.empty()) add(everyday());
             if (const candidate* step = paying(next, best)) {
                 const candidate chosen = *step;
                 beam.assign(1, chosen);
@@ -315,7 +337,8 @@ public:
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
     bool pays(const candidate& more, const candidate& less) const {
         const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
-        if (gain < std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
+        const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
+        if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
         return shrinks(more, less);
     }
     /// Less force is left above the noise of the reading, on held-out motion and by more than a hair.
@@ -346,10 +369,28 @@ private:
         }
     }
     static double square(double x) { return x * x; }
+    /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them make.
+    std::vector<candidate> everyday() const {
+        std::vector<const effect*> each;
+        for (const effect* e : suspects())
+            if (e->everyday) each.push_back(e);
+        std::vector<candidate> out;
+        for (std::size_t set = 3; set < (std::size_t{1} << each.size()); ++set) {
+            std::vector<const effect*> some;
+            for (std::size_t i = 0; i < each.size(); ++i)
+                if (set >> i & 1) some.push_back(each[i]);
+            if (some.size() > 1) out.push_back(with(some));
+        }
+        std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
+        return out;
+    }
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const {
+        const auto worth = [&](const candidate& c) {
+            return c.total - rules_.margin * static_cast<double>(c.effects.size());
+        };
         std::stable_sort(next.begin(), next.end(),
-                         [](const auto& a, const auto& b) { return a.total > b.total; });
+                         [&](const auto& a, const auto& b) { return worth(a) > worth(b); });
         const auto found =
             std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
         return found == next.end() ? nullptr : &*found;

@@ -13,6 +13,7 @@ inline constexpr effect constant_force{
     .joins = joint::force,
     .exciting_motion = "the same stroke in both directions, and rest after each",
     .equivalent = {"asymmetric_friction"},
+    .everyday = true,
     .shows = "a mean",
     .keys = {machine_key{.name = "constant_force_N",
                          .rule = detail::rule::any_number,

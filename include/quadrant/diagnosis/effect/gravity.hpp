@@ -33,6 +33,7 @@ inline constexpr effect gravity{
     .joins = joint::force,
     .exciting_motion = "slow strokes in both directions over half a turn or more, with rest at several angles",
     .equivalent = {"constant_force", "position_spring"},
+    .everyday = true,
     .shows = "a sine of the position over one turn",
     .keys = {machine_key{.name = "gravity_torque_Nm",
                          .rule = detail::rule::not_negative,

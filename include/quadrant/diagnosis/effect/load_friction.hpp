@@ -63,14 +63,15 @@ inline constexpr effect load_friction{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const auto found = detail::friction_over_load_in(s);
         std::vector<std::vector<parameter>> out;
+        constexpr double most = 0.9; // what holds itself still under any load moves under none
         for (const double more : {found.slope, found.share}) {
             const double start = s.leader.friction.load + more;
             if (start > 0)
                 out.push_back({{.key = "load_friction",
                                 .of = [](plant_model& p) -> double& { return p.friction.load; },
-                                .start = start,
-                                .low = 0.01 * start,
-                                .high = 20 * start,
+                                .start = std::min(start, most),
+                                .low = 0.01 * std::min(start, most),
+                                .high = most,
                                 .logarithmic = true,
                                 .step = 1e-3}});
         }

@@ -96,6 +96,23 @@ std::vector<double> comb_periods(std::span<const double> signal, std::span<const
     return out;
 }
 
+/// Whether the motion repeats with one of the first multiples of this period: it is then where it was one time before, and
+/// was not in between. What repeats in time with the motion cannot be told from what follows the motion.
+inline bool motion_repeats(std::span<const double> position, double rows) {
+    const auto apart = [&](double shift) {
+        const auto by = static_cast<std::size_t>(std::lround(shift));
+        double sum = 0;
+        for (std::size_t k = by; k < position.size(); ++k) {
+            const double d = position[k] - position[k - by];
+            sum += d * d;
+        }
+        return by < position.size() ? sum / static_cast<double>(position.size() - by) : 0;
+    };
+    for (double order = 1; order <= 4 && 2 * order * rows < static_cast<double>(position.size()); ++order)
+        if (apart(order * rows) < 0.05 * std::max(apart(order * rows / 2), apart(order * rows / 3))) return true;
+    return false;
+}
+
 inline double travel(const screening& s) {
     const auto [low, high] = std::minmax_element(s.record.position.begin(), s.record.position.end());
     return *high - *low;
