@@ -6,21 +6,25 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// These effects on top of `from`, each time the one that takes most off the force on held-out motion.
+/// These effects on top of `from`, each time the one that takes most off the force on held-out motion. One that cannot be told
+/// without the others comes after them.
 inline std::vector<candidate> by_share(const axis_case& c, const candidate& from, std::vector<const effect*> effects) {
     std::vector<candidate> out{from};
     while (!effects.empty()) {
-        const effect* first = nullptr;
-        candidate best;
+        const effect* first = effects.front();
+        candidate best = out.back();
+        double least = std::numeric_limits<double>::infinity();
         for (const effect* e : effects) {
             auto with = out.back().effects;
             with.push_back(e);
             candidate m = c.models.with(with);
-            if (first && !(c.models.held_out_force(m) < c.models.held_out_force(best))) continue;
+            if (!std::isfinite(m.total) || !(c.models.held_out_force(m) < least)) continue;
+            least = c.models.held_out_force(m);
             first = e;
             best = std::move(m);
-            best.effects = std::move(with);
         }
+        best.effects = out.back().effects;
+        best.effects.push_back(first);
         std::erase(effects, first);
         out.push_back(std::move(best));
     }

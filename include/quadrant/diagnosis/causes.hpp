@@ -120,15 +120,17 @@ inline double between(double before, double after) {
 inline double explained_by(const axis_case& c, std::size_t which) {
     return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
 }
-/// What is left above the noise beside it. No law is better than some five per cent, so that a part of what the others
-/// explain counts as left, too.
+/// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
+    return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
+}
+/// The same with what the laws of the other causes may leave: none is better than some five per cent of what it explains.
+inline double doubtful_beside(const axis_case& c, std::size_t which) {
     if (c.settled) return 0;
     constexpr double law = 0.05;
-    const double own = explained_by(c, which), best = c.models.held_out_force(c.best());
-    const double all = between(c.models.held_out_force(c.path.front()), best);
-    const double others = all > own ? between(all, own) : 0;
-    return std::hypot(between(best, c.floor_force()), law * others) / own;
+    const double own = explained_by(c, which);
+    const double all = between(c.models.held_out_force(c.path.front()), c.models.held_out_force(c.best()));
+    return std::hypot(left_beside(c, which), all > own ? law * between(all, own) / own : 0);
 }
 
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the
@@ -145,7 +147,7 @@ inline double by_chance(double left) {
 /// The probability that the cause is none of the suspects: on the log, and on the hold-out log, beside what the name
 /// explains there or here (the motion there may not show it); a name that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    double out = by_chance(left_beside(c, which));
+    double out = by_chance(doubtful_beside(c, which));
     if (!c.second) return out;
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);

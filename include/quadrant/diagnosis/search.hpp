@@ -106,13 +106,25 @@ public:
         }
         return out;
     }
-    /// The described machine with these effects, fitted one after the other, up to one that cannot be told from this record.
+    /// The described machine with these effects, fitted one after the other. One that cannot be told without the others comes
+    /// after them; one that cannot be told at all adds nothing.
     candidate with(const std::vector<const effect*>& effects) const {
+        candidate whole{.effects = effects};
+        for (const candidate& known : tried_)
+            if (same(known, whole) && std::isfinite(known.total)) return known;
         candidate c = calibrated_;
-        for (const effect* e : effects) {
-            c = with(c, e);
-            if (!std::isfinite(c.total)) break;
+        std::vector<const effect*> waiting = effects;
+        for (bool found = true; found;) {
+            found = false;
+            for (const effect* e : std::exchange(waiting, {}))
+                if (candidate next = with(c, e); std::isfinite(next.total)) {
+                    c = std::move(next);
+                    found = true;
+                } else {
+                    waiting.push_back(e);
+                }
         }
+        c.effects.insert(c.effects.end(), waiting.begin(), waiting.end());
         return c;
     }
 
