@@ -171,7 +171,7 @@ TEST_CASE("apply: a suspect is left out with a note unless it is asked for") {
     CHECK(out.changes.empty());
     REQUIRE(out.notes.size() == 2);
     CHECK(out.notes[0].find("probability 0.40") != std::string::npos);
-    CHECK(out.notes[0].find("counts on it, which took the force from 14 N to 3 N") != std::string::npos);
+    CHECK(out.notes[0].find("in the diagnosis it took the force from 14 N to 3 N") != std::string::npos);
     CHECK(out.notes[1].find("no value") != std::string::npos);
     CHECK(applied(d, 0).changes.size() == 1);
 }
@@ -299,7 +299,7 @@ TEST_CASE("apply: a rotary axis gets its keys in rad and N m, and what moves wit
     CHECK(x["encoder"]["resolution_rad"] == 1e-6);
     CHECK(out.machine["axes"]["y"]["plant"]["torque_constant_Nm_per_A"] == 80);
     REQUIRE(out.notes.size() == 1);
-    CHECK(out.notes[0].ends_with("which took the torque from 0 N m to 0 N m"));
+    CHECK(out.notes[0].ends_with("it took the torque from 0 N m to 0 N m"));
 }
 
 TEST_CASE("read_diagnosis: what to_json wrote comes back whole") {

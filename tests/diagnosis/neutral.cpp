@@ -85,7 +85,8 @@ const std::map<std::string, neutral_place>& places() {
     return all;
 }
 /// Keys without a neutral value: what every machine has, and what only says where another key's effect is.
-const std::set<std::string> without_neutral{"plant.mass_kg",
+const std::set<std::string> without_neutral{"actuator.command_is", // a word
+                                            "plant.mass_kg",
                                             "plant.force_constant_N_per_V",
                                             "plant.force_constant_N_per_A",
                                             "plant.stribeck_velocity_m_per_s",

@@ -114,6 +114,7 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
     }
    ],
    "calibrated": {},
+   "calibrated_with_suspects": {},
    "evaluated_on": "holdout.csv"
   }
  },
@@ -152,6 +153,7 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
      ]
     }
    },
+   "with_suspects": {},
    "readings": [
     {
      "effect": "force_ripple",

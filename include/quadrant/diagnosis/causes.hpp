@@ -20,8 +20,11 @@ struct rival {
 
 inline double square(double x) { return x * x; }
 
-/// Two that are one model (gap/FORMAT.md) stay one name while their predictions differ by less than this share in energy.
+/// Two that are one model (docs/formats.md) stay one name while their predictions differ by less than this share of what is
+/// left, in energy; or by less than no law is right to.
 inline constexpr double alike = 0.2;
+/// No law is better than some five per cent of the force that it explains.
+inline constexpr double law_error = 0.05;
 
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
 /// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A hold-out log counts as it
@@ -60,6 +63,14 @@ inline bool contains(const candidate& model, const candidate& other, const effec
     return all;
 }
 
+/// Force that takes `before` to `after`, in energy.
+inline double between(double before, double after) {
+    return std::sqrt(std::max(std::numeric_limits<double>::min(), square(before) - square(after)));
+}
+/// What the cause number `which` explains, in force on held-out motion.
+inline double explained_by(const axis_case& c, std::size_t which) {
+    return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
+}
 /// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each other
 /// suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no other name for it.
 inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
@@ -77,13 +88,13 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
                 if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
                     out.back().model = std::move(again);
             }
-    // A form without a name is a rival when it takes the name's place: it leaves much less, and beside it the name is no
+    // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
     if (!c.settled) {
         const auto models =
             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
-            if (c.takes_off(models[i], c.best()) > 0.3 &&
+            if (c.takes_off(models[i], c.best()) > 0.5 &&
                 !c.models.pays(c.models.with(models[i], own), models[i]))
                 out.push_back({.model = models[i], .name = unlisted::curves[i]});
     }
@@ -100,7 +111,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
-        const bool equivalent = may_be_one(*r.name, *own) && excess() < alike * energy;
+        const bool equivalent =
+            may_be_one(*r.name, *own) &&
+            excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within)
             r.weight = std::max(r.weight, odds * std::exp(-excess() / unexplained) * out.front().weight);
@@ -112,14 +125,6 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     return out;
 }
 
-/// Force that takes `before` to `after`, in energy.
-inline double between(double before, double after) {
-    return std::sqrt(std::max(std::numeric_limits<double>::min(), square(before) - square(after)));
-}
-/// What the cause number `which` explains, in force on held-out motion.
-inline double explained_by(const axis_case& c, std::size_t which) {
-    return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
-}
 /// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
     return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
@@ -127,10 +132,9 @@ inline double left_beside(const axis_case& c, std::size_t which) {
 /// The same with what the laws of the other causes may leave: none is better than some five per cent of what it explains.
 inline double doubtful_beside(const axis_case& c, std::size_t which) {
     if (c.settled) return 0;
-    constexpr double law = 0.05;
     const double own = explained_by(c, which);
     const double all = between(c.models.held_out_force(c.path.front()), c.models.held_out_force(c.best()));
-    return std::hypot(left_beside(c, which), all > own ? law * between(all, own) / own : 0);
+    return std::hypot(left_beside(c, which), all > own ? law_error * between(all, own) / own : 0);
 }
 
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the

@@ -332,12 +332,15 @@ public:
         return path;
     }
 
-    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them.
+    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them. Forms without a
+    /// name hold too much to count.
     double best_without(const std::vector<const effect*>& names) const {
         const auto has_one = [&](const candidate& c) {
             return std::any_of(names.begin(), names.end(), [&](const effect* e) {
                 return std::any_of(c.effects.begin(), c.effects.end(),
-                                   [&](const effect* in) { return in == e || in->holds == e->name; });
+                                   [&](const effect* in) {
+                                       return in == e || in->holds == e->name || in->box.empty();
+                                   });
             });
         };
         double out = calibrated_.total;

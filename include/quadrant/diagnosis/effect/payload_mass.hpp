@@ -60,16 +60,25 @@ inline constexpr effect payload_mass{
     .fault = detail::payload_beyond_its_axis,
     .prior = {0.4, "tools and workpieces are changed more often than the file"},
     .remedy = "Weigh the payload and describe it; set the feedforward of gravity and acceleration to it.",
+    .advice =
+        [](const plant_model& p, double, std::string_view) {
+            return fmt::format("feedforwards of acceleration and gravity that follow from the payload found: "
+                               "{:.3g} kg m^2 and {:.3g} N m in all",
+                               p.moving_mass(), p.weight());
+        },
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const arm_load& load = s.leader.payload;
         const double scale = load.mass + load.link_mass;
         if (!(scale > 0 && load.arm > 0)) return {};
-        return {{{.key = "payload.mass_kg",
-                  .of = [](plant_model& p) -> double& { return p.payload.mass; },
-                  .start = load.mass,
-                  .low = 0,
-                  .high = 10 * scale,
-                  .step = 1e-3 * scale}}};
+        std::vector<std::vector<parameter>> out;
+        for (const double start : {load.mass, 0.0}) // changed, or taken off
+            out.push_back({{.key = "payload.mass_kg",
+                            .of = [](plant_model& p) -> double& { return p.payload.mass; },
+                            .start = start,
+                            .low = 0,
+                            .high = 10 * scale,
+                            .step = 1e-3 * scale}});
+        return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         std::vector<key_value> out{{"payload.mass_kg", {p.payload.mass}}};
