@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""Real records from the raw file through import and init to diagnose: what their README says is true, and the program finds.
+"""Real records from the raw file through import and init to diagnose: what their README says, and the program finds.
 usage: diagnose.py PROGRAM SHARED     exit code 77: the records are not there
 What it does not find yet is run and printed as well (NOT_YET), and fails as soon as it is found: move it to RIGHT then.
 EMPS is in tests/acceptance/emps.py. Pages of these records: docs/real."""
@@ -13,14 +13,16 @@ PENDULUM = {"q": {"plant": {"inertia_kg_m2": 0.169, "viscous_Nm_s_per_rad": 0.05
                   "tolerance": {"inertia": 0.1, "viscous": 0.5}}}
 TWO_JOINTS = {"q1": {"plant": {"inertia_kg_m2": 0.11}, "tolerance": {"inertia": 0.5}},
               "q2": {"plant": {"inertia_kg_m2": 0.03}, "tolerance": {"inertia": 0.5}}}
-LAAS_INIT = ["--from-log", "--torque-constant", "0.025", "--tolerance-inertia", "0.5", "--tolerance-torque-constant", "0.1"]
+LAAS_INIT = ["--from-log", "--torque-constant", "0.025", "--tolerance-inertia", "0.5",
+             "--tolerance-torque-constant", "0.1"]
 ODRIVE_INIT = ["--inertia", "2.5e-4", "--torque-constant", "1", "--tolerance-inertia", "0.3",
                "--tolerance-torque-constant", "0.1", "--resolution", str(2 * math.pi / 8192)]
 LAAS, ODRIVE = ["laas_anti_cogging/speed_test.txt"], ["odrive_cogging/odrive_slow2_nocomp_1.csv"]
 
 # name of the log: map, raw files, options of import
 LOGS = {
-    **{n: ("dfki_pendulum", [f"dfki_pendulum/{n}.measured.csv", f"dfki_pendulum/{n}.desired.csv"], []) for n in ("pd", "es")},
+    **{n: ("dfki_pendulum", [f"dfki_pendulum/{n}.{what}.csv" for what in ("measured", "desired")], [])
+       for n in ("pd", "es")},
     "laas_on": ("laas_anti_cogging", LAAS, ["--resample", "--to", "8"]),
     "laas_off": ("laas_anti_cogging", LAAS, ["--resample", "--from", "8"]),
     "odrive": ("odrive_slow_move", ODRIVE, ["--resample"]),
@@ -88,17 +90,21 @@ def friction_is_a_group(d):
 
 # record, what its README says, test
 RIGHT = [
-    ("pd", "gravity is the first cause and claimed", lambda d: bool(d["causes"]) and d["causes"][0] == claimed(d, "gravity")),
-    ("pd", "its interval meets 3.05 to 3.31 N m", lambda d: meets(claimed(d, "gravity"), "gravity_torque_Nm", 3.05, 3.31)),
+    ("pd", "gravity is the first cause and claimed",
+     lambda d: bool(d["causes"]) and d["causes"][0] == claimed(d, "gravity")),
+    ("pd", "its interval meets 3.05 to 3.31 N m",
+     lambda d: meets(claimed(d, "gravity"), "gravity_torque_Nm", 3.05, 3.31)),
     ("pd", "it holds on es: the gap of the hold-out log shrinks", lambda d: shrinks(claimed(d, "gravity"))),
     ("laas_on", "a force of 18 periods a turn is claimed", lambda d: period_is(d, 18)),
     ("laas_off", "a force of 18 periods a turn is claimed", lambda d: period_is(d, 18)),
     ("two_joints", "two axes do not explain it, and the rest of both is described",
-     lambda d: d["verdict"] in ("partly_explained", "unexplained") and all(f"axis {q}:" in d["remaining"]["structure"] for q in TWO_JOINTS)),
+     lambda d: d["verdict"] in ("partly_explained", "unexplained")
+     and all(f"axis {q}:" in d["remaining"]["structure"] for q in TWO_JOINTS)),
 ] + [(r, "nothing before the tap of a measured command is named", nothing_before_the_tap) for r in RECORDS]
 
 NOT_YET = [
-    ("pd", "Coulomb friction of 0.16 N m is claimed", lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.16, 0.16)),
+    ("pd", "Coulomb friction of 0.16 N m is claimed",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.16, 0.16)),
     ("laas_on", "friction at one speed is a group", friction_is_a_group),
     ("laas_off", "friction at one speed is a group", friction_is_a_group),
     ("laas_off", "cogging of 84 a turn is claimed", lambda d: has_harmonic(d, 84)),
@@ -106,7 +112,8 @@ NOT_YET = [
      lambda d: period_is(d, 18) and max(harmonics_a_turn(d), key=lambda x: x[1])[0] < 18.5),
     ("odrive", "cogging of 7 a turn is claimed", lambda d: has_harmonic(d, 7)),
     ("odrive", "cogging of 28 a turn is claimed", lambda d: has_harmonic(d, 28)),
-    ("odrive", "Coulomb friction of 0.19 A is claimed", lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.19, 0.19)),
+    ("odrive", "Coulomb friction of 0.19 A is claimed",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.19, 0.19)),
     ("two_joints", "gravity is claimed on joint 1", lambda d: bool(claimed(d, "gravity", "q1"))),
     ("two_joints", "gravity is claimed on joint 2", lambda d: bool(claimed(d, "gravity", "q2"))),
     ("two_joints", "coupling is claimed", lambda d: bool(claimed(d, "cross_coupling"))),
@@ -175,7 +182,8 @@ def main(program, shared):
         if record in there:
             good = test(found[record])
             bad += good
-            print("BAD     right now, move it to RIGHT:" if good else "not yet", record, what, f"(says: {says(found[record])})")
+            print("BAD     right now, move it to RIGHT:" if good else "not yet", record, what,
+                  f"(says: {says(found[record])})")
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"{used.ru_utime + used.ru_stime:.1f} s of CPU")
     return 77 if not there else 1 if bad else 0
