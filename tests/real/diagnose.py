@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSL-1.0
 """Real records from the raw file through import and init to diagnose: what their README says, and the program finds.
 usage: diagnose.py PROGRAM SHARED     exit code 77: the records are not there
-What it does not find yet is run and printed as well (NOT_YET), and fails as soon as it is found: move it to RIGHT then.
+What it does not find yet (NOT_YET) is run and printed as well, and fails as soon as it is found: move it to RIGHT
+then.
 EMPS is in tests/acceptance/emps.py. Pages of these records: docs/real."""
 import json, math, os, resource, subprocess, sys, tempfile
 
@@ -28,7 +29,8 @@ LOGS = {
     "odrive": ("odrive_slow_move", ODRIVE, ["--resample"]),
     "two_joints": ("dfki_double_pendulum", ["dfki_double_pendulum/20230629-143601.csv"], []),
 }
-# name: log, hold-out log, machine file (axes, or options of init and the log that it is begun from), options of diagnose
+# name: log, hold-out log, machine file (axes; or options of init, and the log that it is begun from),
+# options of diagnose
 RECORDS = {
     "pd": ("pd", "es", PENDULUM, []),
     "laas_on": ("laas_on", None, (LAAS_INIT, "laas_on"), []),
@@ -73,7 +75,7 @@ def harmonics_a_turn(d):
 
 
 def has_harmonic(d, order):
-    """Among those at least a quarter as strong as the strongest: one that stays within a quarter of a wave over a turn."""
+    """One within a quarter of a wave over a turn, among those at least a quarter as strong as the strongest."""
     found = harmonics_a_turn(d)
     return any(abs(h - order) < 0.25 and n >= 0.25 * max(n for _, n in found) for h, n in found)
 
@@ -154,7 +156,8 @@ def diagnosis_of(program, data, folder, name):
         with open(path, "w") as file:
             json.dump({"schema": "quadrant.machine/1", "sample_period_s": period(logs[0]), "axes": axes}, file)
     else:
-        run(program, "init", "--quiet", "--log", import_log(program, data, folder, machine[1]), *machine[0], "--out", path)
+        begun_from = import_log(program, data, folder, machine[1])
+        run(program, "init", "--quiet", "--log", begun_from, *machine[0], "--out", path)
     run(program, "diagnose", "--quiet", "--threads", "1", *options, "--machine", path, "--log", logs[0],
         *(["--holdout", logs[1]] if holdout else []), "--json", out)
     with open(out) as file:
