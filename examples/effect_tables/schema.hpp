@@ -33,6 +33,10 @@ inline void add_others(std::string_view box, ordered_json& properties, ordered_j
     properties["limit_V"] = {{"description", "the controller's own limit"}};
     properties["limit_V"].update(reference("positive"));
     properties["dac_bits"] = {{"type", "integer"}, {"minimum", 1}, {"maximum", 32}};
+    properties["command_is"] = {
+        {"description", "where the log's command column was taken; measured: behind the amplifier, so that limit, "
+                        "dead zone, lag, delay and lost samples before it cannot be causes"},
+        {"enum", {"asked", "measured"}}};
     properties["dac_range_V"] = {{"description", "whole range of the DAC: 20 for +-10 V"}};
     properties["dac_range_V"].update(reference("positive"));
     together["dac_bits"] = {"dac_range_V"};

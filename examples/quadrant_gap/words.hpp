@@ -276,7 +276,8 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
                             : fmt::format("{}, and {}", what, added);
     // The numbers are those of what is claimed, not of the suspects behind it.
     return fmt::format("{}: {} {}, the force gap shrinks from {} to {} (floor {}){}.", what,
-                       first->waveform ? "without" : "with", first != last ? "them" : "it", quantity(first->gap_before_force_rms_N.value, "N"),
+                       first->waveform ? "without" : "with", first != last ? "them" : "it",
+                       quantity(first->gap_before_force_rms_N.value, "N"),
                        quantity(last->gap_after_force_rms_N.value, "N"), floor,
                        a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
 }

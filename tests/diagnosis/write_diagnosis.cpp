@@ -205,7 +205,8 @@ TEST_CASE("to_json: a diagnosis comes out key by key as the format says") {
 }
 
 TEST_CASE("reference_csv: time and position of the axis that moves, as in a log") {
-    CHECK(reference_csv(one_cause().next, axis_kind::linear) == "t_s,x_ref_m\n0,0.100000000000\n0.5,0.125000000000\n");
+    CHECK(reference_csv(one_cause().next, axis_kind::linear) ==
+          "t_s,x_ref_m\n0,0.100000000000\n0.5,0.125000000000\n");
 }
 
 TEST_CASE("to_json: the same diagnosis gives the same bytes") {

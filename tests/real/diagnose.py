@@ -99,6 +99,8 @@ RIGHT = [
     ("pd", "it holds on es: the gap of the hold-out log shrinks", lambda d: shrinks(claimed(d, "gravity"))),
     ("laas_on", "a force of 18 periods a turn is claimed", lambda d: period_is(d, 18)),
     ("laas_off", "a force of 18 periods a turn is claimed", lambda d: period_is(d, 18)),
+    ("two_joints", "gravity is claimed on joint 1", lambda d: bool(claimed(d, "gravity", "q1"))),
+    ("two_joints", "gravity is claimed on joint 2", lambda d: bool(claimed(d, "gravity", "q2"))),
     ("two_joints", "two axes do not explain it, and the rest of both is described",
      lambda d: d["verdict"] in ("partly_explained", "unexplained")
      and all(f"axis {q}:" in d["remaining"]["structure"] for q in TWO_JOINTS)),
@@ -116,8 +118,6 @@ NOT_YET = [
     ("odrive", "cogging of 28 a turn is claimed", lambda d: has_harmonic(d, 28)),
     ("odrive", "Coulomb friction of 0.19 A is claimed",
      lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.19, 0.19)),
-    ("two_joints", "gravity is claimed on joint 1", lambda d: bool(claimed(d, "gravity", "q1"))),
-    ("two_joints", "gravity is claimed on joint 2", lambda d: bool(claimed(d, "gravity", "q2"))),
     ("two_joints", "coupling is claimed", lambda d: bool(claimed(d, "cross_coupling"))),
     ("two_joints", "Coulomb friction of 0.16 N m is claimed on joint 1",
      lambda d: meets(claimed(d, "coulomb_friction", "q1"), "coulomb_Nm", 0.16, 0.16)),

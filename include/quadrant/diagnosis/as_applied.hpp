@@ -8,7 +8,8 @@ namespace detail {
 
 /// These effects on top of `from`, each time the one that takes most off the force on held-out motion. One that cannot be told
 /// without the others comes after them.
-inline std::vector<candidate> by_share(const axis_case& c, const candidate& from, std::vector<const effect*> effects) {
+inline std::vector<candidate> by_share(const axis_case& c, const candidate& from,
+                                       std::vector<const effect*> effects) {
     std::vector<candidate> out{from};
     while (!effects.empty()) {
         const effect* first = effects.front();
@@ -35,7 +36,8 @@ inline std::vector<candidate> by_share(const axis_case& c, const candidate& from
 
 /// A group is headed by its most probable name: as long as another name of a cause weighs more, the model with that name
 /// takes its place.
-inline std::vector<cause> plant_causes_by_weight(axis_case& c, std::vector<std::vector<detail::rival>>& rivals) {
+inline std::vector<cause> plant_causes_by_weight(axis_case& c,
+                                                 std::vector<std::vector<detail::rival>>& rivals) {
     for (std::size_t round = 0; round < c.limits.most_causes; ++round) {
         const detail::rival* heavier = nullptr;
         rivals.clear();

@@ -111,9 +111,8 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
                             excess() < unexplained; // more flexible and no better: no second reading
-        const bool equivalent =
-            may_be_one(*r.name, *own) &&
-            excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
+        const bool equivalent = may_be_one(*r.name, *own) &&
+                                excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within)
             r.weight = std::max(r.weight, odds * std::exp(-excess() / unexplained) * out.front().weight);
@@ -142,7 +141,8 @@ inline double doubtful_beside(const axis_case& c, std::size_t which) {
 /// and the name its nearest. One law takes at least this share of a shape drawn at random among `shapes` independent
 /// ones with the probability (1 - share)^((shapes - 1)/2); as many laws were tried as there are names.
 inline double by_chance(double left) {
-    constexpr double shapes = 13; // a jump, a slope and a bend in velocity, position, time and command, and a mean
+    constexpr double shapes =
+        13; // a jump, a slope and a bend in velocity, position, time and command, and a mean
     const double share = 1 / (1 + square(left));
     const double names = static_cast<double>(plant_effects.size());
     return std::min(0.03 + names * std::pow(1 - share, (shapes - 1) / 2), 0.95);

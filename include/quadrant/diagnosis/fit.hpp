@@ -47,7 +47,7 @@ struct fit_result {
     Eigen::VectorXd x{}; ///< fit coordinates
     std::vector<double> innovation{};
     std::vector<std::vector<double>> ms{}; ///< by channel and block
-    double choices = 0;                    ///< score that the model took from the log itself, see predictor::run
+    double choices = 0; ///< score that the model took from the log itself, see predictor::run
     std::vector<std::vector<block_quadratic>> quadratic{}; ///< by channel and block
     double objective = std::numeric_limits<double>::infinity();
 };

@@ -79,10 +79,11 @@ struct cause {
     double probability = 0; ///< of this name
     double group_probability = 0; ///< of this name or one it is confusable with
     std::vector<std::string> confusable_with;
-    std::vector<parameter_estimate> parameters; ///< of a claim: as fitted with the claims alone, which apply writes
+    std::vector<parameter_estimate>
+        parameters; ///< of a claim: as fitted with the claims alone, which apply writes
     std::vector<parameter_estimate> with_suspects; ///< of a claim beside suspects: as fitted with all of them
-    std::vector<reading> readings;            ///< of the names it is confusable with
-    std::optional<added_waveform> waveform{}; ///< of an added command
+    std::vector<reading> readings;                 ///< of the names it is confusable with
+    std::optional<added_waveform> waveform{};      ///< of an added command
     estimate gap_before_force_rms_N, gap_after_force_rms_N;
     estimate gap_before_position_rms_m, gap_after_position_rms_m;
     estimate gap_before_command_rms_V, gap_after_command_rms_V;
@@ -111,8 +112,9 @@ struct axis_result {
     gap_numbers gap, gap_after; ///< as described; with calibration and every cause added, suspects too
     std::vector<place> where;
     std::vector<parameter_estimate> calibrated; ///< what moved inside the owner's tolerance, as machine keys
-    std::vector<parameter_estimate> calibrated_with_suspects; ///< the same beside all suspects; empty: there are none
-    std::string evaluated_on;                   ///< "held-out segments of LOG" or the hold-out file
+    std::vector<parameter_estimate>
+        calibrated_with_suspects; ///< the same beside all suspects; empty: there are none
+    std::string evaluated_on;     ///< "held-out segments of LOG" or the hold-out file
     axis_signals signals;
     axis_kind kind = axis_kind::linear;
     std::string command_unit = "V"; ///< of the command gaps

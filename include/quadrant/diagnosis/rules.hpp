@@ -11,14 +11,14 @@ struct rules {
     double margin = 15;            ///< least held-out gain of one more effect; less is undecided
     double relative_margin = 0.01; ///< least share of everything gained so far
     double least_shrink = 0.05;    ///< least relative fall of the residual force on held-out motion
-    double structure = 5; ///< log-score of blocks above their limit that still counts as the floor
+    double structure = 5;          ///< log-score of blocks above their limit that still counts as the floor
     double immaterial =
         0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
     double near_floor = 3; ///< times the noise's residual force: more is left is not explained
     std::size_t most_causes = 4, beam = 2;
     std::size_t in_pairs = 4; ///< of the single effects that are tried two at once where none pays
-    double abreast = 0;      ///< least share of the best way's gain at which another is followed beside it
-    std::size_t threads = 0; ///< 0: as many as there are cores; the result is the same
+    double abreast = 0;       ///< least share of the best way's gain at which another is followed beside it
+    std::size_t threads = 0;  ///< 0: as many as there are cores; the result is the same
     std::size_t finalists =
         4;                    ///< of each round are fitted to the end; the others showed little at a first look
     int first_look = 2;       ///< steps from each start

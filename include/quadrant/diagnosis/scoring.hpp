@@ -20,7 +20,8 @@ struct channel {
     double nu = 3;                     ///< effective independent samples of a block
     double floor = 0;                  ///< [m]
     double noise_gain = 1;             ///< rms of the means for white noise of the reading with rms 1
-    double rounding = 1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
+    double rounding =
+        1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
     std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
 };
@@ -73,7 +74,8 @@ inline void set_gains(channel& c, double pole) {
     for (std::size_t i = 0; i < points; ++i) {
         const double w = std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(points);
         const auto m = static_cast<double>(c.mean);
-        const double follows = std::norm(1.0 - std::polar(1.0, -w)) / std::norm(1.0 - pole * std::polar(1.0, -w));
+        const double follows =
+            std::norm(1.0 - std::polar(1.0, -w)) / std::norm(1.0 - pole * std::polar(1.0, -w));
         const double gain = follows * std::abs(std::sin(m * w / 2) / (m * std::sin(w / 2)));
         sum += gain * gain / static_cast<double>(points);
         worst = std::max(worst, gain);

@@ -21,8 +21,7 @@ public:
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
         fit.evaluate(given_.fit);
-        given_.total =
-            -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
+        given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
@@ -137,7 +136,8 @@ public:
             const parameter& p = from.fit.parameters[i];
             for (const parameter& q : best.fit.parameters)
                 if (&p.of(known) == &q.of(known))
-                    from.fit.x[static_cast<Eigen::Index>(i)] = std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
+                    from.fit.x[static_cast<Eigen::Index>(i)] =
+                        std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
         }
         fitter::put(from.fit.plant, from.fit.parameters, from.fit.x);
         std::vector<candidate> out{joined(from, added)};
@@ -182,8 +182,7 @@ public:
     /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it sees of noise and
     /// half a count.
     double structure(const std::vector<double>& ms, const channel& c, double sigma) const {
-        const double limit =
-            4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
+        const double limit = 4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
         double sum = 0;
         for (double block : ms) sum += 0.5 * c.nu * std::max(0.0, std::log(block / limit));
         return sum;
@@ -230,9 +229,7 @@ public:
     }
 
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
-    bool near_floor(const candidate& c) const {
-        return held_out_force(c) < rules_.near_floor * floor_force(c);
-    }
+    bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
 
     /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
     /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
@@ -240,7 +237,8 @@ public:
     const std::vector<double>& tolerance_cloud() const {
         if (!cloud_.empty()) return cloud_;
         std::mt19937_64 random(20080901);
-        std::vector<plant_model> plants(21, calibrated_.fit.plant); // the first is the calibrated machine itself
+        std::vector<plant_model> plants(21,
+                                        calibrated_.fit.plant); // the first is the calibrated machine itself
         for (std::size_t j = 1; j < plants.size(); ++j)
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
@@ -287,8 +285,9 @@ public:
                 continue;
             }
             // What two effects do to the force may cancel: then neither pays alone.
-            const std::vector<candidate> single(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                                rules_.in_pairs, next.size())));
+            const std::vector<candidate> single(
+                next.begin(),
+                next.begin() + static_cast<std::ptrdiff_t>(std::min(rules_.in_pairs, next.size())));
             next.clear();
             for (std::size_t i = 0; i < single.size(); ++i) {
                 std::vector<const effect*> others;
@@ -337,10 +336,9 @@ public:
     double best_without(const std::vector<const effect*>& names) const {
         const auto has_one = [&](const candidate& c) {
             return std::any_of(names.begin(), names.end(), [&](const effect* e) {
-                return std::any_of(c.effects.begin(), c.effects.end(),
-                                   [&](const effect* in) {
-                                       return in == e || in->holds == e->name || in->box.empty();
-                                   });
+                return std::any_of(c.effects.begin(), c.effects.end(), [&](const effect* in) {
+                    return in == e || in->holds == e->name || in->box.empty();
+                });
             });
         };
         double out = calibrated_.total;
@@ -353,7 +351,8 @@ public:
     bool pays(const candidate& more, const candidate& less) const {
         const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
         const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
-        if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
+        if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far))
+            return false;
         return shrinks(more, less);
     }
     /// Less force is left above the noise of the reading, on held-out motion and by more than a hair.
@@ -406,8 +405,7 @@ private:
         };
         std::stable_sort(next.begin(), next.end(),
                          [&](const auto& a, const auto& b) { return worth(a) > worth(b); });
-        const auto found =
-            std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
+        const auto found = std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
         return found == next.end() ? nullptr : &*found;
     }
     static candidate joined(const candidate& from, const effect* added) {

@@ -109,7 +109,8 @@ inline bool motion_repeats(std::span<const double> position, double rows) {
         return by < position.size() ? sum / static_cast<double>(position.size() - by) : 0;
     };
     for (double order = 1; order <= 4 && 2 * order * rows < static_cast<double>(position.size()); ++order)
-        if (apart(order * rows) < 0.05 * std::max(apart(order * rows / 2), apart(order * rows / 3))) return true;
+        if (apart(order * rows) < 0.05 * std::max(apart(order * rows / 2), apart(order * rows / 3)))
+            return true;
     return false;
 }
 

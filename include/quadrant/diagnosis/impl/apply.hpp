@@ -27,14 +27,15 @@ public:
                 throw bad_input(file_, fmt::format("axes.{}: is a {} axis; the diagnosis is of another machine",
                                                    a.name, name_of(kind_of(a.name))));
         }
-        const bool with_suspects =
-            std::any_of(d.causes.begin(), d.causes.end(), [&](const cause& c) { return taken(c) && !claimed(c); });
+        const bool with_suspects = std::any_of(d.causes.begin(), d.causes.end(),
+                                               [&](const cause& c) { return taken(c) && !claimed(c); });
         for (cause c : d.causes) {
             if (with_suspects && !c.with_suspects.empty()) c.parameters = c.with_suspects;
             // A group is sure where its names are not: any reading of it predicts the record.
             if (!taken(c))
                 out_.notes.push_back(fmt::format(
-                    "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the {}",
+                    "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the "
+                    "{}",
                     c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
                     text_of(fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
                                         c.gap_after_force_rms_N.value),

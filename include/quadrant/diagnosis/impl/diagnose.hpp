@@ -229,8 +229,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s,
-                          machine.excluded_effects, r, tell);
+        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s, machine.excluded_effects,
+                    r, tell);
         detail::diagnose_axis(out, detail::need_blocks(c, log.file));
     }
     return out;
