@@ -111,7 +111,7 @@ sed 300d "$root/examples/import/halsampler.txt" >lost.txt
 "$program" import --map "$root/examples/import/halsampler.map.json" lost.txt l.csv | grep -q '1 rows are missing in 1 places'
 sed 's/"unit": "V"/"unit": "V", "scale": -1/' "$root/examples/import/halsampler.map.json" >turned.json
 refuses 'the command drives against the acceleration' import --map turned.json "$root/examples/import/halsampler.txt" l.csv
-refuses 'times the mass of 8000' import --map "$root/examples/import/halsampler.map.json" --mass 8000 --force-constant 400 \
+refuses 'of the mass of 8000' import --map "$root/examples/import/halsampler.map.json" --mass 8000 --force-constant 400 \
     "$root/examples/import/halsampler.txt" l.csv
 "$program" import --quiet --unchecked --map turned.json "$root/examples/import/halsampler.txt" l.csv
 refuses 'no column "time"' import --map "$root/examples/import/odrive.map.json" halsampler.csv l2.csv

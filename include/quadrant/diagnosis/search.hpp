@@ -228,6 +228,8 @@ public:
         return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
+    bool settled(const candidate& c) const { return settled(c.fit.ms, record_.score, noise(c)); }
+
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
     bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
 
@@ -259,12 +261,12 @@ public:
     }
 
     /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; where no single effect
-    /// pays and something is left, two at once. Returns the calibrated machine and the models with one cause more each.
+    /// pays on the calibrated machine and something is left, two at once. Returns the calibrated machine and the models with one cause more each.
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
         while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
-               (best.effects.empty() || !near_floor(best) || !immaterial(best))) {
+               (best.effects.empty() || !near_floor(best) || !settled(best))) {
             std::vector<candidate> next;
             const auto add = [&](std::vector<candidate> some) {
                 for (candidate& c : some)
@@ -272,8 +274,12 @@ public:
                         next.push_back(std::move(c));
             };
             for (const candidate& from : beam) add(with_each(from));
-            if (best.effects.empty()) add(everyday());
-            if (const candidate* step = paying(next, best)) {
+            const candidate* step = paying(next, best);
+            if (best.effects.empty() && !(step && (at_noise(*step) || near_floor(*step)))) {
+                add(everyday());
+                step = paying(next, best);
+            }
+            if (step) {
                 const candidate chosen = *step;
                 beam.assign(1, chosen);
                 for (const auto& c : next)
@@ -284,6 +290,7 @@ public:
                 best = chosen;
                 continue;
             }
+            if (!best.effects.empty() || immaterial(best)) break;
             // What two effects do to the force may cancel: then neither pays alone.
             const std::vector<candidate> single(
                 next.begin(),
@@ -295,7 +302,7 @@ public:
                     if (!has(single[i], single[j].effects.back())) others.push_back(single[j].effects.back());
                 add(with_these(single[i], others));
             }
-            const candidate* step = paying(next, best);
+            step = paying(next, best);
             if (!step || best.effects.size() + 2 > rules_.most_causes) break;
             best = *step;
             beam.assign(1, best);
