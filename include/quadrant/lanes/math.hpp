@@ -53,26 +53,28 @@ template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) no
 }
 /// xsimd's in registers; the C library's in a lane beyond 2^18 pi/2.
 template <std::size_t W, class Isa> lanes<W, Isa> sin(const lanes<W, Isa>& x) noexcept {
+    const auto near = within_turns(x);
     lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::sin;
             return sin(v);
         },
-        x);
-    if (const auto near = within_turns(x); !all(near))
+        all(near) ? x : select(near, x, lanes<W, Isa>()));
+    if (!all(near))
         for (std::size_t i = 0; i < W; ++i)
             if (!near[i]) y.set(i, std::sin(x[i]));
     return y;
 }
 /// xsimd's in registers; the C library's in a lane beyond 2^18 pi/2.
 template <std::size_t W, class Isa> lanes<W, Isa> cos(const lanes<W, Isa>& x) noexcept {
+    const auto near = within_turns(x);
     lanes<W, Isa> y = lanes<W, Isa>::map(
         [](const auto& v) {
             using std::cos;
             return cos(v);
         },
-        x);
-    if (const auto near = within_turns(x); !all(near))
+        all(near) ? x : select(near, x, lanes<W, Isa>()));
+    if (!all(near))
         for (std::size_t i = 0; i < W; ++i)
             if (!near[i]) y.set(i, std::cos(x[i]));
     return y;
@@ -81,32 +83,37 @@ template <std::size_t W, class Isa> lanes<W, Isa> cos(const lanes<W, Isa>& x) no
 template <std::size_t W, class Isa> lanes<W, Isa> tan(const lanes<W, Isa>& x) noexcept {
     return lanes<W, Isa>::one_by_one([](double v) { return std::tan(v); }, x);
 }
+namespace detail {
+/// Rounds in registers what has a fraction. From 2^52 on a number is whole, and an infinity or a NaN stays: without SSE4
+/// xsimd would turn them into integers.
+template <std::size_t W, class Isa, class Round>
+lanes<W, Isa> rounded(const lanes<W, Isa>& x, const Round& round) noexcept {
+    const auto has_fraction = less(abs(x), lanes<W, Isa>(0x1p52));
+    if (all(has_fraction)) return lanes<W, Isa>::map(round, x);
+    return select(has_fraction, lanes<W, Isa>::map(round, select(has_fraction, x, lanes<W, Isa>())), x);
+}
+} // namespace detail
+
 /// As std::floor.
 template <std::size_t W, class Isa> lanes<W, Isa> floor(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
-        [](const auto& v) {
-            using std::floor;
-            return floor(v);
-        },
-        x);
+    return detail::rounded(x, [](const auto& v) {
+        using std::floor;
+        return floor(v);
+    });
 }
 /// Halves away from zero, as std::round.
 template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
-        [](const auto& v) {
-            using std::round;
-            return round(v);
-        },
-        x);
+    return detail::rounded(x, [](const auto& v) {
+        using std::round;
+        return round(v);
+    });
 }
 /// As std::trunc.
 template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept {
-    return lanes<W, Isa>::map(
-        [](const auto& v) {
-            using std::trunc;
-            return trunc(v);
-        },
-        x);
+    return detail::rounded(x, [](const auto& v) {
+        using std::trunc;
+        return trunc(v);
+    });
 }
 /// std::atan2, lane by lane.
 template <std::size_t W, class Isa>
