@@ -34,24 +34,27 @@ inline std::vector<candidate> by_share(const axis_case& c, const candidate& from
 
 } // namespace detail
 
-/// A group is headed by its most probable name: as long as another name of a cause weighs more, the model with that name
-/// takes its place.
-inline std::vector<cause> plant_causes_by_weight(axis_case& c,
-                                                 std::vector<std::vector<detail::rival>>& rivals) {
-    for (std::size_t round = 0; round < c.limits.most_causes; ++round) {
-        const detail::rival* heavier = nullptr;
-        rivals.clear();
-        for (std::size_t i = 0; i < c.best().effects.size() && !heavier; ++i) {
-            rivals.push_back(detail::rivals_of(c, i));
-            for (const auto& r : rivals.back())
-                if (r.same && r.weight > (heavier ? heavier : &rivals.back().front())->weight) heavier = &r;
+/// The rivals of each cause of the best model. A group is headed by its most probable name: where another name of a cause
+/// weighs more, the model with that name takes its place, as many times as there may be causes.
+inline std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
+    std::vector<std::vector<detail::rival>> out;
+    std::size_t left = c.limits.most_causes;
+    while (out.size() < c.best().effects.size()) {
+        out.push_back(detail::rivals_of(c, out.size()));
+        const detail::rival* heaviest = &out.back().front();
+        for (const auto& r : out.back())
+            if (r.same && r.weight > heaviest->weight) heaviest = &r;
+        if (left == 0 || heaviest == &out.back().front()) continue;
+        auto way = c.models.path_to(heaviest->model);
+        if (search::same(way.back(), c.best())) {
+            left = 0;
+            continue;
         }
-        if (!heavier) break;
-        auto way = c.models.path_to(heavier->model);
-        if (search::same(way.back(), c.best())) break;
+        --left;
         c.follow(std::move(way));
+        out.clear();
     }
-    return plant_causes(c, &rivals);
+    return out;
 }
 
 /// Puts what apply will write first: the claims, the one that takes most off before the others, fitted without the suspects,

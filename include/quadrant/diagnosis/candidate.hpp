@@ -22,6 +22,8 @@ struct candidate {
     Eigen::MatrixXd gradient{};           ///< of the score, one column a motion segment
     /// rms of the residual force on held-out motion [N], once it was asked for; copies share it.
     std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();
+    /// White noise of the position as it sees it [m], likewise.
+    std::shared_ptr<std::optional<double>> noise = std::make_shared<std::optional<double>>();
 };
 
 inline constexpr std::size_t folds = 5;
@@ -166,6 +168,7 @@ inline void judge(const axis_record& record, candidate& c) {
             curvature[i] = 1 / (p.spread * p.spread);
     cross_validate(c, record.score, curvature);
     c.held_out_force = std::make_shared<std::optional<double>>();
+    c.noise = std::make_shared<std::optional<double>>();
     c.fit.innovation = {};
     c.fit.quadratic = {};
 }

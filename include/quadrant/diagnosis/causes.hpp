@@ -230,13 +230,11 @@ inline void widen(std::vector<parameter_estimate>& mine, const std::vector<param
 
 } // namespace detail
 
-/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings. `kept`: the
-/// models that each was weighed against.
+/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings. `rivals`: of
+/// each, the models that it is weighed against (detail::rivals_of).
 inline std::vector<cause> plant_causes(const axis_case& c,
-                                       std::vector<std::vector<detail::rival>>* kept = nullptr) {
+                                       const std::vector<std::vector<detail::rival>>& rivals) {
     const auto& effects = c.best().effects;
-    std::vector<std::vector<detail::rival>> rivals;
-    for (std::size_t i = 0; i < effects.size(); ++i) rivals.push_back(detail::rivals_of(c, i));
     std::vector<cause> out;
     for (std::size_t i = 0; i < effects.size(); ++i) {
         const effect& e = *effects[i];
@@ -277,7 +275,6 @@ inline std::vector<cause> plant_causes(const axis_case& c,
         named.group_probability = std::max(named.probability, named.group_probability * known);
         out.push_back(std::move(named));
     }
-    if (kept) *kept = std::move(rivals);
     return out;
 }
 

@@ -174,9 +174,12 @@ public:
 
     /// White noise of the position as a model sees it [m].
     double noise(const candidate& c) const {
-        std::vector<double> innovation;
-        record_.observer.run(c.fit.plant, innovation);
-        return position_noise(innovation, record_.score, record_.resolution);
+        if (!*c.noise) {
+            std::vector<double> innovation;
+            record_.observer.run(c.fit.plant, innovation);
+            *c.noise = position_noise(innovation, record_.score, record_.resolution);
+        }
+        return **c.noise;
     }
 
     /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it sees of noise and

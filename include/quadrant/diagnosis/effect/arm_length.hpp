@@ -26,12 +26,7 @@ inline constexpr effect arm_length{
     .remedy =
         "Measure the distance of the payload from the axis and describe it; set the feedforward of gravity and "
         "acceleration to it.",
-    .advice =
-        [](const plant_model& p, double, std::string_view) {
-            return fmt::format("feedforwards of acceleration and gravity that follow from the payload found: "
-                               "{:.3g} kg m^2 and {:.3g} N m in all",
-                               p.moving_mass(), p.weight());
-        },
+    .advice = detail::feedforwards_of_payload,
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.payload.inertia() > 0)) return {};
         return {{detail::freed(

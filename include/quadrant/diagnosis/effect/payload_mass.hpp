@@ -26,6 +26,12 @@ inline void add_what_payload_moves(std::vector<key_value>& keys, const plant_mod
     keys.push_back({"mass_kg", {p.moving_mass()}});
     if (!p.turns_level) keys.push_back({"gravity_torque_Nm", {p.weight()}});
 }
+/// What to feed forward for the payload that was found.
+inline std::string feedforwards_of_payload(const plant_model& p, double, std::string_view) {
+    return fmt::format("feedforwards of acceleration and gravity that follow from the payload found: "
+                       "{:.3g} kg m^2 and {:.3g} N m in all",
+                       p.moving_mass(), p.weight());
+}
 
 } // namespace quadrant::diagnosis::detail
 
@@ -60,12 +66,7 @@ inline constexpr effect payload_mass{
     .fault = detail::payload_beyond_its_axis,
     .prior = {0.4, "tools and workpieces are changed more often than the file"},
     .remedy = "Weigh the payload and describe it; set the feedforward of gravity and acceleration to it.",
-    .advice =
-        [](const plant_model& p, double, std::string_view) {
-            return fmt::format("feedforwards of acceleration and gravity that follow from the payload found: "
-                               "{:.3g} kg m^2 and {:.3g} N m in all",
-                               p.moving_mass(), p.weight());
-        },
+    .advice = detail::feedforwards_of_payload,
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const arm_load& load = s.leader.payload;
         const double scale = load.mass + load.link_mass;

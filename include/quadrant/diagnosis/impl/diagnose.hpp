@@ -120,8 +120,8 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     result.name = c.axis.name;
     result.kind = c.axis.kind;
     result.command_unit = c.axis.command_unit;
-    std::vector<std::vector<rival>> rivals;
-    auto causes = plant_causes_by_weight(c, rivals);
+    auto rivals = rivals_by_weight(c);
+    auto causes = plant_causes(c, rivals);
     const bool guess = untested(c);
     if (guess) to_suspects(causes);
     put_as_applied(c, causes, rivals);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/causes.hpp"
+#include "workshop.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+constexpr double pole = 0.9;
+
+/// Innovations of an observer with both poles at `pole` on a reading of white noise with rms 1.
+std::vector<double> noise_seen(std::size_t rows) {
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> reading;
+    std::vector<double> out(rows);
+    double x = 0, v = 0; // v: a row
+    for (double& e : out) {
+        e = reading(random) - x;
+        x += (1 - pole * pole) * e;
+        v += (1 - pole) * (1 - pole) * e;
+        x += v;
+    }
+    return out;
+}
+std::vector<channel> channels(std::size_t rows) {
+    const std::vector<std::size_t> segment(rows, 0);
+    return quadrant::diagnosis::detail::channels_of(8, 0, pole, segment, [&](std::size_t block) {
+        std::vector<std::size_t> first;
+        for (std::size_t k = block; k + block <= rows; k += block) first.push_back(k);
+        return first;
+    });
+}
+double mean_square(const std::vector<double>& e, const channel& c) {
+    const auto ms = quadrant::diagnosis::detail::block_ms(e, c);
+    double sum = 0;
+    for (double m : ms) sum += m / static_cast<double>(ms.size());
+    return sum;
+}
+std::vector<const effect*> suspects_of(command_origin origin) {
+    const workshop::machine real;
+    auto axis = workshop::described(real).axes[0];
+    axis.actuator.command_is = origin;
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto record = prepare(log, workshop::period, workshop::count,
+                                scales_of(axis.plant, log, workshop::period, workshop::count));
+    return search(record, axis, {}, {}, [](const std::string&) {}).suspects();
+}
+
+} // namespace
+
+TEST_CASE("channels: each is five times slower than the one before, as long as it has five blocks") {
+    const auto all = channels(20000);
+    std::vector<std::size_t> means;
+    for (const channel& c : all) means.push_back(c.mean);
+    CHECK(means == std::vector<std::size_t>{1, 8, 40, 200});
+    CHECK(all.back().first_of_block.size() >= 5);
+    CHECK(channels(1000).size() == 2); // four blocks of the third
+    CHECK(channels(1200).size() == 3);
+}
+
+TEST_CASE("channels: what each sees of the reading's noise is what an observer passes to it") {
+    const auto e = noise_seen(400000);
+    for (const channel& c : channels(400000)) {
+        CAPTURE(c.mean);
+        CHECK(std::sqrt(mean_square(e, c)) ==
+              doctest::Approx(c.noise_gain).epsilon(c.mean < 100 ? 0.03 : 0.15));
+    }
+}
+
+TEST_CASE("channels: a slow signal that the noise hides row by row stands out in the mean over a stroke") {
+    auto e = noise_seen(40000);
+    const auto all = channels(e.size());
+    const double row = mean_square(e, all.front()), stroke = mean_square(e, all.back());
+    for (double& x : e) x += 0.05;
+    CHECK(mean_square(e, all.front()) < 1.01 * row);
+    CHECK(mean_square(e, all.back()) > 100 * stroke);
+}
+
+TEST_CASE("suspects: what acts on the command before the tap of a measured one is none") {
+    const auto on_command = [](const effect* e) { return e->joins == quadrant::joint::command; };
+    const auto asked = suspects_of(command_origin::asked), measured = suspects_of(command_origin::measured);
+    CHECK(std::count_if(asked.begin(), asked.end(), on_command) ==
+          5); // dead zone, limit, lag, delay, lost samples
+    CHECK(std::none_of(measured.begin(), measured.end(), on_command));
+    CHECK(asked.size() == measured.size() + 5);
+}
+
+TEST_CASE("chance: a law that takes nearly all off is believed, one that takes a third off is not") {
+    namespace d = quadrant::diagnosis::detail;
+    CHECK(d::by_chance(0) == doctest::Approx(0.03));
+    CHECK(d::by_chance(std::sqrt(1.0 / 9)) < 0.05); // nine tenths of the energy
+    CHECK(d::by_chance(std::sqrt(2.0)) > 0.9);      // a third
+    for (double left = 0; left < 3; left += 0.1) CHECK(d::by_chance(left) <= d::by_chance(left + 0.1));
+}
+
+TEST_CASE("chance: two rare effects must bring more than two common ones") {
+    namespace d = quadrant::diagnosis::detail;
+    CHECK(d::rarity({&suspect::coulomb_friction}) == 0);
+    CHECK(d::rarity({&suspect::actuator_dead_zone}) > d::rarity({&suspect::viscous_friction}));
+    CHECK(d::rarity({&suspect::actuator_dead_zone, &suspect::sample_loss}) ==
+          doctest::Approx(d::rarity({&suspect::actuator_dead_zone}) + d::rarity({&suspect::sample_loss})));
+}
+
+TEST_CASE("process: a period with which the motion repeats tells nothing of a process") {
+    std::vector<double> strokes;
+    for (int k = 0; k < 8000; ++k) strokes.push_back(std::abs(k % 1000 - 500)); // there and back in 1000 rows
+    for (const double rows : {1000.0, 500.0, 1000.0 / 3, 250.0, 2000.0}) {
+        CAPTURE(rows);
+        CHECK(quadrant::diagnosis::detail::motion_repeats(strokes, rows));
+    }
+    for (const double rows : {20.0, 73.0, 370.0, 640.0}) {
+        CAPTURE(rows);
+        CHECK_FALSE(quadrant::diagnosis::detail::motion_repeats(strokes, rows));
+    }
+}
