@@ -10,6 +10,9 @@
 
 namespace quadrant::diagnosis {
 
+/// No law is better than some five per cent of the force that it explains.
+inline constexpr double law_error = 0.05;
+
 /// One axis under diagnosis: the record, the described machine and the models tried so far.
 class search {
 public:
@@ -235,6 +238,13 @@ public:
 
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
     bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
+    /// The same, or what the laws of its friction and of its causes may be wrong by.
+    bool near_its_laws(const candidate& c) const {
+        const auto& f = c.fit.plant.friction;
+        const double taken = std::max(0.0, square(held_out_force(calibrated_)) - square(held_out_force(c)));
+        const double laws = law_error * std::hypot(f.coulomb + f.excess, std::sqrt(taken));
+        return held_out_force(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
+    }
 
     /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
     /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
