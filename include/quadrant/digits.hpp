@@ -6,9 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#ifdef __cpp_exceptions
-#    include <charconv>
-#endif
 
 /// A number as text, for messages.
 namespace quadrant::detail {

@@ -69,3 +69,30 @@ TEST_CASE("portable: any double reads back from shortest_digits") {
         if (std::isfinite(x)) CHECK(std::strtod(by_us(x).c_str(), nullptr) == x);
     }
 }
+
+TEST_CASE("portable: leading_number reads what std::from_chars reads, and refuses what it refuses") {
+    const auto same = [](const std::string& text) {
+        double ours = -7, theirs = -7;
+        const char* const end = text.data() + text.size();
+        const auto a = leading_number(text.data(), end, ours);
+        const auto b = std::from_chars(text.data(), end, theirs);
+        INFO(text);
+        CHECK(a.ec == b.ec);
+        CHECK(a.ptr - text.data() == b.ptr - text.data());
+        CHECK(bits_as<std::uint64_t>(ours) == bits_as<std::uint64_t>(theirs));
+    };
+    for (const char* text :
+         {"",    "-",    ".",     "-.",        "+1",      " 1",    "1",      "-1",     "1.",
+          ".5",  "1.5e", "1.5e+", "1.5e3",     "1.5E-3x", "1e400", "-1e400", "1e-400", "0e999",
+          "0.0", "-0",   "inf",   "-Infinity", "infinit", "nan",   "NaN",    "0x10",   "1,5",
+          "1 2", "e5",   "12abc", "1.2.3",     "5e-324",  "--1",   "1e--2"})
+        same(text);
+    std::mt19937_64 random(3);
+    for (int k = 0; k < 5000; ++k) {
+        const auto x = bits_as<double>(random());
+        if (std::isfinite(x)) same(by_library(x));
+        std::string noise;
+        for (int i = 0; i < 8; ++i) noise += "0123456789.eE+-x"[random() % 16];
+        same(noise);
+    }
+}
