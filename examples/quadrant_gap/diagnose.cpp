@@ -2,13 +2,11 @@
 // quadrant-gap diagnose: why does the machine not do what its simulation says?
 #include "commands.hpp"
 #include "digested.hpp"
+#include "make_match.hpp"
 #include "report.hpp"
 #include "summary.hpp"
 
-#include <quadrant/diagnosis/at_period.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
-#include <quadrant/diagnosis/import/check_physics.hpp>
-#include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <memory>
@@ -57,24 +55,9 @@ rules chosen(const diagnose_options& o) {
 void run(const diagnose_options& o) {
     const auto machine = read_digested_machine(o.machine);
     auto log = read_digested_log(o.log);
-    check_match(machine.contents, log.contents);
-    check_physics(machine.contents, log.contents);
     std::optional<digested<machine_log>> holdout;
-    if (!o.holdout.empty()) {
-        holdout = read_digested_log(o.holdout);
-        if (!has_period_of(machine.contents, holdout->contents))
-            holdout->contents = at_period(holdout->contents, log.contents.sample_period_s);
-        check_match(machine.contents, holdout->contents);
-        check_physics(machine.contents, holdout->contents);
-    }
-    for (const auto& axis : machine.contents.axes)
-        for (const auto& logged : log.contents.axes)
-            if (logged.name == axis.name && logged.command_is != axis.actuator.command_is &&
-                logged.command_is == command_origin::measured)
-                log.contents.notes.push_back(fmt::format(
-                    "axis {}: its column says that the command was measured behind the amplifier; the machine "
-                    "file does not (actuator.command_is): amplifier effects are then suspects too.",
-                    axis.name));
+    if (!o.holdout.empty()) holdout = read_digested_log(o.holdout);
+    make_match(machine.contents, log.contents, holdout ? &holdout->contents : nullptr);
     progress_line tell(o);
     auto result = diagnose(
         machine.contents, log.contents, holdout ? &holdout->contents : nullptr,
