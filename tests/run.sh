@@ -158,6 +158,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
     libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
+[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page will be skipped"
 
 for phase; do
     case $phase in

@@ -17,6 +17,12 @@ inline std::string without_options(std::string text) {
     return text;
 }
 
+/// "velocity-gain" as words.
+inline std::string spaced(std::string text) {
+    std::replace(text.begin(), text.end(), '-', ' ');
+    return text;
+}
+
 /// What the form asks, by the axes of a log.
 inline nlohmann::json form_fields(const machine_log& log) {
     nlohmann::json out = nlohmann::json::array();
@@ -33,6 +39,7 @@ inline nlohmann::json form_fields(const machine_log& log) {
                            std::string_view(f.option).starts_with("tolerance-force");
         out.push_back({{"option", f.option},
                        {"box", f.box},
+                       {"name", spaced(text_of(f.option, kind))},
                        {"label", text_of(f.meaning, kind)},
                        {"unit", text_of(f.unit, kind)},
                        {"often", usual}});

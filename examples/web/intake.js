@@ -14,7 +14,7 @@ const known_as = {
 function list_files() {
     the('dropped').replaceChildren(...[...dropped].map(([name, f]) => {
         const item = make('li', {className: f.error ? 'bad' : ''}, make('b', {textContent: name}), known_as[f.kind](f));
-        for (const note of f.error ? [f.error] : f.notes || []) item.append(make('small', {textContent: note}));
+        for (const note of f.error ? [f.error].filter(() => f.kind !== 'table') : f.notes || []) item.append(make('small', {textContent: note}));
         return item;
     }));
 }
@@ -66,7 +66,7 @@ function ask_columns() {
     the('columns').hidden = !name;
     if (!name) return;
     const table = dropped.get(name);
-    the('columns-why').textContent = `${name}: ${table.error}`;
+    the('columns-why').textContent = `${name} does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one.`;
     const option = (value, text = value.replaceAll('_', ' ')) => make('option', {value, textContent: text});
     the('columns').querySelector('tbody').replaceChildren(...table.columns.map((c, k) => {
         const title = table.named ? c.name : `column ${k + 1} (${c.name} in the first row)`;

@@ -27,7 +27,7 @@ async function ask_machine() {
 function lay_out(fields) {
     const axes = dropped.get(form_log).axes.map(a => a.name);
     const field = f => axes.map(axis => make('label', {},
-        `${f.label}${f.unit ? ` [${f.unit}]` : ''}${axes.length > 1 ? `, axis ${axis}` : ''}`,
+        make('b', {textContent: `${f.name}${axes.length > 1 ? ` of ${axis}` : ''}`}), `: ${f.label}${f.unit ? ` [${f.unit}]` : ''}`,
         (() => { const i = make('input', {type: 'number', step: 'any'}); Object.assign(i.dataset, {option: f.option, axis}); return i; })()));
     const group = (title, list) => make('fieldset', {}, make('legend', {textContent: title}), make('div', {className: 'fields'}, ...list.flatMap(field)));
     const often = fields.filter(f => f.often);
