@@ -47,23 +47,21 @@ inline std::string html_report(const diagnosis_result& d) {
     const bool gap = d.verdict > verdict::within_tolerance;
     std::string next = paragraph(capital(d.next.motion));
     for (const std::string& line : experiment_lines(d.next)) next += paragraph(line);
-    return report_page(
-        {{"title", escape(file_name(d.log_file) + " against " + file_name(d.machine_file))},
-         {"badge", badge(d.verdict)},
-         {"sentence", escape(verdict_sentence(d))},
-         {"overview", overviews},
-         {"causes", causes(d)},
-         {"remaining", gap ? paragraph(percent(d.share_unexplained) + " of the gap stays unexplained.") +
-                                 paragraph(d.remaining_structure)
-                           : "<p class=\"empty\">Nothing that matters.</p>"},
-         {"next", !d.next.motion.empty() ? next
-                  : gap                  ? "<p class=\"empty\">None is proposed.</p>"
-                                         : "<p class=\"empty\">None is needed.</p>"},
-         {"unseen", not_seen(d)},
-         {"axes", charts},
-         {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
-         {"files", "<dl>" + files + "</dl>"},
-         {"charts", book.json_of_all()}});
+    return report_page({{"title", escape(file_name(d.log_file) + " against " + file_name(d.machine_file))},
+                        {"badge", badge(d.verdict)},
+                        {"sentence", escape(verdict_sentence(d))},
+                        {"overview", overviews},
+                        {"causes", causes(d)},
+                        {"remaining", gap ? paragraph(unexplained_share(d)) + paragraph(d.remaining_structure)
+                                          : "<p class=\"empty\">Nothing that matters.</p>"},
+                        {"next", !d.next.motion.empty() ? next
+                                 : gap                  ? "<p class=\"empty\">None is proposed.</p>"
+                                                        : "<p class=\"empty\">None is needed.</p>"},
+                        {"unseen", not_seen(d)},
+                        {"axes", charts},
+                        {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
+                        {"files", "<dl>" + files + "</dl>"},
+                        {"charts", book.json_of_all()}});
 }
 
 } // namespace quadrant_gap

@@ -54,15 +54,17 @@ inline std::string summary_of(const diagnosis_result& d, const axis_result& a) {
     };
     text += row("gap", "before", "after", "floor");
     for (const gap_row& r : gap_rows(a)) text += row("  " + r.name, r.before, r.after, r.floor);
+    std::size_t shares = 14; // the widest of them; the text begins two columns behind
+    for (const place& p : a.where) shares = std::max(shares, percent(p.share).size());
     for (const auto& [view, title] : views) {
         std::string places;
         for (const place& p : a.where)
             if (p.view == view) {
                 const std::string share = percent(p.share),
                                   box = p.block + (p.block.empty() || p.finding.empty() ? "" : ": ");
-                places +=
-                    wrapped(box + p.finding + (p.basis.empty() ? "" : fmt::format(" (by {})", p.basis)), 20)
-                        .replace(4, share.size(), share);
+                places += wrapped(box + p.finding + (p.basis.empty() ? "" : fmt::format(" (by {})", p.basis)),
+                                  shares + 6)
+                              .replace(4, share.size(), share);
             }
         if (!places.empty()) text += fmt::format("  where, {}\n{}", title, places);
     }
@@ -110,8 +112,7 @@ inline std::string summary(const diagnosis_result& d, bool verbose = false) {
         text += "\n";
     }
     if (d.verdict > verdict::within_tolerance) {
-        text += "What is left\n" + wrapped(percent(d.share_unexplained) + " of the gap stays unexplained.", 2) +
-                wrapped(d.remaining_structure, 2) + "\n";
+        text += "What is left\n" + wrapped(unexplained_share(d), 2) + wrapped(d.remaining_structure, 2) + "\n";
     }
     if (!d.next.motion.empty()) {
         text += "Next experiment\n" + wrapped(capital(d.next.motion), 2);

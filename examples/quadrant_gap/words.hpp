@@ -297,6 +297,13 @@ inline std::string verdict_sentence(const diagnosis_result& d) {
     return worst == d.axes.end() ? "The log has no axis." : sentence(d, *worst);
 }
 
+/// What the causes leave of the gap. In energy: 1 % of it is a tenth of the rms value.
+inline std::string unexplained_share(const diagnosis_result& d) {
+    if (!(d.share_unexplained > 0)) return "Nothing that matters.";
+    return fmt::format("{} of the gap's energy (the square of its rms value) stays unexplained.",
+                       d.share_unexplained < 0.005 ? "Less than 1 %" : percent(d.share_unexplained));
+}
+
 inline std::string experiment_gain(const experiment& e) {
     if (e.expected_gain <= 0) return "";
     const double score = e.expected_gain / score_temperature; // as the probabilities are weighed

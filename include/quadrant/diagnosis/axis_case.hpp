@@ -80,6 +80,11 @@ public:
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
     /// behind the names.
     bool at_floor() const { return settled && settled_on_second; }
+    /// Nothing is left that would matter when the claims alone are added: the suspects are not needed.
+    bool claims_suffice() const {
+        const candidate& m = applied();
+        return claims > 0 && models.settled(m) && models.near_its_laws(m);
+    }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
         const auto energy = [&](const candidate& m) {

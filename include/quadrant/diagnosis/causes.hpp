@@ -127,10 +127,10 @@ inline double left_beside(const axis_case& c, std::size_t which) {
     return c.excused ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
 /// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some five per
-/// cent of what it explains.
+/// cent of what it explains. What does not matter to the owner counts against a cause that explains even less.
 inline double doubtful_beside(const axis_case& c, double explained) {
-    if (c.excused) return 0;
     const double left = between(c.models.held_out_force(c.best()), c.floor_force());
+    if (c.excused && left < explained) return 0;
     const double all = between(c.models.held_out_force(c.path.front()), c.models.held_out_force(c.best()));
     return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
@@ -147,16 +147,18 @@ inline double by_chance(double left) {
     return std::min(0.03 + names * std::pow(1 - share, (shapes - 1) / 2), 0.95);
 }
 
-/// The probability that the cause is none of the suspects: on the log, and on the hold-out log, beside what the name
-/// explains there or here (the motion there may not show it); a name that makes that one worse was not the cause there.
+/// The probability that the cause is none of the suspects: on the log, beside what the name explains here or there; on the
+/// hold-out log, where a gap stays open there, beside what it explains there. A name that makes that one worse was not
+/// the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
     if (!c.second) return by_chance(doubtful_beside(c, explained_by(c, which)));
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
-    const double explained = std::max(explained_by(c, which), between(before.force, after.force));
-    double out = by_chance(doubtful_beside(c, explained));
-    if (!c.settled_on_second) out = std::max(out, by_chance(between(after.force, c.floor_force()) / explained));
+    const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
+    const double there = between(std::min(before.force, machine), after.force);
+    double out = by_chance(doubtful_beside(c, std::max(explained_by(c, which), there)));
+    if (!c.settled_on_second) out = std::max(out, by_chance(between(after.force, c.floor_force()) / there));
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }

@@ -8,10 +8,11 @@ namespace quadrant::diagnosis {
 
 /// What the selection asks of a cause, in one place. Scores are log-scores of held-out motion.
 struct rules {
-    double margin = 15;            ///< least held-out gain of one more effect; less is undecided
-    double relative_margin = 0.01; ///< least share of everything gained so far
-    double least_shrink = 0.05;    ///< least relative fall of the residual force on held-out motion
-    double structure = 5;          ///< log-score of blocks above their limit that still counts as the floor
+    double margin = 15;                ///< least held-out gain of one more effect; less is undecided
+    double relative_margin = 0.01;     ///< least share of everything gained so far
+    double least_shrink = 0.05;        ///< least relative fall of the residual force on held-out motion
+    double least_shrink_of_band = 0.5; ///< the same of what one channel sees
+    double structure = 5;              ///< log-score of blocks above their limit that still counts as the floor
     double immaterial =
         0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
     double near_floor = 3; ///< times the noise's residual force: more is left is not explained

@@ -207,9 +207,7 @@ public:
     /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what machines inside
     /// the owner's tolerances leave there.
     bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const {
-        double mean = 0;
-        for (double block : ms) mean += block / static_cast<double>(ms.size());
-        const double left = mean - square(c.noise_gain * sigma);
+        const double left = mean_of(ms) - square(c.noise_gain * sigma);
         return left < square(rules_.immaterial) * tolerance_cloud()[i];
     }
     bool immaterial(const candidate& c) const {
@@ -385,11 +383,22 @@ public:
             return false;
         return shrinks(more, less);
     }
-    /// Less force is left above the noise of the reading, on held-out motion and by more than a hair.
+    /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while that does
+    /// not grow, half of the innovations of one channel. A drag is small beside the peaks of every reversal, but not in its own band.
     bool shrinks(const candidate& more, const candidate& less) const {
-        const double floor = square(floor_force(more));
+        const double floor = square(floor_force(more)), fall = square(1 - rules_.least_shrink);
         const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
-        return left(more) < square(1 - rules_.least_shrink) * left(less);
+        if (left(more) < fall * left(less)) return true;
+        if (left(more) > left(less) / fall) return false;
+        const double sigma = noise(more);
+        for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
+            const double of_noise = square(record_.score.channels[i].noise_gain * sigma);
+            const auto above = [&](const candidate& c) {
+                return std::max(0.0, mean_of(c.fit.ms[i]) - of_noise);
+            };
+            if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
+        }
+        return false;
     }
 
     static bool has(const candidate& c, const effect* e) {
@@ -441,6 +450,11 @@ private:
         }
     }
     static double square(double x) { return x * x; }
+    static double mean_of(const std::vector<double>& x) {
+        double sum = 0;
+        for (double v : x) sum += v;
+        return x.empty() ? 0 : sum / static_cast<double>(x.size());
+    }
     /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them make.
     std::vector<candidate> everyday() const {
         std::vector<const effect*> each;

@@ -23,8 +23,9 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
         const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
                                                c.models.immaterial(c.path.front()));
         if (!silent)
-            return std::all_of(causes.begin(), causes.end(), claimed) ? verdict::explained
-                                                                      : verdict::partly_explained;
+            return std::all_of(causes.begin(), causes.end(), claimed) || c.claims_suffice()
+                       ? verdict::explained
+                       : verdict::partly_explained;
         const auto& given = c.models.given();
         const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
                               c.models.structure(given, c.noise) < c.limits.structure;
@@ -56,7 +57,8 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
         text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
                        c.axis.encoder.resolution_m);
     if (c.at_floor()) {
-        text += worded("%.3g N rms behind the command, the noise floor", result.gap_after.force_rms_N);
+        text += worded("%.3g N rms behind the command (floor %.3g N), which does not matter",
+                       result.gap_after.force_rms_N, c.floor_force());
     } else {
         text += worded("%.3g N rms behind the command (floor %.3g N)", result.gap_after.force_rms_N,
                        c.floor_force());
@@ -115,6 +117,16 @@ inline void to_suspects(std::vector<cause>& causes) {
     }
 }
 
+/// A value that the tolerance stopped: either the tolerance is too narrow, or something else acts.
+inline void note_bounds(diagnosis_result& out, const axis_result& result) {
+    for (const parameter_estimate& p : result.calibrated)
+        if (p.on_bound)
+            out.notes.push_back(
+                worded("axis %s: the calibrated %s stops at the end of its tolerance: the tolerance "
+                       "is too narrow, or an effect acts that is not named.",
+                       result.name.c_str(), p.key.c_str()));
+}
+
 inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
@@ -160,6 +172,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     put_in_words(result.kind, result.calibrated);
     put_in_words(result.kind, result.calibrated_with_suspects);
     put_in_words(result.kind, causes);
+    note_bounds(out, result);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
