@@ -135,9 +135,11 @@ interrupt() { # SIGNAL SECONDS PROGRAM ARGUMENTS...: with a temporary folder of 
 }
 interrupt TERM 2 "$program" trial --machines 20 --jobs 1 --quiet
 [ -z "$(ls tmp)" ] || fail "an interrupted trial leaves $(ls tmp)"
-mkdir -p many/a
+for k in $(seq 20); do
+    mkdir -p "many/$k"
+    cp l.csv "many/$k/log.csv"
+done
 cp m.json many/machine.json
-cp l.csv many/a/log.csv
 interrupt HUP 1.5 "$program" fleet --jobs 1 --out many_out many
 [ -z "$(find many_out -name '.working-*')" ] || fail "an interrupted fleet leaves $(find many_out -name '.working-*')"
 if [ -x "$cnc" ]; then
