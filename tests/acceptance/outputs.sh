@@ -135,13 +135,16 @@ interrupt() { # SIGNAL SECONDS PROGRAM ARGUMENTS...: with a temporary folder of 
 }
 interrupt TERM 2 "$program" trial --machines 20 --jobs 1 --quiet
 [ -z "$(ls tmp)" ] || fail "an interrupted trial leaves $(ls tmp)"
-mkdir -p many/a
+for k in $(seq 20); do
+    mkdir -p "many/$k"
+    cp l.csv "many/$k/log.csv"
+done
 cp m.json many/machine.json
-cp l.csv many/a/log.csv
 interrupt HUP 1.5 "$program" fleet --jobs 1 --out many_out many
 [ -z "$(find many_out -name '.working-*')" ] || fail "an interrupted fleet leaves $(find many_out -name '.working-*')"
 if [ -x "$cnc" ]; then
-    interrupt TERM 0.4 "$cnc" run --quiet --cnc "$root/examples/quadrant_cnc/mill.json" --path "$root/examples/path/butterfly.nc" --log cnc.csv
+    awk 'BEGIN { print "G21 G17 G90 G61 F300"; for (k = 0; k < 4000; ++k) print "G1 X" (k % 2 ? 20 : 0) " Y" (k % 3) }' >long.nc
+    interrupt TERM 1 "$cnc" run --quiet --cnc "$root/examples/quadrant_cnc/mill.json" --path long.nc --log cnc.csv
     [ ! -e cnc.csv ] || fail 'an interrupted run leaves a log'
 fi
 no_leftovers 'an interrupted program'

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/write_diagnosis.hpp"
 
+#include <csignal>
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <fstream>
 #include <limits>
@@ -251,19 +253,37 @@ TEST_CASE("write_aside: what cannot be written is refused by its name and leaves
         std::filesystem::temp_directory_path() / fmt::format("quadrant_write_aside_folder_{}", getpid());
     std::filesystem::create_directories(folder / "taken" / "inside");
     CHECK_THROWS_WITH_AS(write_aside(folder / "taken", "x"),
-                         ((folder / "taken").string() + ": cannot be written").c_str(), bad_input);
+                         ((folder / "taken").string() + ": is a directory").c_str(), bad_input);
     CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("write_aside: a full disk is noticed and the old file stays" *
-          doctest::skip(!std::filesystem::exists("/dev/full"))) {
-    const auto path = std::filesystem::temp_directory_path() / fmt::format("quadrant_full_{}", getpid());
-    const auto aside = path.string() + fmt::format(".tmp-{}", getpid());
+TEST_CASE("write_aside: a full disk is noticed and the old file stays") {
+    const auto folder = std::filesystem::temp_directory_path() / fmt::format("quadrant_full_{}", getpid());
+    std::filesystem::create_directories(folder);
+    const auto path = folder / "d.json";
     write_aside(path, "old");
-    std::filesystem::create_symlink("/dev/full", aside);
-    CHECK_THROWS_WITH_AS(write_aside(path, "new"), (path.string() + ": cannot be written").c_str(), bad_input);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto on_signal = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{2, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    std::string said;
+    try {
+        write_aside(path, "new");
+    } catch (const bad_input& fault) {
+        said = fault.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, on_signal);
+    CHECK(said.starts_with(path.string() + ": cannot be written: "));
     CHECK(contents(path) == "old");
-    CHECK_FALSE(std::filesystem::exists(std::filesystem::symlink_status(aside)));
-    std::filesystem::remove(path);
+    CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("write_aside: a device is written to, and says when it is full" *
+          doctest::skip(!std::filesystem::exists("/dev/full"))) {
+    CHECK_THROWS_AS(write_aside("/dev/full", "x"), bad_input);
+    CHECK(std::filesystem::is_character_file("/dev/full"));
 }

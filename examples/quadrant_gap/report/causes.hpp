@@ -18,7 +18,10 @@ inline std::string interval_bar(const estimate& e, std::string_view unit, double
     const double low = std::min(0.0, e.low), high = std::max(to, e.high);
     if (!(e.high > e.low) || !std::isfinite(high - low)) return "";
     const double margin = 0.06 * (high - low), from = low < 0 ? low - margin : 0,
-                 whole = (high > 0 ? high + margin : 0) - from;
+                 whole = (high <= 0    ? 0
+                          : high <= to ? to
+                                       : high + margin) -
+                         from;
     const auto at = [&](double v) { return 100 * (v - from) / whole; };
     const scale shown = scale_of(unit, std::max(std::abs(low), std::abs(high)));
     const auto end = [&](double v) { return with_unit(number(v * shown.factor), shown.unit); };
