@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "../signal.hpp"
+#include "../standstill.hpp"
 
 #include <algorithm>
 #include <array>
@@ -90,6 +91,7 @@ public:
         }
         const value force = value::from_value(force_constant_ * sum / (step_ * Real(double(given_.steps))));
         if (!finite(force, s.alpha, s.beta, s.held_d, s.held_q)) return out_.hold();
+        for (Real* each : {&s.alpha, &s.beta, &s.held_d, &s.held_q}) *each = unless_died_out(*each);
         state_ = s;
         limited_ = clipped;
         return out_.keep(force);
