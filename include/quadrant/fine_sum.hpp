@@ -34,7 +34,7 @@ template <class Value, bool Fine = true> struct fine_sum {
     /// The same, without a rest that has died out.
     fine_sum rested() const noexcept { return {high, unless_died_out(low)}; }
     /// x minus the sum: exact where both are close.
-    Value below(const Value& x) const noexcept { return (x - high) - low; }
+    Value below(const Value& x) const noexcept { return detail::rounded_here<Value>(x - high) - low; }
     /// The sum plus a part of its own size or smaller, rounded once.
     Value with(const Value& part) const noexcept { return high + (low + part); }
 

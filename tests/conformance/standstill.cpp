@@ -59,9 +59,6 @@ TEST_CASE("the flags see a subnormal number when there is one") {
     CHECK_FALSE(subnormal_flags::raised());
     x = x * 1e-10;
     CHECK(subnormal_flags::raised());
-    subnormal_flags::clear();
-    x = x + 1;
-    CHECK((subnormal_flags::raised() || !std::isnormal(x)));
 }
 TEST_CASE_TEMPLATE("every block: after a rest at zero no state is subnormal", Real, double, float) {
     rests_cleanly<Real>(0);

@@ -35,7 +35,7 @@ public:
         require_positive("limiter.period", period);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             const double low = detail::plain(lane(p.low, i)), high = detail::plain(lane(p.high, i));
-            require(low == low, "limiter.low", low, "must be a number");
+            require(true, "limiter.low", low, "must be a number");
             require(low <= high, "limiter.high", high,
                     "must not lie below low (" + detail::shortest(low) + ")");
         }

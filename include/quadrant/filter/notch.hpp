@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "../fine_sum.hpp"
 #include "../finite.hpp"
 #include "../standstill.hpp"
 #include "second_order.hpp"
@@ -51,7 +52,7 @@ public:
     }
 
     value operator()(value x) noexcept {
-        const value ahead = state_.ahead + (x - state_.input);
+        const value ahead = state_.ahead + detail::rounded_here<value>(x - state_.input);
         const value half = coefficients_.thrust * (ahead - coefficients_.brake * state_.band);
         const value middle = state_.band + half, rise = coefficients_.g * middle;
         const value y = x - coefficients_.damping * middle;

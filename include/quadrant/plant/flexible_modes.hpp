@@ -90,7 +90,7 @@ public:
     value operator()(argument force) noexcept {
         state next;
         value sum{};
-        Real check{0};
+        bool good = finite(force);
         for (std::size_t i = 0; i < Modes; ++i) {
             const step& m = steps_[i];
             const Real bent = m.compliance * force.value(), q = state_.deflection[i].value() - bent,
@@ -98,9 +98,9 @@ public:
             next.deflection[i] = value::from_value(state_.deflection[i].value() + (m.away * q + m.onward * v));
             next.speed[i] = velocity::from_value(v + (m.back * q + m.loss * v));
             sum += next.deflection[i];
-            check += next.speed[i].value() - next.speed[i].value(); // NaN if it is not finite
+            good = good && finite(next.speed[i]);
         }
-        if (!finite(force, sum, check)) return out_.hold();
+        if (!good || !finite(sum)) return out_.hold();
         for (std::size_t i = 0; i < Modes; ++i) {
             state_.deflection[i] = unless_died_out(next.deflection[i]);
             state_.speed[i] = unless_died_out(next.speed[i]);
