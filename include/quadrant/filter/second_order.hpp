@@ -69,6 +69,7 @@ Value retuned_band(const second_order_coefficients<Real>& c, const second_order_
 struct second_order_response {
     std::complex<double> slow, band;
 };
+/// Both at f.
 template <class Real>
 second_order_response response(const second_order_coefficients<Real>& c, frequency f, duration period) {
     const double angle = pi * f.value() * period.value();
