@@ -2,7 +2,6 @@
 #pragma once
 #include "finite.hpp"
 
-#include <bit>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
@@ -16,9 +15,9 @@ namespace detail {
 /// The part of a number's bits that is zero below 2^-895 (float: 2^-63). Nothing is left of a signal in SI below that, and a product
 /// with any coefficient of a filter is still a normal number. By bits: the values of several numbers are tested at once.
 constexpr std::uint64_t large_bits(double x) noexcept {
-    return std::bit_cast<std::uint64_t>(x) & 0x7800'0000'0000'0000;
+    return bits_as<std::uint64_t>(x) & 0x7800'0000'0000'0000;
 }
-constexpr std::uint32_t large_bits(float x) noexcept { return std::bit_cast<std::uint32_t>(x) & 0x6000'0000; }
+constexpr std::uint32_t large_bits(float x) noexcept { return bits_as<std::uint32_t>(x) & 0x6000'0000; }
 template <class Dual>
 requires requires(const Dual& d) {
     d.value;
