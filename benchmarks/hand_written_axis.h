@@ -22,11 +22,11 @@ struct hand_parameters {
 
 struct hand_controller {
     /* designed once */
-    double rate, keep, take, position_gain, velocity_feedforward, velocity_gain, integral_per_sample;
-    double b0, b1, b2, a1, a2;
+    double rate, lose, take, position_gain, velocity_feedforward, velocity_gain, integral_per_sample;
+    double notch_g, notch_damping, notch_brake, notch_thrust;
     double acceleration_feedforward, viscous_feedforward, coulomb_feedforward, limit, dac_step;
     /* state */
-    double reference_x, reference_v, measured_y, measured_v, integral, s0, s1;
+    double reference_x, reference_v, measured_y, measured_v, integral, notch_ahead, band, notch_input;
     /* last good output of each box, and its flags */
     double reference_velocity_last, reference_acceleration_last, measured_velocity_last, position_loop_last;
     double velocity_feedforward_last, velocity_loop_last, notch_last, inertia_last, friction_last, limiter_last, dac_last;
@@ -54,20 +54,20 @@ inline void hand_design(const struct hand_parameters* p, struct hand_controller*
     const double pi = 3.141592653589793238462643383279502884;
     const double wc = 2 * pi * p->estimator_corner, wt = wc * p->period;
     const double t = tan(pi * p->period * p->notch_frequency);
-    const double a0 = 1 + p->notch_damping * t + t * t;
     const double periods = p->delay / p->period;
 
     memset(c, 0, sizeof *c);
     c->rate = 1 / p->period;
-    c->keep = (2 - wt) / (2 + wt);
+    c->lose = 2 * wt / (2 + wt);
     c->take = 2 * wc / (2 + wt);
     c->position_gain = p->position_gain;
     c->velocity_feedforward = p->velocity_feedforward;
     c->velocity_gain = p->velocity_gain;
     c->integral_per_sample = p->velocity_integral * p->period;
-    c->b0 = c->b2 = (1 + t * t) / a0;
-    c->b1 = c->a1 = 2 * (t * t - 1) / a0;
-    c->a2 = (1 - p->notch_damping * t + t * t) / a0;
+    c->notch_g = t;
+    c->notch_damping = p->notch_damping;
+    c->notch_brake = t + p->notch_damping;
+    c->notch_thrust = t / (1 + t * (t + p->notch_damping));
     c->acceleration_feedforward = p->acceleration_feedforward;
     c->viscous_feedforward = p->viscous_feedforward;
     c->coulomb_feedforward = p->coulomb_feedforward;
@@ -91,6 +91,13 @@ inline bool hand_finite(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return (bits & 0x7ff0000000000000u) != 0x7ff0000000000000u;
+}
+
+/* What has died out becomes zero, so that an axis at rest computes with no subnormal numbers. */
+inline bool hand_tiny(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (bits & 0x7800000000000000u) == 0; /* below 2^-895 */
 }
 
 inline double hand_rounded(double x, double step) { return step > 0 ? round(x / step) * step : x; }
@@ -137,11 +144,12 @@ inline double hand_control(struct hand_controller* c, double reference, double m
     }
     c->reference_acceleration = y;
 
-    y = c->keep * c->measured_v + c->take * (measured - c->measured_y);
+    y = c->measured_v + (c->take * (measured - c->measured_y) - c->lose * c->measured_v);
     if (Checked && !hand_finite(y)) {
         c->measured_velocity_fault = true;
         y = c->measured_velocity_last;
     } else {
+        if (Checked && hand_tiny(y)) y = 0;
         c->measured_y = measured;
         c->measured_v = y;
         if (Checked) c->measured_velocity_last = y;
@@ -173,16 +181,19 @@ inline double hand_control(struct hand_controller* c, double reference, double m
     c->feedback = y;
 
     {
-        const double x = c->feedback;
-        y = c->b0 * x + c->s0;
-        const double s0 = c->b1 * x - c->a1 * y + c->s1;
-        const double s1 = c->b2 * x - c->a2 * y;
-        if (Checked && !hand_finite(y + s0 + s1)) {
+        const double x = c->feedback, ahead = c->notch_ahead + (x - c->notch_input);
+        const double half = c->notch_thrust * (ahead - c->notch_brake * c->band), middle = c->band + half;
+        const double rise = c->notch_g * middle;
+        double left = ahead - (rise + rise), band = middle + half;
+        y = x - c->notch_damping * middle;
+        if (Checked && !hand_finite(y + (left + band))) {
             c->notch_fault = true;
             y = c->notch_last;
         } else {
-            c->s0 = s0;
-            c->s1 = s1;
+            if (Checked && hand_tiny(left) && hand_tiny(band)) left = band = 0;
+            c->notch_ahead = left;
+            c->band = band;
+            c->notch_input = x;
             if (Checked) c->notch_last = y;
         }
     }
@@ -246,7 +257,7 @@ template <bool Checked> inline double hand_move(struct hand_machine* m, double u
         return m->last;
     }
     m->x = x;
-    m->v = v;
+    m->v = Checked && hand_tiny(v) ? 0 : v;
     for (int i = hand_capacity; i > 0; --i) m->past[i] = m->past[i - 1];
     m->limited = beyond;
     if (Checked) m->last = reading;

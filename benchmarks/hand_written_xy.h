@@ -38,17 +38,17 @@ struct xy_estimator {
     struct xy_held out;
 };
 struct xy_notch {
-    double s0, s1;
+    double ahead, band, input;
     struct xy_held out;
 };
 
 template <int LearningTaps, int SmoothingTaps> struct xy_axis {
     /* designed once */
-    double keep, take, b0, b1, a2, position_gain, velocity_gain, per_sample, inertia_gain, drag_gain, limit,
+    double lose, take, g, damping, brake, thrust, position_gain, velocity_gain, per_sample, inertia_gain, drag_gain, limit,
         dac_step, rate;
     double coulomb, excess, stribeck_velocity, viscous, attraction_step, share[xy_springs],
         stiffness_step[xy_springs];
-    double from_z0, from_z1, from_u0, from_u1, from_u2, feedback1, feedback2, solved;
+    double from_z0, from_z1, from_z2, from_u0, from_u1, from_u2, feedback1, feedback2, solved;
     double weight[2][4], learning[xy_window(LearningTaps)],
         smoothing[xy_window(SmoothingTaps)]; /* newest last */
     size_t oldest[2], ahead;
@@ -73,6 +73,12 @@ static inline bool xy_finite(double x) {
     memcpy(&bits, &x, sizeof bits);
     return (bits & 0x7ff0000000000000u) != 0x7ff0000000000000u;
 }
+/* What has died out becomes zero, so that an axis at rest computes with no subnormal numbers. */
+static inline bool xy_tiny(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (bits & 0x7800000000000000u) == 0; /* below 2^-895 */
+}
 static inline double xy_hold(struct xy_held* out) {
     out->fault = true;
     return out->last;
@@ -84,22 +90,26 @@ static inline double xy_kept(struct xy_held* out, double y) {
 }
 static inline size_t xy_forward(size_t at, size_t size) { return at + 1 == size ? 0 : at + 1; }
 
-static inline double xy_estimate(struct xy_estimator* e, double keep, double take, double y) {
-    const double v = keep * e->v + take * (y - e->y);
+static inline double xy_estimate(struct xy_estimator* e, double lose, double take, double y) {
+    double v = e->v + (take * (y - e->y) - lose * e->v);
     if (!xy_finite(v)) return xy_hold(&e->out);
+    if (xy_tiny(v)) v = 0;
     e->y = y;
     e->v = v;
     e->out.last = v;
     return v;
 }
 
-static inline double xy_notched(struct xy_notch* n, double b0, double b1, double a2, double x) {
-    const double y = b0 * x + n->s0;
-    const double s0 = b1 * x - b1 * y + n->s1;
-    const double s1 = b0 * x - a2 * y;
-    if (!xy_finite(y + (s0 + s1))) return xy_hold(&n->out);
-    n->s0 = s0;
-    n->s1 = s1;
+template <class Axis> inline double xy_notched(const Axis* a, struct xy_notch* n, double x) {
+    const double ahead = n->ahead + (x - n->input);
+    const double half = a->thrust * (ahead - a->brake * n->band), middle = n->band + half;
+    const double rise = a->g * middle, y = x - a->damping * middle;
+    double left = ahead - (rise + rise), band = middle + half;
+    if (!xy_finite(y + (left + band))) return xy_hold(&n->out);
+    if (xy_tiny(left) && xy_tiny(band)) left = band = 0;
+    n->ahead = left;
+    n->band = band;
+    n->input = x;
     n->out.last = y;
     return y;
 }
@@ -134,8 +144,9 @@ inline double xy_remember(struct xy_axis<LearningTaps, SmoothingTaps>* a, double
     const double p = xy_fir<SmoothingTaps>(a->smoothing, &a->m[a->next_m + 1]);
     const double y = xy_fir<LearningTaps>(a->learning, &a->r[a->next_r + 1]);
     if (!xy_finite(early + (m + (p + y)))) return xy_hold(&a->memory);
-    a->p[a->next_p] = p;
-    if (a->next_p < 3) a->p[a->next_p + xy_ring] = p;
+    const double kept = xy_tiny(p) ? 0 : p;
+    a->p[a->next_p] = kept;
+    if (a->next_p < 3) a->p[a->next_p + xy_ring] = kept;
     a->next_m = xy_forward(a->next_m, size_m);
     a->next_p = xy_forward(a->next_p, xy_ring);
     a->next_r = xy_forward(a->next_r, size_r);
@@ -145,12 +156,13 @@ inline double xy_remember(struct xy_axis<LearningTaps, SmoothingTaps>* a, double
 
 template <class Axis> inline double xy_observe(Axis* a, double measured) {
     const double x = measured - a->d_measured;
-    const double unforced = a->from_z0 * x + a->d0;
+    const double unforced = a->d0 + a->from_z0 * x;
     const double d = a->solved * (unforced - a->from_u0 * a->linear), u = a->linear - d;
-    const double d0 = a->from_z1 * x - a->from_u1 * u - a->feedback1 * d + a->d1;
-    const double d1 = -(a->from_u2 * u) - a->feedback2 * d;
+    double d0 = a->d0 + (a->from_z1 * x - a->from_u1 * u - a->feedback1 * d + a->d1);
+    double d1 = a->d1 + (a->from_z2 * x - a->from_u2 * u - a->feedback2 * d);
     a->stepped = xy_finite(measured + (d + u)) && xy_finite(d0) && xy_finite(d1);
     if (!a->stepped) return xy_hold(&a->disturbance);
+    if (xy_tiny(d) && xy_tiny(u) && xy_tiny(x) && xy_tiny(d0) && xy_tiny(d1)) d0 = d1 = 0;
     a->d0 = d0;
     a->d1 = d1;
     a->d_measured = measured;
@@ -219,10 +231,10 @@ inline double xy_control(struct xy_axis<LearningTaps, SmoothingTaps>* a, const s
     }
     a->reference = in->position;
     a->measured = in->measured;
-    a->rate_wanted = xy_notched(&a->reference_notch, a->b0, a->b1, a->a2,
-                                xy_estimate(&a->reference_velocity, a->keep, a->take, in->position));
-    a->rate_measured = xy_notched(&a->measured_notch, a->b0, a->b1, a->a2,
-                                  xy_estimate(&a->measured_velocity, a->keep, a->take, in->measured));
+    a->rate_wanted = xy_notched(a, &a->reference_notch,
+                                xy_estimate(&a->reference_velocity, a->lose, a->take, in->position));
+    a->rate_measured = xy_notched(a, &a->measured_notch,
+                                  xy_estimate(&a->measured_velocity, a->lose, a->take, in->measured));
     a->error = in->position - in->measured;
     a->learned = xy_remember(a, a->error);
     a->demand = xy_kept(&a->position_loop, a->position_gain * (a->error + a->learned)) + a->rate_wanted;
@@ -289,16 +301,17 @@ inline void xy_design(const struct xy_parameters<LearningTaps, SmoothingTaps>* p
                       struct xy_axis<LearningTaps, SmoothingTaps>* a) {
     const double pi = 3.141592653589793238462643383279502884, h = p->period;
     const double we = 2 * pi * p->estimator_corner, wt = we * h;
-    const double t = tan(pi * h * p->notch_centre), a0 = 1 + p->notch_damping * t + t * t;
+    const double t = tan(pi * h * p->notch_centre);
     const double wc = 2 * pi * p->corner, k = 2 / h, low = wc * wc * p->plant_gain;
     double sum = 0;
 
     memset((void*)a, 0, sizeof *a);
-    a->keep = (2 - wt) / (2 + wt);
+    a->lose = 2 * wt / (2 + wt);
     a->take = 2 * we / (2 + wt);
-    a->b0 = (1 + t * t) / a0;
-    a->b1 = 2 * (t * t - 1) / a0;
-    a->a2 = a->b0 + a->b0 - 1;
+    a->g = t;
+    a->damping = p->notch_damping;
+    a->brake = t + p->notch_damping;
+    a->thrust = t / (1 + t * (t + p->notch_damping));
     a->position_gain = p->position_gain;
     a->velocity_gain = p->velocity_gain;
     a->per_sample = p->velocity_integral * h;
@@ -319,16 +332,17 @@ inline void xy_design(const struct xy_parameters<LearningTaps, SmoothingTaps>* p
         a->stiffness_step[i] = p->stiffness[i] * h;
     }
 
-    { /* (s + wc)^2 B over k^2 (1 + w)^2, s = k (1 - w)/(1 + w), w = z^-1; z enters by its differences */
+    { /* (s + wc)^2 B over k^2 (D + 2)^2, s = k D/(D + 2), D = z - 1; z enters by its differences, (D + 1) D/(D + 2) */
         const double c0 = low * pow(k, -2), c1 = (wc + wc) * p->plant_gain * pow(k, -1), c2 = p->plant_gain;
         const double under0 = c0 + c1 + c2, i1 = wc * wc * p->plant_pole * pow(k, -1), i2 = wc * wc;
         a->from_z0 = (i1 + i2) / under0;
-        a->from_z1 = (i1 - i2) / under0;
+        a->from_z1 = (3 * i1 + i2) / under0;
+        a->from_z2 = 2 * i1 / under0;
         a->from_u0 = c0 / under0;
-        a->from_u1 = 2 * c0 / under0;
-        a->from_u2 = c0 / under0;
-        a->feedback1 = (c0 * 2 - c2 * 2) / under0;
-        a->feedback2 = (c0 - c1 + c2) / under0;
+        a->from_u1 = 4 * c0 / under0;
+        a->from_u2 = 4 * c0 / under0;
+        a->feedback1 = (4 * c0 + 2 * c1) / under0;
+        a->feedback2 = 4 * c0 / under0;
         a->solved = 1 / (1 - a->from_u0);
     }
 

@@ -10,8 +10,9 @@
 
 namespace {
 
-template <class Loop> void passes(benchmark::State& state, Loop& both) {
-    const auto in = quadrant_latency::circle();
+template <class Loop>
+void passes(benchmark::State& state, Loop& both,
+            const std::vector<quadrant_latency::sample>& in = quadrant_latency::circle()) {
     for (auto _ : state) benchmark::DoNotOptimize(xy_loop::run(both, in, in.size()));
     state.counters["per_sample"] = benchmark::Counter(
         double(in.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -20,8 +21,23 @@ template <class Loop> void loop(benchmark::State& state) {
     Loop both;
     passes(state, both);
 }
+/// Parked: after a rest of 32 000 samples on one place, which must cost no more than moving.
+template <class Loop> void standing(benchmark::State& state) {
+    Loop both;
+    const auto rest = quadrant_latency::standing();
+    for (int k = 0; k < 32'000; ++k) both.step(rest[0]);
+    passes(state, both, rest);
+}
+template <class Loop> void reversing(benchmark::State& state) {
+    Loop both;
+    passes(state, both, quadrant_latency::reversing());
+}
 BENCHMARK(loop<xy_loop::typed<90, 61>>)->Name("xy_loop/typed");
+BENCHMARK(standing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/standing");
+BENCHMARK(reversing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/reversing");
 BENCHMARK(loop<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written");
+BENCHMARK(standing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/standing");
+BENCHMARK(reversing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/reversing");
 BENCHMARK(loop<xy_loop::as_graph<90, 61>>)->Name("xy_loop/virtual_graph");
 BENCHMARK(loop<xy_loop::typed<1, 1>>)->Name("xy_loop/typed/without_fir");
 BENCHMARK(loop<xy_loop::by_hand<1, 1>>)->Name("xy_loop/hand_written/without_fir");
@@ -47,18 +63,19 @@ private:
         const auto p = xy_loop::in_doubles<1, 1>(a);
         xy_axis<1, 1> d;
         xy_design(&p, &d);
+        const double a0 = 1 + d.g * (d.damping + d.g); // its biquad is a direct form
         return {p.position_gain,
                 p.velocity_gain,
                 p.velocity_integral,
                 d.inertia_gain,
                 d.drag_gain,
                 p.limit,
-                d.keep,
-                d.b0,
-                d.b1,
-                d.b0,
-                d.b1,
-                d.a2};
+                1 - d.lose,
+                (1 + d.g * d.g) / a0,
+                2 * (d.g * d.g - 1) / a0,
+                (1 + d.g * d.g) / a0,
+                2 * (d.g * d.g - 1) / a0,
+                (1 - d.damping * d.g + d.g * d.g) / a0};
     }
     hal::thread thread_;
     std::optional<hal::axis> x_, y_;

@@ -139,6 +139,17 @@ private:
         quadrant::require(p.weight >= 0 && p.weight <= 1, "quadrant_axis.memory_weight", p.weight,
                           "must lie between 0 and 1");
         auto& box = p.box;
+        quadrant::require(box.dac_step <= box.limit, "quadrant_axis.dac_step", box.dac_step,
+                          "must not be above limit (" + quadrant::detail::shortest(box.limit.value()) + ")");
+        // How far the limit moves the axis in a period, beside the range: below a rounding of it the axis is no axis.
+        const double range = p.range.value(), push = box.limit.value() * period.value() * period.value(),
+                     least = std::numeric_limits<double>::epsilon() * range / push, most = range / push;
+        quadrant::require(box.plant_gain.value() >= least && box.plant_gain.value() <= most,
+                          "quadrant_axis.plant_gain", box.plant_gain,
+                          "must with limit move the axis by more than a rounding of range in a period, and by "
+                          "less than range (" +
+                              quadrant::detail::shortest(least) + " ... " + quadrant::detail::shortest(most) +
+                              ")");
         static_cast<quadrant::disturbance_observer<signal::voltage>::parameters&>(box.disturbance).plant =
             quadrant::axis_model<signal::voltage>{box.plant_gain, box.plant_pole};
         if (p.weight == 0) {

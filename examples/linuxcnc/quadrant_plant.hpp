@@ -76,6 +76,10 @@ public:
 
     hal_plant(const parameters& p, duration period) : given_(p), motor_(p.motor, period) {
         quadrant::require_positive("quadrant_plant.scale", p.scale);
+        quadrant::require(!(p.motor.limit.value() > 0) || p.motor.dac_step <= p.motor.limit,
+                          "quadrant_plant.dac_step", p.motor.dac_step,
+                          "must not be above limit (" + quadrant::detail::shortest(p.motor.limit.value()) +
+                              ")");
     }
 
     static constexpr auto taps() {

@@ -79,6 +79,27 @@ inline std::vector<sample> circle(std::size_t n = five_turns) {
     return all;
 }
 
+/// Parked where the circle begins, a count away from the reference.
+inline std::vector<sample> standing(std::size_t n = 1000) {
+    const double count = 250e-9;
+    return std::vector<sample>(n, sample{{0, 0, 0, count}, {0, 0, 0, -count}});
+}
+/// Both axes turn round every ten samples, on 20 um: break-away, friction in the other direction, a count of the encoder at a time.
+inline std::vector<sample> reversing(std::size_t n = 20'000) {
+    const double size = 10e-6, w = pi / (10 * thesis::period.value()), encoder_step = 250e-9;
+    std::vector<sample> all(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        const double t = double(k) * thesis::period.value();
+        const auto axis = [&](double phase) {
+            const double s = size * std::sin(w * t + phase);
+            return axis_sample{s, size * w * std::cos(w * t + phase), -w * w * s,
+                               std::round(0.9 * s / encoder_step) * encoder_step};
+        };
+        all[k] = {axis(0), axis(1)};
+    }
+    return all;
+}
+
 /// Everything is inlined into `step` and `step` into nothing, as in a servo interrupt.
 template <class Memory> struct typed_loop {
     using axis = milling_axis<boxes<Memory>>;

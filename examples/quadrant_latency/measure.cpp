@@ -13,6 +13,7 @@
 #include <sys/mman.h>
 #include <time.h>
 #include <unistd.h>
+#include <utility>
 
 namespace quadrant_latency {
 
@@ -38,9 +39,12 @@ void sleep_until(nanoseconds at) {
 }
 float us_since(nanoseconds begin) { return float(double(now() - begin) * 1e-3); }
 
-/// The loop around its circle for ever.
+/// The loop on one motion for ever.
 class runner {
 public:
+    explicit runner(std::vector<sample> in) : in_(std::move(in)) {
+        for (std::size_t k = 0; k < 32'000; ++k) step(); // what dies out has died out
+    }
     void step() {
         const commands u = loop_.step(in_[k_]);
         sum_ = sum_ + u.x + u.y;
@@ -54,7 +58,7 @@ public:
 
 private:
     typed_loop<memory> loop_;
-    std::vector<sample> in_ = circle();
+    std::vector<sample> in_;
     std::size_t k_ = 0;
     volatile double sum_ = 0; // a consumer
 };
@@ -106,14 +110,16 @@ std::string pin(int core) {
 
 result measure(const plan& p) {
     result r;
-    const double share = p.seconds / 3;
+    const double share = p.seconds / 5;
     reserve(r.warm, p.samples);
+    reserve(r.standing, p.samples / 10);
+    reserve(r.reversing, p.samples / 10);
     reserve(r.cold, std::min<std::size_t>(p.samples, 1'000'000));
     reserve(r.tick, std::size_t(std::min(double(p.samples), share * 1e6 / p.period_us + 2)));
     reserve(r.clock, 10'000);
     r.block = larger_than_the_caches();
     std::vector<unsigned char> block(r.block);
-    runner loop;
+    runner loop(circle()), parked(standing()), turning(reversing());
 
     r.setup.push_back(pin(p.core));
     sched_param priority{};
@@ -125,9 +131,10 @@ result measure(const plan& p) {
     r.setup.push_back(
         outcome("memory locked", locked, "run as root, or raise memlock in /etc/security/limits.d"));
 
-    for (std::size_t k = 0; k < five_turns; ++k) loop.step();
     collect(r.clock, r.clock.us.capacity(), 1, [] { return us_since(now()); });
     collect(r.warm, p.samples, share, [&] { return loop.timed(); });
+    collect(r.standing, p.samples / 10, share, [&] { return parked.timed(); });
+    collect(r.reversing, p.samples / 10, share, [&] { return turning.timed(); });
     unsigned char mark = 0;
     collect(r.cold, r.cold.us.capacity(), share, [&] {
         std::fill(block.begin(), block.end(), ++mark);

@@ -26,7 +26,9 @@ struct durations {
 };
 
 struct result {
-    durations warm{"cache warm", "one call after another", {}};
+    durations warm{"cache warm", "one call after another, both axes on a circle", {}};
+    durations standing{"standing", "the same, both axes at rest for 32 000 periods", {}};
+    durations reversing{"reversing", "the same, both axes turn round every ten periods", {}};
     durations cold{"cache cold", "before each call a block larger than the caches is written", {}};
     durations tick{"every period",
                    "from the tick of a timer to the end of the call: the operating system's delay is in it",

@@ -37,7 +37,7 @@ inline std::string page(const result& r, double period_us, bool can_draw) {
     std::string setup, head, rows;
     for (const std::string& s : r.setup) setup += "<li>" + html(s) + "</li>\n";
     for (const double p : periods_us) head += fmt::format("<th scope=\"col\">max: % of {:g} µs</th>", p);
-    for (const durations* d : {&r.warm, &r.cold, &r.tick, &r.clock}) {
+    for (const durations* d : {&r.warm, &r.standing, &r.reversing, &r.cold, &r.tick, &r.clock}) {
         rows += fmt::format(
             "<tr><th scope=\"row\">{}<small>{}</small></th><td data-label=\"calls\">{}</td>"
             "<td data-label=\"median\">{}</td><td data-label=\"p99.9\">{}</td><td data-label=\"max\">{}</td>",

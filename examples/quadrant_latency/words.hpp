@@ -13,7 +13,9 @@ namespace quadrant_latency {
 
 inline constexpr std::array periods_us{500.0, 125.0, 50.0};
 
-inline std::array<const durations*, 3> measured(const result& r) { return {&r.warm, &r.cold, &r.tick}; }
+inline std::array<const durations*, 5> measured(const result& r) {
+    return {&r.warm, &r.standing, &r.reversing, &r.cold, &r.tick};
+}
 
 /// The kind with the longest of all calls.
 inline const durations& slowest(const result& r) {
@@ -35,9 +37,10 @@ inline std::string percent(double us, double period_us) { return digits(100 * us
 /// "Yes, ..." or "No, ...".
 inline std::string answer(const result& r, double period_us) {
     const durations& slow = slowest(r);
-    const std::string longest = fmt::format("the longest of {} calls ({}) took {} us, {} of the period",
-                                            r.warm.us.size() + r.cold.us.size() + r.tick.us.size(), slow.name,
-                                            digits(slow.max()), percent(slow.max(), period_us));
+    std::size_t calls = 0;
+    for (const durations* d : measured(r)) calls += d->us.size();
+    const std::string longest = fmt::format("the longest of {} calls ({}) took {} us, {} of the period", calls,
+                                            slow.name, digits(slow.max()), percent(slow.max(), period_us));
     if (fits(r, period_us))
         return fmt::format("Yes, it fits {} us: {}; the margin is {} us.", digits(period_us), longest,
                            digits(period_us - slow.max()));
@@ -57,7 +60,7 @@ inline std::string text(const result& r, double period_us) {
     for (const std::string& s : r.setup) out += s + "\n";
     out += fmt::format("\n{:16}{:>10}{:>11}{:>11}{:>11}   max in % of {:g}, {:g}, {:g} us\n", "us", "calls",
                        "median", "p99.9", "max", periods_us[0], periods_us[1], periods_us[2]);
-    for (const durations* d : {&r.warm, &r.cold, &r.tick, &r.clock}) {
+    for (const durations* d : {&r.warm, &r.standing, &r.reversing, &r.cold, &r.tick, &r.clock}) {
         out += fmt::format("{:16}{:>10}{:>11}{:>11}{:>11}", d->name, d->us.size(), digits(d->median()),
                            digits(d->p999()), digits(d->max()));
         if (d != &r.clock)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "finite_bits.hpp"
 #include "portable.hpp"
 
 #include <array>
@@ -30,10 +31,10 @@ template <class Isa = isa::here> number_text digits(double x) {
         while (*w != '\0') *at++ = *w++;
         return out;
     };
-    if (x != x) return word("nan");
+    if (is_nan(x)) return word("nan");
     if (bits_as<std::uint64_t>(x) >> 63 != 0) *at++ = '-', x = -x;
     if (x == 0) return word("0");
-    if (x - x != 0) return word("inf");
+    if (!is_finite(x)) return word("inf");
     int exponent = 0;
     for (; x >= 10; ++exponent) x /= 10;
     for (; x < 1; --exponent) x *= 10;

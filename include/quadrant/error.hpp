@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "digits.hpp"
+#include "finite_bits.hpp"
 #include "select.hpp"
 #include "signal.hpp"
 
@@ -156,10 +157,11 @@ template <class Isa = isa::here> [[noreturn]] void refuse(const refused_paramete
 }
 } // namespace detail
 
-/// Refuses `value` unless `holds`, naming block, field, value and rule.
+/// Refuses `value` unless `holds`, naming block, field, value and rule. A NaN keeps no rule, whatever a compiler makes of its comparison.
 template <class Value, class Isa = isa::here>
 void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
-    if (!holds) detail::refuse({field, detail::plain(value), must});
+    const double x = detail::plain(value);
+    if (!holds || detail::is_nan(x)) detail::refuse({field, x, must});
 }
 /// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks it.
 template <class Value, class Rule, class Isa = isa::here>
@@ -172,14 +174,14 @@ void require_lanes(Rule holds, const detail::field_name& field, const Value& val
 template <class Value, class Isa = isa::here>
 void require_finite(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i)
-        require(std::isfinite(detail::plain(lane(value, i))), field, lane(value, i), "must be finite");
+        require(detail::is_finite(detail::plain(lane(value, i))), field, lane(value, i), "must be finite");
 }
 /// Finite and above 0.
 template <class Value, class Isa = isa::here>
 void require_positive(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
-        require(std::isfinite(x) && x > 0, field, x, "must be finite and above 0");
+        require(detail::is_finite(x) && x > 0, field, x, "must be finite and above 0");
     }
 }
 /// Finite and not below 0.
@@ -187,7 +189,7 @@ template <class Value, class Isa = isa::here>
 void require_not_negative(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
-        require(std::isfinite(x) && x >= 0, field, x, "must be finite and not below 0");
+        require(detail::is_finite(x) && x >= 0, field, x, "must be finite and not below 0");
     }
 }
 /// A corner or centre frequency of a block that runs every `period`.
@@ -196,7 +198,7 @@ void require_below_nyquist(const detail::field_name& field, const Value& value, 
     const double nyquist = 0.5 / period.value();
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double f = detail::plain(lane(value, i));
-        require(f > 0 && f < nyquist, field, f,
+        require(detail::is_finite(f) && f > 0 && f < nyquist, field, f,
                 "must lie between 0 and half the sampling rate (" + detail::shortest(nyquist) + ")");
     }
 }

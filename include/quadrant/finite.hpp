@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "portable.hpp"
+#include "finite_bits.hpp"
 #include "select.hpp"
 
-#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -12,24 +11,15 @@
 namespace quadrant {
 
 namespace detail {
-// By bits, not by std::isfinite: stays true to its word under -ffast-math.
-constexpr bool is_finite(double x) noexcept {
-    constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
-    return (bits_as<std::uint64_t>(x) & exponent) != exponent;
-}
-constexpr bool is_finite(float x) noexcept {
-    constexpr std::uint32_t exponent = 0x7f80'0000;
-    return (bits_as<std::uint32_t>(x) & exponent) != exponent;
-}
 template <class Dual>
 requires requires(const Dual& d) {
     d.value;
     d.partial;
 }
 constexpr bool is_finite(const Dual& x) noexcept {
-    auto sum = x.value;
-    for (const auto& p : x.partial) sum += p - p; // NaN when p is not finite
-    return is_finite(sum);
+    bool all = is_finite(x.value);
+    for (const auto& p : x.partial) all = all && is_finite(p);
+    return all;
 }
 template <multi_lane Lanes> auto is_finite(const Lanes& x) noexcept {
     return finite_lanes(x);

@@ -4,8 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <random>
 
 using namespace quadrant;
 using namespace quadrant::literals;
@@ -41,6 +43,40 @@ TEST_CASE("limiter: an infinite bound is no bound, an infinite input is a fault"
     a(3_V);
     CHECK(a(forever) == 3_V);
     CHECK(a.faulted());
+}
+TEST_CASE("limiter: what comes out is finite, whatever the bounds and the input, in a million random trials") {
+    std::mt19937_64 random(9);
+    const auto any = [&]<class Real>(Real) { // bits at random: infinities, NaNs and subnormals come, too
+        if (random() % 8 == 0)
+            return random() % 2 ? std::numeric_limits<double>::infinity()
+                                : -std::numeric_limits<double>::infinity();
+        return std::bit_cast<double>(random());
+    };
+    int made = 0, wrong = 0;
+    const auto check = [&]<class Real>(Real) {
+        using box = limiter<signal::voltage, Real>;
+        try {
+            box a({any(Real()) * 1_V, any(Real()) * 1_V}, 1_ms);
+            ++made;
+            const auto x = box::value::from_value(Real(any(Real())));
+            wrong += !finite(a(x));
+            a.settle(x);
+            wrong += !finite(a(x)) || !finite(a(box::value::from_value(Real(1))));
+        } catch (const invalid_parameter&) {
+        }
+    };
+    for (int i = 0; i < 1'000'000; ++i) i % 2 == 0 ? check(double()) : check(float());
+    CHECK(wrong == 0);
+    CHECK(made > 200'000);
+}
+TEST_CASE("limiter: a bound that is infinite the wrong way is refused, 1e300 in float, too") {
+    CHECK_THROWS_WITH_AS((amplifier{{.low = forever, .high = forever}, 1_ms}),
+                         "limiter.low = inf: must leave a finite number above it", invalid_parameter);
+    CHECK_THROWS_WITH_AS((amplifier{{.low = -forever, .high = -forever}, 1_ms}),
+                         "limiter.high = -inf: must leave a finite number below it", invalid_parameter);
+    CHECK_THROWS_AS((limiter<signal::voltage, float>{{.low = 1e300 * 1_V, .high = forever}, 1_ms}),
+                    invalid_parameter);
+    CHECK_NOTHROW(amplifier{{.low = -forever, .high = forever}, 1_ms});
 }
 TEST_CASE("limiter: settle tells of clipping as a step does") {
     amplifier a{{.low = -10_V, .high = 10_V}, 500_us};

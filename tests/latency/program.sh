@@ -13,7 +13,7 @@ says() { grep -qE -- "$1" said || fail "does not say '$1'"; }
 # ---- an answer, and the exit code that goes with it ----
 code=0
 "$latency" --seconds 1 --html page.html >said 2>err || code=$?
-for row in 'cache warm' 'cache cold' 'every period' 'the clock alone'; do
+for row in 'cache warm' 'standing' 'reversing' 'cache cold' 'every period' 'the clock alone'; do
     says "^$row +[0-9]+ +[0-9.]+ +[0-9.]+ +[0-9.]+"
 done
 says '^real-time priority.*: (granted|not granted \(.*\); .+)$'
@@ -24,7 +24,7 @@ case $code in
 1) says '^No, it does not fit 500 us: .*% of the period' ;;
 *) fail "exit code $code" ;;
 esac
-awk '/^cache (warm|cold)/ && !($3 > 0 && $4 <= $5 && $5 <= $6) { exit 1 }' said || fail "no order in a row"
+awk '/^(cache (warm|cold)|standing|reversing) / { i = /^cache/ ? 3 : 2; if (!($i > 0 && $(i + 1) <= $(i + 2) && $(i + 2) <= $(i + 3))) exit 1 }' said || fail "no order in a row"
 grep -q "$(grep -oE '^(Yes|No), it[^:]*' said | sed 's/ us/ µs/')" page.html || fail "the page says something else"
 ! grep -qE 'src=|<link|@import' page.html || fail "the page loads something"
 if command -v gnuplot >/dev/null; then

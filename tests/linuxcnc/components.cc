@@ -205,6 +205,18 @@ int main() {
     real("quadrant-axis.0.notch-centre") = 330;
     axis.look();
     claim(!bit("quadrant-axis.0.refused"), "refused until it is right, the old parameters in use");
+    for (const auto& [pin, wrong] : {std::pair{"quadrant-axis.0.plant-gain", 1e-300},
+                                     {"quadrant-axis.0.plant-gain", 1e300},
+                                     {"quadrant-axis.0.dac-step", 1e300}}) {
+        const double right = real(pin);
+        sine(10); // the thread takes what is pending
+        real(pin) = wrong;
+        axis.look();
+        claim(bit("quadrant-axis.0.refused"), pin);
+        real(pin) = right;
+        axis.look();
+        claim(!bit("quadrant-axis.0.refused"), pin);
+    }
 
     *stub::bits.at("quadrant-axis.0.enable") = false;
     run(), run();

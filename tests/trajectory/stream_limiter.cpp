@@ -65,6 +65,41 @@ TEST_CASE("stream_limiter: whatever comes in, the differences of what goes out k
     for (const double share : tightest) CHECK(share > 0.99); // and each limit was reached
 }
 
+TEST_CASE_TEMPLATE(
+    "stream_limiter: in a million random samples the limits always hold within range(), in float to 4 %", Real,
+    double, float) {
+    using block = trajectory::stream_limiter<64, Real>;
+    using at = typename block::value;
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    double fastest = 0, hardest = 0;
+    int held = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        const double T = trial % 2 == 0 ? 1e-3 : 5e-5, v = std::pow(10, unit(random)),
+                     a = 10 * std::pow(10, unit(random));
+        block limit({v * 1_mps, a * 1_mps2, trajectory::jerk::from_value(a / T / 10)}, T * 1_s);
+        const double range = limit.range().value(), size = std::min(1.0, range) * (trial % 3 == 0 ? 1 : 0.1);
+        limit.settle(at::from_value(Real(0.9 * size)));
+        double now = 0.9 * size, y1 = double(limit(at::from_value(Real(now))).value()), y2 = y1;
+        for (int k = 0; k < 2000; ++k) {
+            if (random() % 100 == 0) now = 0.9 * size * unit(random);
+            now += 1e-3 * v * T * unit(random);
+            const double y = double(limit(at::from_value(Real(now))).value());
+            fastest = std::max(fastest, std::abs(y - y1) / (v * T));
+            hardest = std::max(hardest, std::abs(y - 2 * y1 + y2) / (a * T * T));
+            y2 = y1, y1 = y;
+        }
+        CHECK_FALSE(limit.faulted());
+        if (range > 1e30) continue;
+        const auto last = limit(at::from_value(Real(now)));
+        held += limit(at::from_value(Real(1.5 * range))) == last && limit.faulted();
+    }
+    // A position and its mean are rounded; in double nothing to speak of at 1 m.
+    CHECK(fastest <= 1 + (std::same_as<Real, float> ? 0.04 : 1e-4));
+    CHECK(hardest <= 1 + (std::same_as<Real, float> ? 0.04 : 1e-4));
+    CHECK(hardest > 0.9);
+    CHECK(held == 500); // a position beyond range() is a bad sample
+}
 TEST_CASE("stream_limiter: a stream within velocity and acceleration passes bit for bit, late by delay() with "
           "a jerk limit") {
     std::vector<double> x(2000);

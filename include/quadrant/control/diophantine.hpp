@@ -86,7 +86,7 @@ template <std::size_t A, std::size_t B, class Number = double> struct diophantin
     diophantine(const z_polynomial<A, Number>& a, const z_polynomial<B, Number>& b,
                 const z_polynomial<A + B - 1, Number>& c) {
         const double size = detail::largest(matrix<1, B + 1, Number>{b});
-        require(std::isfinite(size) && size > 0, "diophantine.b", size, "must be finite and not 0");
+        require(detail::is_finite(size) && size > 0, "diophantine.b", size, "must be finite and not 0");
         matrix<A + B, A + B, Number> m{};
         matrix<A + B, 1, Number> right{};
         for (std::size_t k = 0; k < A + B; ++k) right[k][0] = c[k];
@@ -101,7 +101,7 @@ template <std::size_t A, std::size_t B, class Number = double> struct diophantin
         for (std::size_t k = 0; k < A + B; ++k) {
             Number sum = -right[k][0];
             for (std::size_t j = 0; j < A + B; ++j) sum += m[k][j] * x[j][0];
-            off = std::isnan(detail::magnitude(sum)) ? HUGE_VAL : std::max(off, detail::magnitude(sum));
+            off = detail::is_nan(detail::magnitude(sum)) ? HUGE_VAL : std::max(off, detail::magnitude(sum));
         }
         require(off < 1e-6 * detail::largest(right), "diophantine.b", off,
                 "must not share a root with a (rest of the equation)");

@@ -11,9 +11,10 @@ namespace quadrant {
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was clipped.
 /// `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
-/// Range: low <= high; an infinite bound is no bound.
+/// Range: low <= high; low of minus infinity and high of infinity are no bound. What comes out is finite, always.
 /// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large demand).
-/// Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number".
+/// Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number",
+/// "must leave a finite number above it" (a low bound of infinity), "limiter.high = ...: must leave a finite number below it".
 /// Cost: 2 comparisons. To bound the slope: `rate_limiter`.
 template <signal_tag Signal, class Real = double> class limiter {
 public:
@@ -35,9 +36,14 @@ public:
         require_positive("limiter.period", period);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             const double low = detail::plain(lane(p.low, i)), high = detail::plain(lane(p.high, i));
-            require(low == low, "limiter.low", low, "must be a number");
+            require(true, "limiter.low", low, "must be a number");
             require(low <= high, "limiter.high", high,
                     "must not lie below low (" + detail::shortest(low) + ")");
+            // As the step uses them: 1e300 is infinite in float.
+            const bool open_below = !detail::is_finite(detail::plain(lane(low_, i))),
+                       open_above = !detail::is_finite(detail::plain(lane(high_, i)));
+            require(!open_below || low < 0, "limiter.low", low, "must leave a finite number above it");
+            require(!open_above || high > 0, "limiter.high", high, "must leave a finite number below it");
         }
     }
 

@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "../observer/nominal_plant.hpp"
+#include "../standstill.hpp"
 #include "axis_law.hpp"
 #include "proportional_integral.hpp"
 
@@ -87,7 +88,7 @@ public:
         const value loop = loop_(only_where(good, position(reference.position - measured)));
         const auto sound = both(good, finite(loop + rest));
         if (none(sound)) return out_.hold();
-        set_where(sound, state_.q, q);
+        set_where(sound, state_.q, unless_died_out(q));
         set_where(sound, state_.past, past);
         set_where(sound, state_.loop, loop);
         return out_.keep(sound, loop + rest);

@@ -70,7 +70,7 @@ public:
             gain_of<Out, In, Real>::from_value(Real(p.integral_gain.value() * number(period.value())));
         if constexpr (std::same_as<AntiWindup, back_calculation>) {
             const duration tracking = p.anti_windup.tracking_time;
-            require(std::isfinite(tracking.value()) && tracking >= period,
+            require(detail::is_finite(tracking.value()) && tracking >= period,
                     "proportional_integral.tracking_time", tracking,
                     "must be finite and not below the period (" + detail::shortest(period.value()) + ")");
             tracking_ = Real(period.value() / tracking.value());

@@ -5,6 +5,7 @@
 #include "../observer/dare.hpp"
 #include "../observer/nominal_plant.hpp"
 #include "../plant/viscous_step.hpp"
+#include "../standstill.hpp"
 #include "axis_law.hpp"
 #include "diophantine.hpp"
 
@@ -92,7 +93,7 @@ public:
         const value u = position_gain_ * (reference.position - x) + velocity_gain_ * (reference.velocity - v) +
                         inertia_ * reference.acceleration + drag_ * reference.velocity - d;
         if (!finite(x, v, d, u, tachometer)) return out_.hold();
-        state_ = {x, v, d, u};
+        state_ = {unless_died_out(x), unless_died_out(v), unless_died_out(d), unless_died_out(u)};
         return out_.keep(u);
     }
     /// What was applied of the last command.

@@ -45,7 +45,7 @@ public:
 
     sampled_inverse_model(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("sampled_inverse_model.period", period);
-        require(std::isfinite(detail::plain(p.numerator[0])) && p.numerator[0] != number(0),
+        require(detail::is_finite(detail::plain(p.numerator[0])) && p.numerator[0] != number(0),
                 "sampled_inverse_model.numerator", p.numerator[0], "must be finite and not 0");
         number per_period = number(1) / p.numerator[0];
         for (std::size_t i = 0; i <= Order; ++i) {

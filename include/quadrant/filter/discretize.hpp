@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "differences.hpp"
 #include "pole_mapping.hpp"
 #include "transfer_function.hpp"
 
@@ -109,6 +110,15 @@ discrete<Order, Number> bilinear(const continuous<Order, Number>& c, duration pe
     require_below_nyquist("discretize.exact", exact, period);
     const double w = 2 * std::numbers::pi * exact.value();
     return detail::bilinear_at(c, w / std::tan(w * period.value() / 2));
+}
+
+/// The same in powers of 1/(z - 1), for `transfer_function::of`: poles keep their digits, however slow.
+template <std::size_t Order, class Number>
+differences<Order, Number> bilinear_differences(const continuous<Order, Number>& c, duration period) {
+    detail::check(c, period);
+    const double k = 2 / period.value();
+    return {detail::bilinear_differences<Order>(c.numerator, k, false),
+            detail::bilinear_differences<Order>(c.denominator, k, false)};
 }
 
 /// Poles and zeros by z = exp(s T); zeros at infinity go to z = -1 but for one, which leaves one period of delay; the gain

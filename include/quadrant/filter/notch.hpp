@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "../fine_sum.hpp"
 #include "../finite.hpp"
+#include "../standstill.hpp"
 #include "second_order.hpp"
 
 namespace quadrant {
@@ -10,13 +12,17 @@ namespace quadrant {
 ///   H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
 /// Source: gap/FORMAT.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
-/// State: two numbers in the unit of the output (transposed direct form II); `reset` leaves zero, `settle(x)` the
-/// state of a constant x (gain one at standstill).
+///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), so that a constant passes to the last bit
+/// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset` leaves zero, `settle(x)` the state of a
+/// constant x (gain one at standstill). What has died out is zero.
 /// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all
 /// inputs so far had been higher by so much.
-/// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz).
+/// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz). In float the centre
+/// may lie down to 3e-7 of the sampling rate (damping 1 and above; else by damping less), in double to 6e-16.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Cost: 4 multiplications (b0 = b2, b1 = a1), 24 bytes of state. For a dip of limited depth use `transfer_function`.
+/// Throws "notch.centre = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of the sampling rate in
+/// this number type (...)", "notch.damping = ...: must be finite and above 0".
+/// Cost: 4 multiplications, 8 additions, 24 bytes of state. For a dip of limited depth use `transfer_function`.
 template <signal_tag Signal, class Real = double> class notch {
 public:
     using input = Signal;
@@ -31,32 +37,62 @@ public:
             centre;           ///< deepest point; 0 < centre < half the sampling rate
         number damping = 0.1; ///< of the denominator, twice its damping ratio; > 0
     };
-    using state = second_order_state<Signal, Real>;
+    /// What the slow part lags behind, the band, and the last input.
+    struct state {
+        value ahead{}; ///< last input minus the slow part: zero at rest
+        value band{};  ///< zero at rest
+        value input{};
+    };
 
     notch(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("notch.period", period);
         require_below_nyquist("notch.centre", p.centre, period);
         require_positive("notch.damping", p.damping);
-        using std::tan;
-        const number t = tan(number(pi * period.value()) * p.centre.value()); // tan(w T/2)
-        const number a0 = 1 + p.damping * t + t * t;
-        const Real a1 = Real(2 * (t * t - 1) / a0);
-        // b0 = (1 + a2) / 2 after rounding, so that the gain at standstill is one, in float too.
-        const Real b0 = Real((1 + t * t) / a0), a2 = (b0 + b0) - 1;
-        coefficients_ = {.b0 = b0, .b1 = a1, .b2 = b0, .a1 = a1, .a2 = a2};
+        coefficients_ = second_order<Real>("notch.centre", p.centre, p.damping, period);
     }
 
-    value operator()(value x) noexcept { return step(coefficients_, state_, out_, x); }
+    value operator()(value x) noexcept {
+        const value ahead = state_.ahead + detail::rounded_here<value>(x - state_.input);
+        const value half = coefficients_.thrust * (ahead - coefficients_.brake * state_.band);
+        const value middle = state_.band + half, rise = coefficients_.g * middle;
+        const value y = x - coefficients_.damping * middle;
+        value left = ahead - (rise + rise), band = middle + half;
+        const auto good = finite(y, left, band);
+        if (none(good)) return out_.hold();
+        if (const auto still = died_out(left, band); any(still)) {
+            set_where(still, left, value());
+            set_where(still, band, value());
+        }
+        set_where(good, state_.ahead, left);
+        set_where(good, state_.band, band);
+        set_where(good, state_.input, x);
+        return out_.keep(good, y);
+    }
     void reset() noexcept { settle(value()); }
-    void settle(value x) noexcept { quadrant::settle(coefficients_, state_, out_, x); }
+    void settle(value x) noexcept {
+        const auto good = finite(x);
+        set_where(good, state_.ahead, value());
+        set_where(good, state_.band, value());
+        set_where(good, state_.input, x);
+        out_.settle(good, x);
+    }
     void retune(const notch& next) noexcept {
         if (next.period_ != period_) return out_.raise();
-        quadrant::retune(coefficients_, next.coefficients_, state_, out_.last());
+        const value band = retuned_band(coefficients_, next.coefficients_, coefficients_.damping,
+                                        next.coefficients_.damping, state_.ahead, state_.band);
+        set_where(finite(band), state_.band, band);
+        coefficients_ = next.coefficients_;
         given_ = next.given_;
     }
-    void shift(value by) noexcept { quadrant::shift(coefficients_, state_, out_, by); }
+    void shift(value by) noexcept {
+        const auto good = finite(by);
+        set_where(good, state_.input, state_.input + by);
+        out_.keep(good, out_.last() + by);
+    }
 
-    std::complex<double> response(frequency f) const { return quadrant::response(coefficients_, f, period_); }
+    std::complex<double> response(frequency f) const {
+        return 1.0 - detail::plain(coefficients_.damping) * quadrant::response(coefficients_, f, period_).band;
+    }
     bool faulted() const noexcept { return out_.faulted(); }
     mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }

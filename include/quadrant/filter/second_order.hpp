@@ -1,84 +1,81 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
-#include "../finite.hpp"
+#include "slowest.hpp"
 
-#include <array>
+#include <cmath>
 #include <complex>
+#include <concepts>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <type_traits>
 
-/// The arithmetic that notch and Butterworth low-pass share: one second-order section in transposed direct form II,
-/// chosen because its states are in the unit of the output and small next to it.
+/// What notch and Butterworth low-pass share: a second-order section as two integrators in a ring, by the trapezoidal rule. Its
+/// coefficients are small where the section is slow, so that they keep all their digits, and at rest both integrators stand still:
+/// the gain at standstill is one to the last bit, at any corner and in any number type. A direct form subtracts numbers close to one
+/// instead and loses (f T)^2 of its digits. Per sample, x in, `ahead` = x minus the slow part:
+///   half = thrust (ahead - brake band),  middle = band + half,  slow' = slow + 2 g middle,  band' = middle + half
+/// Derivation: docs/derivations/second_order.md.
 namespace quadrant {
 
 /// For hertz into rad/s: w = 2 pi f.
 inline constexpr double pi = std::numbers::pi;
 
-/// Coefficients of one second-order section; as they stand: a piece of wire.
+/// H(s) = w^2 / (s^2 + damping w s + w^2), the slow part, and H(s) = w s / (...), the band, of one section; bilinear, exact at w.
 template <class Real> struct second_order_coefficients {
-    Real b0{1}, b1{0}, b2{0}, a1{0}, a2{0}; ///< (b0 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)
+    Real g{};       ///< tan(w T/2)
+    Real damping{}; ///< twice the damping ratio
+    Real brake{};   ///< g + damping
+    Real thrust{};  ///< g / (1 + g (g + damping))
 };
 
-/// Both delays of the section, in the unit of its output.
-template <signal_tag Signal, class Real> struct second_order_state {
-    std::array<quantity_of<Signal, Real>, 2> s{};
+/// The coefficients of a section; refuses a corner that is too slow for the number type, or so close to half the sampling rate that
+/// rounding, which grows there as tan^2(w T/2), would take more than a tenth.
+template <class Real, class Number>
+second_order_coefficients<Real> second_order(const detail::field_name& field,
+                                             const quantity<si::frequency, Number>& corner,
+                                             const Number& damping, duration period) {
+    using std::tan;
+    require_held<Real>(field, corner, period, damping);
+    using plain = std::conditional_t<std::same_as<Real, float>, float, double>;
+    const double most = 0.5 - std::sqrt(10 * double(std::numeric_limits<plain>::epsilon())) / pi;
+    for (std::size_t i = 0; i < lane_count<Real>; ++i)
+        require(detail::plain(lane(corner, i)) * period.value() <= most, field, lane(corner, i),
+                "must be at most " + detail::shortest(most) + " of the sampling rate in this number type (" +
+                    detail::shortest(most / period.value()) + ")");
+    const Number t = tan(Number(pi * period.value()) * corner.value());
+    return {.g = Real(t),
+            .damping = Real(damping),
+            .brake = Real(t + damping),
+            .thrust = Real(t / (1 + t * (t + damping)))};
+}
+
+/// Other coefficients in the next step: what the band has to be, so that the last input, were it to come again, would give the same
+/// output. Nothing changes for a constant input; else the next output is off by (b0' - b0)(x[k] - x[k-1]) from what it would have
+/// been, b0: what an impulse gives at once. `weight`: by which the band enters the output, damping or g.
+template <class Real, class Value>
+Value retuned_band(const second_order_coefficients<Real>& c, const second_order_coefficients<Real>& next,
+                   const Real& weight, const Real& next_weight, const Value& ahead,
+                   const Value& band) noexcept {
+    const auto middle = [&](const second_order_coefficients<Real>& with) -> Value {
+        return band + with.thrust * (ahead - with.brake * band);
+    };
+    const Value wanted = (weight / next_weight) * middle(c);
+    return band + (next.g / next.thrust) * (wanted - middle(next)); // 1 - thrust brake = thrust / g
+}
+
+/// Response of the section at f, as it runs with this period: of the slow part, and of the band.
+struct second_order_response {
+    std::complex<double> slow, band;
 };
-
-/// One sample through the section; what is not finite leaves the state as it is and holds the last output.
-template <signal_tag Signal, class Real>
-quantity_of<Signal, Real>
-step(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
-     held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> x) noexcept {
-    const quantity_of<Signal, Real> y = c.b0 * x + state.s[0];
-    const quantity_of<Signal, Real> s0 = c.b1 * x - c.a1 * y + state.s[1];
-    const quantity_of<Signal, Real> s1 = c.b2 * x - c.a2 * y;
-    const auto good = finite(y, s0, s1);
-    if (none(good)) return out.hold();
-    set_where(good, state.s, {s0, s1});
-    return out.keep(good, y);
-}
-
-/// As if x had been applied for ever; an x that is not finite only raises the fault flag.
-template <signal_tag Signal, class Real>
-void settle(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
-            held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> x) noexcept {
-    const Real gain = (c.b0 + c.b1 + c.b2) / (1 + c.a1 + c.a2);
-    const quantity_of<Signal, Real> y = gain * x;
-    const quantity_of<Signal, Real> s0 = y - c.b0 * x, s1 = c.b2 * x - c.a2 * y;
-    const auto good = finite(y, s0, s1);
-    set_where(good, state.s, {s0, s1});
-    out.settle(good, y);
-}
-
-/// Other coefficients in the next step, for a filter whose gain at standstill is one: the state goes on as if the last input
-/// had stood for ever under either. Nothing changes for a constant input; else the next output is off by (b0' - b0)(x[k] - x[k-1])
-/// from what it would have been.
-template <signal_tag Signal, class Real>
-void retune(second_order_coefficients<Real>& c, const second_order_coefficients<Real>& next,
-            second_order_state<Signal, Real>& state, const quantity_of<Signal, Real>& last) noexcept {
-    const quantity_of<Signal, Real> x = (state.s[1] + c.a2 * last) / c.b2; // the last input
-    const quantity_of<Signal, Real> s0 = state.s[0] + (c.b0 - next.b0) * x,
-                                    s1 = state.s[1] + ((next.b2 - c.b2) + (c.a2 - next.a2)) * x;
-    c = next;
-    set_where(finite(s0, s1), state.s, {s0, s1});
-}
-
-/// As if all inputs so far had been higher by so much, for the same filters.
-template <signal_tag Signal, class Real>
-void shift(const second_order_coefficients<Real>& c, second_order_state<Signal, Real>& state,
-           held_output<quantity_of<Signal, Real>>& out, quantity_of<Signal, Real> by) noexcept {
-    const auto good = finite(by);
-    set_where(good, state.s, {state.s[0] + (by - c.b0 * by), state.s[1] + (c.b2 - c.a2) * by});
-    out.keep(good, out.last() + by);
-}
-
-/// Response of the section at f, as it runs with this period.
+/// Both at f.
 template <class Real>
-std::complex<double> response(const second_order_coefficients<Real>& c, frequency f, duration period) {
-    const auto number = [](const Real& x) { return detail::plain(x); };
-    const std::complex<double> back = std::polar(1.0, -2 * pi * f.value() * period.value()); // z^-1
-    return (number(c.b0) + back * (number(c.b1) + back * number(c.b2))) /
-           (1.0 + back * (number(c.a1) + back * number(c.a2)));
+second_order_response response(const second_order_coefficients<Real>& c, frequency f, duration period) {
+    const double angle = pi * f.value() * period.value();
+    const std::complex<double> s(0, std::tan(angle) / detail::plain(c.g)); // in units of w
+    const auto under = 1.0 + s * (detail::plain(c.damping) + s);
+    return {1.0 / under, s / under};
 }
 
 } // namespace quadrant

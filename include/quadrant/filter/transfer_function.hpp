@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "differences.hpp"
 
 #include <array>
 #include <cmath>
@@ -19,16 +20,18 @@ template <std::size_t Order, class Number = double> struct discrete {
 
 /// Any linear filter of fixed order, for what has no block of its own.
 ///   y = (b[0] + b[1] z^-1 + ... + b[n] z^-n) / (a[0] + a[1] z^-1 + ... + a[n] z^-n) x
-/// Source: [Oppenheim2010] ch. 6, transposed direct form II: the states are in the unit of the output.
+/// Source: [Oppenheim2010] ch. 6, transposed direct form II, and [Middleton1990]: of integrators instead of delays
+/// (`differences.hpp`), so that slow poles keep their digits; the states are in the unit of the output.
 /// Ports: one scalar in, one scalar out of any signal; the numerator carries the unit Out/In.
-/// State: n numbers in the unit of the output; `reset` leaves zero; `settle(x)` the state of a constant x. With a pole at
+/// State: n sums in the unit of the output, in float of two numbers each; `reset` leaves zero; what has died out is zero; `settle(x)` the state of a constant x. With a pole at
 /// z = 1 (integrates()) no such state exists: `settle(x, y)`, where the next step with x gives y; settle(x) then takes
 /// the last output for y.
 /// Range: a[0] not zero. Poles outside the unit circle are allowed (a plant may have them); the output then grows until
-/// it is no longer finite, and holds. From order 4 on with poles near z = 1 prefer a `series` of low orders.
+/// it is no longer finite, and holds. Coefficients in z are doubles that hold (pole T)^n in their last digits: below f T = 1e-4
+/// give `differences` (from `bilinear_differences`), and from order 4 on prefer a `series` of low orders.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "transfer_function.denominator[0] = 0: must not be zero", "transfer_function.numerator = ...: must be finite".
-/// Cost: 2 n + 1 multiplications, 8 n bytes of state. Of order one or two: `lowpass`, `butterworth`, `notch`.
+/// Cost: 2 n + 1 multiplications, 3 n additions, 8 n bytes of state; in float 6 n additions. Of order one or two: `lowpass`, `butterworth`, `notch`.
 template <signal_tag In, signal_tag Out, std::size_t Order, class Real = double> class transfer_function {
 public:
     using input = In;
@@ -52,62 +55,44 @@ public:
             return p;
         }
     };
-    /// The delays of transposed direct form II, in the unit of the output.
+    /// The integrators, in the unit of the output.
     struct state {
-        std::array<value, Order> s{};
+        detail::integrators<value, Real, Order> s{};
     };
 
-    transfer_function(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("transfer_function.period", period);
-        for (std::size_t i = 0; i <= Order; ++i) {
-            require_finite("transfer_function.numerator", p.numerator[i]);
-            require_finite("transfer_function.denominator", p.denominator[i]);
-        }
-        const number a0 = p.denominator[0];
-        require_lanes([&](std::size_t i) { return detail::plain(lane(a0, i)) != 0; },
-                      "transfer_function.denominator[0]", a0, "must not be zero");
-        Real sum_of_a(1), size_of_a(1);
-        gain sum_of_b{};
-        for (std::size_t i = 0; i <= Order; ++i) {
-            b_[i] = gain::from_value(Real(p.numerator[i].value() / a0));
-            sum_of_b += b_[i];
-            require_finite("transfer_function.numerator / denominator[0]", b_[i]);
-            if (i == 0) continue;
-            a_[i - 1] = Real(p.denominator[i] / a0);
-            require_finite("transfer_function.denominator / denominator[0]", a_[i - 1]);
-            sum_of_a += a_[i - 1];
-            size_of_a += absolute(a_[i - 1]);
-        }
-        // Closer to z = 1 than the coefficients can tell: the sum is nothing but their rounding.
-        const double rounding = 4 * double(std::numeric_limits<plain_real>::epsilon());
-        integrates_ = less_equal(absolute(sum_of_a), Real(plain_real(rounding)) * size_of_a);
-        if (!all(integrates_)) set_where(!integrates_, standstill_, sum_of_b / sum_of_a);
+    transfer_function(const parameters& p, duration period)
+        : transfer_function(p, {detail::about_one(in_si(p.numerator)), detail::about_one(p.denominator)},
+                            period, 4 * std::numeric_limits<double>::epsilon()) {}
+    /// By powers of 1/(z - 1): for poles so slow that coefficients in z have lost them.
+    static transfer_function of(const differences<Order, number>& d, duration period) {
+        return {parameters::in_si({detail::about_one(d.numerator, -1), detail::about_one(d.denominator, -1)}),
+                d, period, 0};
     }
 
     value operator()(argument x) noexcept {
-        std::array<value, Order> next;
-        const value y = Order == 0 ? value(b_[0] * x) : value(b_[0] * x + first());
+        const value y = Order == 0 ? value(b_[0] * x) : value(first().with(b_[0] * x));
+        auto next = state_.s;
         Real sum = y.value();
         for (std::size_t i = 0; i < Order; ++i) {
-            next[i] = b_[i + 1] * x - a_[i] * y;
-            if (i + 1 < Order) next[i] += state_.s[i + 1];
-            sum += next[i].value();
+            value part = b_[i + 1] * x - a_[i] * y;
+            if (i + 1 < Order) part += state_.s[i + 1].high;
+            next[i] = state_.s[i].plus(part).rested();
+            sum += next[i].high.value();
         }
         const auto good = finite(sum);
         if (none(good)) return out_.hold();
+        detail::rest_if_died_out(next, y, x);
         set_where(good, state_.s, next);
         return out_.keep(good, y);
     }
     void reset() noexcept { settle(argument(), value()); }
     void settle(argument x) noexcept { settle(x, select(integrates_, out_.last(), value(standstill_ * x))); }
     void settle(argument x, value y) noexcept {
-        std::array<value, Order> s;
+        detail::integrators<value, Real, Order> s{};
         Real sum = x.value() + y.value();
-        for (std::size_t i = Order; i-- > 0;) {
-            s[i] = b_[i + 1] * x - a_[i] * y; // as if x and y had stood for ever
-            if (i + 1 < Order) s[i] += s[i + 1];
-            if (i == 0) s[i] = y - b_[0] * x; // the same, but for a pole at z = 1
-            sum += s[i].value();
+        for (std::size_t i = 0; i < Order; ++i) { // as if x and y had stood for ever; the first gives y
+            s[i].high = i == 0 ? value(y - b_[0] * x) : value(a_[i - 1] * y - b_[i] * x);
+            sum += s[i].high.value();
         }
         const auto good = finite(sum);
         set_where(good, state_.s, s);
@@ -115,13 +100,10 @@ public:
     }
 
     std::complex<double> response(frequency f) const {
-        const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
-        std::complex<double> over = 0, under = 0;
-        for (std::size_t i = Order + 1; i-- > 0;) {
-            over = over * back + detail::plain(b_[i]);
-            under = under * back + (i == 0 ? 1.0 : detail::plain(a_[i - 1]));
-        }
-        return over / under;
+        const double angle = 2 * std::numbers::pi * f.value() * period_.value();
+        std::array<double, Order + 1> under{1};
+        for (std::size_t i = 0; i < Order; ++i) under[i + 1] = detail::plain(a_[i]);
+        return detail::in_differences(b_, angle) / detail::in_differences(under, angle);
     }
     mask_of<Real> integrates() const noexcept { return integrates_; } ///< has a pole at z = 1
     bool faulted() const noexcept { return out_.faulted(); }
@@ -130,16 +112,40 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
-    using plain_real = std::conditional_t<std::same_as<Real, float>, float, double>;
-    value first() const noexcept {
-        if constexpr (Order > 0) return state_.s[0];
-        return value();
+    static std::array<number, Order + 1> in_si(const std::array<gain_of<Out, In, number>, Order + 1>& p) {
+        std::array<number, Order + 1> bare;
+        for (std::size_t i = 0; i <= Order; ++i) bare[i] = p[i].value();
+        return bare;
     }
+    transfer_function(const parameters& p, const differences<Order, number>& d, duration period,
+                      double rounding)
+        : given_(p), period_(period) {
+        require_positive("transfer_function.period", period);
+        for (std::size_t i = 0; i <= Order; ++i) {
+            require_finite("transfer_function.numerator", p.numerator[i]);
+            require_finite("transfer_function.denominator", p.denominator[i]);
+        }
+        const number a0 = p.denominator[0];
+        require_lanes([&](std::size_t i) { return detail::plain(lane(a0, i)) != 0; },
+                      "transfer_function.denominator[0]", a0, "must not be zero");
+        number size_of_a(0);
+        for (std::size_t i = 0; i <= Order; ++i) {
+            b_[i] = gain::from_value(Real(d.numerator[i] / a0));
+            require_finite("transfer_function.numerator / denominator[0]", b_[i]);
+            if (i > 0) a_[i - 1] = Real(d.denominator[i] / a0);
+            if (i > 0) require_finite("transfer_function.denominator / denominator[0]", a_[i - 1]);
+            size_of_a += absolute(p.denominator[i]);
+        }
+        // Closer to z = 1 than coefficients in z can tell: the sum is nothing but their rounding.
+        integrates_ = less_equal(absolute(d.denominator[Order]), number(rounding) * size_of_a);
+        set_where(!integrates_, standstill_, gain::from_value(Real(d.numerator[Order] / d.denominator[Order])));
+    }
+    decltype(auto) first() const noexcept { return state_.s[0]; }
 
     parameters given_;
     duration period_;
-    std::array<gain, Order + 1> b_{};
-    std::array<Real, Order> a_{}; ///< from z^-1 on
+    std::array<gain, Order + 1> b_{}; ///< by rising power of 1/D, as a_
+    std::array<Real, Order> a_{};     ///< from 1/D on
     mask_of<Real> integrates_{};
     gain standstill_{};
     state state_;

@@ -76,7 +76,7 @@ public:
         to.slope = viscous_ + stiffness_ * h * (given_.shape == 1 ? left : power(left, Real(given_.shape)));
         return to;
     }
-    void become(const state& next) noexcept { memory_.become(next); }
+    void become(const state& next) noexcept { memory_.become({unless_died_out(next.force)}); }
     void retune(const dahl& next) noexcept {
         if (next.period_ != period_) return memory_.raise();
         auto memory = memory_;

@@ -92,7 +92,7 @@ public:
                               Real((bent - along) / stiff / damping_velocity_));
         return to;
     }
-    void become(const state& next) noexcept { memory_.become(next); }
+    void become(const state& next) noexcept { memory_.become({unless_died_out(next.force)}); }
     void retune(const lugre& next) noexcept {
         if (next.period_ != period_) return memory_.raise();
         auto memory = memory_;

@@ -120,7 +120,10 @@ public:
         }
         return to;
     }
-    void become(const state& next) noexcept { memory_.become(next); }
+    void become(state next) noexcept {
+        for (element& each : next.elements) each.force = unless_died_out(each.force);
+        memory_.become(next);
+    }
     void retune(const maxwell_slip& next) noexcept {
         if (next.period_ != period_) return memory_.raise();
         auto memory = memory_;

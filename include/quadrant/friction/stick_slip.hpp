@@ -15,6 +15,60 @@ concept friction_law = requires(const F& f, quantity_of<signal::velocity, Real> 
     { f.viscous() } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
 };
 
+/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and the speed over which that changes e-fold. Newton's method
+/// may use them where slip is convex: falling() is false where it is not, and the level is then iterated by itself.
+template <class F, class Real>
+concept friction_law_with_slope = friction_law<F, Real> &&
+    requires(const F& f, quantity_of<signal::velocity, Real> v, quantity_of<signal::force, Real> level) {
+    { f.convex() } -> std::convertible_to<bool>;
+    f.fall(v, level).slope;
+    f.fall(v, level).scale;
+};
+
+namespace detail {
+/// Relative error that may be left to the velocity of a step.
+template <class Real> inline constexpr double stick_slip_accuracy = 1e-14;
+template <> inline constexpr double stick_slip_accuracy<float> = 1e-7;
+
+/// The fastest v' >= 0 with slope v' + slip(v') = size by Newton's method, 0 when there is none; `start` > 0 from where. On a convex
+/// curve a tangent lies below it: its zero is not below a solution, wherever it touches a rising part, and the next ones come
+/// down to the fastest. Ended by the error that is left, which slope and curvature tell: one to two passes in motion.
+template <class Real, class Friction>
+quantity_of<signal::velocity, Real> fastest_sliding(const Friction& friction,
+                                                    const gain_of<signal::force, signal::velocity, Real>& slope,
+                                                    const quantity_of<signal::force, Real>& size,
+                                                    quantity_of<signal::velocity, Real> start) noexcept {
+    using velocity = quantity_of<signal::velocity, Real>;
+    using force = quantity_of<signal::force, Real>;
+    const velocity most = size / slope;
+    velocity v = start < most ? start : most;
+    bool anywhere = start < most; // not known to lie above the solution
+    constexpr int most_passes = 32;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        const auto level = friction.slip(v);
+        const auto fall = friction.fall(v, level);
+        const gain_of<signal::force, signal::velocity, Real> rise = slope + fall.slope;
+        if (!(rise >
+              decltype(rise)())) { // left of the lowest point: where the axis was, or there is no solution
+            if (!anywhere) return velocity();
+            anywhere = false;
+            v = most;
+            continue;
+        }
+        anywhere = false;
+        const velocity step = (slope * v + level - size) / rise, next = v - step;
+        if (!(next > velocity())) return velocity();
+        const velocity way = step < velocity() ? -step : step;
+        if (way <= fall.scale) { // curvature = -slope/scale, within a scale at most e times that
+            const force left = -fall.slope * Real(step / fall.scale) * step; // of the equation, after the step
+            if (left <= Real(stick_slip_accuracy<Real>) * (rise * next)) return next < most ? next : most;
+        }
+        v = next < most ? next : most;
+    }
+    return v;
+}
+} // namespace detail
+
 /// Velocity v' after one step h of M dv/dt = drive - viscous v - dry friction, friction taken implicitly:
 ///   M (v' - v)/h = drive - viscous v' - f,   f = slip(v') sign(v'), or |f| <= breakaway when v' = 0
 /// The implicit form makes stick exact (a resting axis below breakaway does not creep), does not chatter at any h and
@@ -32,6 +86,14 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
     const bool forward = push > force();
     const force size = forward ? push : -push;
 
+    if constexpr (friction_law_with_slope<Friction, Real>)
+        if (friction.convex()) { // from where the axis is: a step does not change it much
+            const bool goes_on = forward ? v > velocity() : v < velocity();
+            if (!goes_on && size <= friction.breakaway()) return velocity();
+            const velocity next = detail::fastest_sliding<Real>(
+                friction, slope, size, goes_on ? (forward ? v : -v) : velocity(size / slope));
+            return forward ? next : -next;
+        }
     // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A machine
     // axis needs 2 to 5 passes; more only where two solutions are about to vanish.
     constexpr int most_passes = 32;

@@ -75,6 +75,15 @@ public:
         return coulomb_ + excess_ * exp(-exp(Real(given_.shape) * log(ratio)));
     }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
+    /// Of the level by the speed, where it is `level`; for shape 1, where the curve is convex.
+    struct falling {
+        gain_of<Out, In, Real> slope; ///< <= 0
+        argument scale;               ///< over which slope and curvature (slope / scale) change e-fold
+    };
+    bool convex() const noexcept { return given_.shape == 1; }
+    falling fall(argument, value level) const noexcept {
+        return {-((level - coulomb_) / velocity_), velocity_};
+    }
 
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }

@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "../lanes/lane_by_lane.hpp"
+#include "../standstill.hpp"
 #include "cubic_weights.hpp"
 #include "fir.hpp"
 
@@ -120,8 +121,8 @@ public:
         const value p = smoothing_(state_.m.oldest()), y = learning_(state_.r.oldest());
         if (none(finite(early, m, p, y))) return out_.hold();
         const std::size_t now = state_.next_p;
-        state_.p[now] = p;
-        if (now < 3) state_.p[now + size_p] = p;
+        state_.p[now] = unless_died_out(p);
+        if (now < 3) state_.p[now + size_p] = state_.p[now];
         state_.next_p = now + 1 == size_p ? 0 : now + 1;
         state_.m.advance();
         state_.r.advance();

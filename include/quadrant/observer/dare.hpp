@@ -51,7 +51,7 @@ matrix<N, N, Number> dare(const matrix<N, N, Number>& A, const matrix<N, M, Numb
                 h[i][j] = h[j][i] = (h[i][j] + h[j][i]) * 0.5;
                 g[i][j] = g[j][i] = (g[i][j] + g[j][i]) * 0.5;
             }
-        if (!std::isfinite(largest(h))) break;
+        if (!detail::is_finite(largest(h))) break;
         converged = converged || largest(more) <= 1e-10 * largest(h);
         after += converged; // quadratic: two more make it exact, in the derivatives of a dual too
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../error.hpp"
+#include "../filter/differences.hpp"
+#include "../filter/slowest.hpp"
 #include "../finite.hpp"
 #include "nominal_plant.hpp"
 #include "q_filter.hpp"
@@ -25,18 +27,18 @@ namespace quadrant {
 /// Source: [Jamaludin2008] eq. (4.1) to (4.20).
 /// Ports: measured z; wanted command in, disturbance out, both in the unit of the command; a push in the direction of a
 /// positive command is positive.
-/// State: n + zeros of the plant numbers in the unit of the command, last z, last u; `reset`: at rest at zero, nothing pushes;
+/// State: n + zeros of the plant integrators in the unit of the command (`differences.hpp`), last z, last u; `reset`: at rest at zero, nothing pushes;
 /// `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest at z while -d is applied against d (a following step with
 /// wanted = 0 gives d). A plant that does not integrate needs the wanted command z/Gn(0) to stay there.
 /// `retune(next)`: another corner, another plant from the next step on; nothing changes at rest and in even motion, else the
 /// coming d is off by J = |p0 (x[k] - x[k-1]) - q0 (u[k] - u[k-1])| / (1 - q0'), x: z or its difference, p0 and q0: what the
 /// first coefficients of Q/Gn and Q change, q0' the new one. `shift(by)`: the frame of positions moves.
-/// Range: 0 < corner < half the sampling rate; n - m not below the relative degree of the plant, else it does not compile;
+/// Range: 0 < corner < half the sampling rate (in float from 3e-7 of it on, in double from 6e-16); n - m not below the relative degree of the plant, else it does not compile;
 /// zeros of the plant left of the axis. |Q| is -3 dB below the corner (n = 2, m = 0: at 0.644 of it). Gn carries no delay;
-/// an inverse-model feedforward must use the same Gn. In float up to n = 3.
+/// an inverse-model feedforward must use the same Gn. What has died out is zero.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted(); an `applied` that follows changes nothing.
 /// Throws "disturbance_observer.<field> = ...: must ..." for period, corner, plant.numerator, plant.denominator.
-/// Cost: 3 (n + zeros) + 3 multiplications. From an acceleration: `ferraris_force_estimator`; noisy encoder: `kalman`.
+/// Cost: 3 (n + zeros) + 3 multiplications, 4 (n + zeros) additions; in float 7. From an acceleration: `ferraris_force_estimator`; noisy encoder: `kalman`.
 template <signal_tag Command, signal_tag Measured = signal::position, std::size_t Order = 2,
           std::size_t NumeratorOrder = 0, std::size_t PlantOrder = 2, std::size_t PlantZeros = 0,
           class Real = double>
@@ -57,7 +59,7 @@ public:
     static constexpr std::size_t order = Order + PlantZeros; ///< of the common denominator
     /// That of Q, in the unit of the command, and the last measurement and command that entered it.
     struct state {
-        std::array<value, order> s{};
+        detail::integrators<value, Real, order> s{};
         argument measured{};
         argument moved{}; ///< what entered: its last difference, where the plant integrates
         value command{};  ///< that was taken for applied
@@ -69,14 +71,15 @@ public:
         const double k = 2 / period.value();
         std::array<number, NumeratorOrder + 1> top{};
         for (std::size_t i = 0; i <= NumeratorOrder; ++i) top[i] = q.numerator[i];
+        using detail::bilinear_differences;
         const auto under =
-            detail::bilinear_polynomial<order>(detail::product(q.denominator, p.plant.numerator), k, 0);
-        const auto over = detail::bilinear_polynomial<order>(detail::product(top, p.plant.numerator), k, 0);
+            bilinear_differences<order>(detail::product(q.denominator, p.plant.numerator), k, false);
+        const auto over = bilinear_differences<order>(detail::product(top, p.plant.numerator), k, false);
         const auto back = detail::product(top, p.plant.denominator);
-        auto inverse = detail::bilinear_polynomial<order>(back, k, all(integrates_) ? 1 : 0);
+        auto inverse = bilinear_differences<order>(back, k, all(integrates_));
         if (any(integrates_) && !all(integrates_))
-            set_where(integrates_, inverse, detail::bilinear_polynomial<order>(back, k, 1));
-        require_lanes([&](std::size_t i) { return detail::roots_inside_circle(lane(under, i)); },
+            set_where(integrates_, inverse, bilinear_differences<order>(back, k, true));
+        require_lanes([&](std::size_t i) { return detail::roots_left_of_axis(lane(p.plant.numerator, i)); },
                       "disturbance_observer.plant.numerator", p.plant.numerator[0],
                       "has a zero on or right of the imaginary axis: 1/Gn would be unstable");
         for (std::size_t i = 0; i <= order; ++i) {
@@ -94,18 +97,20 @@ public:
     /// The disturbance, on the understanding that wanted - disturbance is applied.
     value operator()(argument measured, value wanted = value()) noexcept {
         const argument x = select(integrates_, argument(measured - state_.measured), measured);
-        const value free = from_measured_[0] * x + state_.s[0]; // d = free - q0 u and u = wanted - d
+        const value free = state_.s[0].with(from_measured_[0] * x); // d = free - q0 u and u = wanted - d
         const value d = solved_ * (free - from_command_[0] * wanted), u = wanted - d;
-        std::array<value, order> next;
+        auto next = state_.s;
         Real sum = bare(measured, d, u);
         for (std::size_t i = 0; i < order; ++i) {
-            next[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
-            if (i + 1 < order) next[i] += state_.s[i + 1];
-            sum += next[i].value();
+            value part = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
+            if (i + 1 < order) part += state_.s[i + 1].high;
+            next[i] = state_.s[i].plus(part).rested();
+            sum += next[i].high.value();
         }
         const auto good = finite(sum);
         stepped_ = good;
         if (none(good)) return out_.hold();
+        detail::rest_if_died_out(next, d, u, x);
         set_where(good, state_.s, next);
         set_where(good, state_.measured, measured);
         set_where(good, state_.moved, x);
@@ -116,11 +121,11 @@ public:
     void applied(value u) noexcept {
         if (none(stepped_)) return; // no sample was taken
         const value more = u - state_.command, d = out_.last() - from_command_[0] * more;
-        std::array<value, order> s = state_.s;
+        auto s = state_.s;
         Real sum = bare(u, d);
         for (std::size_t i = 0; i < order; ++i) {
-            s[i] += (feedback_[i] * from_command_[0] - from_command_[i + 1]) * more;
-            sum += s[i].value();
+            s[i] = s[i].plus((feedback_[i] * from_command_[0] - from_command_[i + 1]) * more);
+            sum += s[i].high.value();
         }
         const auto good = finite(sum);
         const auto taken = both(stepped_, good);
@@ -135,9 +140,9 @@ public:
     void settle(argument measured, value d) noexcept {
         const argument x = select(integrates_, argument(), measured);
         const value u = standstill_ * measured - d;
-        const std::array<value, order> s = standing(x, u, d);
+        const auto s = standing(x, u, d);
         Real sum = bare(measured, d);
-        for (const value& each : s) sum += each.value();
+        for (const auto& each : s) sum += each.high.value();
         const auto good = finite(sum);
         set_where(good, state_.s, s);
         set_where(good, state_.measured, measured);
@@ -151,11 +156,11 @@ public:
         const value d = out_.last();
         const auto before = standing(state_.moved, state_.command, d),
                    after = next.standing(state_.moved, state_.command, d);
-        std::array<value, order> s = state_.s;
+        auto s = state_.s;
         Real sum(0);
         for (std::size_t i = 0; i < order; ++i) {
-            s[i] += after[i] - before[i];
-            sum += s[i].value();
+            s[i] = s[i].plus(after[i].high - before[i].high);
+            sum += s[i].high.value();
         }
         const auto good = both(finite(sum), select(integrates_, next.integrates_, !next.integrates_));
         if (none(good)) return out_.raise();
@@ -178,13 +183,14 @@ public:
     std::complex<double> response(frequency f) const { return inverse(f) / (1.0 - q(f)); }
     /// Q as it runs.
     std::complex<double> q(frequency f) const {
-        const auto back = shift(f);
-        return detail::polynomial(from_command_, back) / under(back);
+        return detail::in_differences(from_command_, angle(f)) / under(f);
     }
     /// Q/Gn as it runs.
     std::complex<double> inverse(frequency f) const {
-        const auto back = shift(f);
-        return detail::polynomial(from_measured_, back) / under(back) * (all(integrates_) ? 1.0 - back : 1.0);
+        const double a = angle(f);
+        const std::complex<double> difference =
+            std::complex<double>(0, 2 * std::sin(a / 2)) * std::polar(1.0, -a / 2); // 1 - z^-1
+        return detail::in_differences(from_measured_, a) / under(f) * (all(integrates_) ? difference : 1.0);
     }
     /// Gn(j w), continuous.
     std::complex<double> nominal(frequency f) const {
@@ -201,6 +207,7 @@ private:
     static const parameters& checked(const parameters& p, duration period) {
         require_positive("disturbance_observer.period", period);
         require_below_nyquist("disturbance_observer.corner", p.corner, period);
+        require_held<Real>("disturbance_observer.corner", p.corner, period);
         for (const auto& c : p.plant.numerator) require_finite("disturbance_observer.plant.numerator", c);
         for (const auto& c : p.plant.denominator) require_finite("disturbance_observer.plant.denominator", c);
         const auto not_zero = [](const number& c) {
@@ -218,29 +225,28 @@ private:
         return (values.value() + ...);
     }
     /// The state as if these had stood for ever.
-    std::array<value, order> standing(argument x, value u, value d) const noexcept {
-        std::array<value, order> s;
-        for (std::size_t i = order; i-- > 0;) {
-            s[i] = from_measured_[i + 1] * x - from_command_[i + 1] * u - feedback_[i] * d;
-            if (i + 1 < order) s[i] += s[i + 1];
-            if (i == 0) s[i] = d - from_measured_[0] * x + from_command_[0] * u;
-        }
+    detail::integrators<value, Real, order> standing(argument x, value u, value d) const noexcept {
+        detail::integrators<value, Real, order> s{};
+        s[0].high = d - from_measured_[0] * x + from_command_[0] * u;
+        for (std::size_t i = 1; i < order; ++i)
+            s[i].high = feedback_[i - 1] * d - from_measured_[i] * x + from_command_[i] * u;
         return s;
     }
-    std::complex<double> shift(frequency f) const {
-        return std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value());
-    }
-    std::complex<double> under(std::complex<double> back) const {
-        return 1.0 + back * detail::polynomial(feedback_, back);
+    double angle(frequency f) const { return 2 * std::numbers::pi * f.value() * period_.value(); }
+    std::complex<double> under(frequency f) const {
+        std::array<double, order + 1> p{1};
+        for (std::size_t i = 0; i < order; ++i) p[i + 1] = detail::plain(feedback_[i]);
+        return detail::in_differences(p, angle(f));
     }
 
     parameters given_;
     duration period_;
     mask_of<Real> integrates_ = mask_of<Real>(
         true); ///< the plant does: z enters by its differences, so that a constant gives exactly zero
-    std::array<gain_of<Command, Measured, Real>, order + 1> from_measured_{}; ///< numerator of Q/Gn
+    std::array<gain_of<Command, Measured, Real>, order + 1>
+        from_measured_{}; ///< numerator of Q/Gn, by rising power of 1/D (differences.hpp)
     std::array<Real, order + 1> from_command_{};    ///< numerator of Q; [0] passes straight through
-    std::array<Real, order> feedback_{};            ///< denominator from z^-1 on
+    std::array<Real, order> feedback_{};            ///< denominator from 1/D on
     gain_of<Command, Measured, Real> standstill_{}; ///< 1 / Gn(0)
     Real solved_{1};
     state state_;
@@ -261,7 +267,7 @@ template <class Observer, class Frf>
 robust_stability robustness(const Observer& observer, Frf&& plant, frequency from, frequency to,
                             std::size_t points = 1000) {
     require_positive("robustness.from", from);
-    require(std::isfinite(to.value()) && to > from, "robustness.to", to, "must be finite and above from");
+    require(detail::is_finite(to.value()) && to > from, "robustness.to", to, "must be finite and above from");
     require(points >= 2, "robustness.points", double(points), "must be at least 2");
     robust_stability result;
     for (std::size_t i = 0; i < points; ++i) {

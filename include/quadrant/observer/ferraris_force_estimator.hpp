@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../filter/slowest.hpp"
 #include "../filter/transfer_function.hpp"
 #include "../finite.hpp"
 #include "q_filter.hpp"
@@ -45,8 +46,7 @@ public:
     ferraris_force_estimator(const parameters& p, duration period)
         : given_(checked(p, period)), mass_(in_real<Real>(p.mass)),
           force_constant_(in_real<Real>(p.force_constant)),
-          q_(low_pass::parameters::in_si(bilinear(q_filter<Order, NumeratorOrder>(p.corner), period)), period) {
-    }
+          q_(low_pass::of(bilinear_differences(q_filter<Order, NumeratorOrder>(p.corner), period), period)) {}
 
     value operator()(argument acceleration, applied u = applied(), value friction = value()) noexcept {
         return last_ = q_(mass_ * acceleration - force_constant_ * u + friction);
@@ -71,6 +71,7 @@ private:
         require_positive("ferraris_force_estimator.mass", p.mass);
         require_positive("ferraris_force_estimator.force_constant", p.force_constant);
         require_below_nyquist("ferraris_force_estimator.corner", p.corner, period);
+        require_held<Real>("ferraris_force_estimator.corner", p.corner, period);
         return p;
     }
 

@@ -81,8 +81,8 @@ template <std::size_t Harmonics> struct harmonic_model {
         std::array<complex, order> pole, mode; // wanted; of F
         for (std::size_t i = 0; i < order; ++i) {
             const complex s = poles[i];
-            require(std::isfinite(s.real()) && s.real() < 0, "harmonic_force_observer.design.poles", s.real(),
-                    "must be finite and left of the imaginary axis");
+            require(detail::is_finite(s.real()) && s.real() < 0, "harmonic_force_observer.design.poles",
+                    s.real(), "must be finite and left of the imaginary axis");
             std::size_t pairs = 0, same = 0;
             for (const complex& other : poles) pairs += other == std::conj(s), same += other == s;
             require(pairs == same, "harmonic_force_observer.design.poles", s.imag(),

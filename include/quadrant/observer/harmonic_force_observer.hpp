@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../finite.hpp"
+#include "../standstill.hpp"
 #include "harmonic_design.hpp"
 #include "nominal_plant.hpp"
 
@@ -116,19 +117,20 @@ public:
         const Real pv = velocity_from_velocity_ * v + velocity_from_command_ * u;
         const Real off = encoder.value() - px;
         state next;
-        Real sum{0}, check{0};
+        Real sum{0};
+        bool good = true;
         for (std::size_t i = 0; i < Harmonics; ++i) {
             const Real before = state_.in_phase[i].value(), aside = state_.across[i].value();
             const Real q = turn_[i].cosine * before + turn_[i].sine * aside + gain_[2 + 2 * i] * off;
             const Real r = turn_[i].cosine * aside - turn_[i].sine * before + gain_[3 + 2 * i] * off;
-            next.in_phase[i] = value::from_value(q);
-            next.across[i] = value::from_value(r);
+            next.in_phase[i] = value::from_value(unless_died_out(q));
+            next.across[i] = value::from_value(unless_died_out(r));
             sum += lead_[i].cosine * q + lead_[i].sine * r;
-            check += (q - q) + (r - r); // NaN if one of them is not finite
+            good = good && finite(q, r);
         }
-        next.position = argument::from_value(px + gain_[0] * off);
-        next.velocity = velocity::from_value(pv + gain_[1] * off);
-        if (!finite(next.position, next.velocity, sum, check)) return out_.hold();
+        next.position = argument::from_value(unless_died_out(px + gain_[0] * off));
+        next.velocity = velocity::from_value(unless_died_out(pv + gain_[1] * off));
+        if (!good || !finite(next.position, next.velocity, sum)) return out_.hold();
         state_ = next;
         innovation_ = argument::from_value(off);
         return out_.keep(value::from_value(sum));

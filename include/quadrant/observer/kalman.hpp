@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../finite.hpp"
+#include "../standstill.hpp"
 #include "dare.hpp"
 
 #include <cmath>
@@ -98,7 +99,8 @@ public:
         const Real off = outside(encoder.value() - px);
         const Real nx = px + gain_[0] * off, nv = pv + gain_[1] * off, nd = d + gain_[2] * off;
         if (!finite(encoder, nx, nv, nd)) return out_.hold();
-        state_ = {argument::from_value(nx), value::from_value(nv), force::from_value(nd)};
+        state_ = {unless_died_out(argument::from_value(nx)), unless_died_out(value::from_value(nv)),
+                  unless_died_out(force::from_value(nd))};
         innovation_ = argument::from_value(off);
         return out_.keep(state_.velocity);
     }

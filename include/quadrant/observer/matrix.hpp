@@ -54,7 +54,8 @@ matrix<R, C, Number> added(matrix<R, C, Number> a, const matrix<R, C, Number>& b
 template <std::size_t R, std::size_t C, class Number> double largest(const matrix<R, C, Number>& a) {
     double most = 0;
     for (const auto& row : a)
-        for (const auto& x : row) most = std::isnan(magnitude(x)) ? magnitude(x) : std::max(most, magnitude(x));
+        for (const auto& x : row)
+            most = detail::is_nan(magnitude(x)) ? magnitude(x) : std::max(most, magnitude(x));
     return most;
 }
 /// a^-1 b by elimination with partial pivoting; not finite when a is singular.

@@ -32,23 +32,6 @@ template <std::size_t Order, class Number> std::array<Number, Order + 1> binomia
     return p;
 }
 
-/// k^-Order sum_i c_i s^i with s = k (1-w)/(1+w), w = z^-1, times (1+w)^Order: the bilinear form of one polynomial of a
-/// common fraction. `differences` factors (1-w) are left out: c_0 ... are then zero and the caller feeds differences.
-template <std::size_t Order, std::size_t Size, class Number>
-std::array<Number, Order + 1> bilinear_polynomial(const std::array<Number, Size>& c, double k,
-                                                  std::size_t differences) {
-    static_assert(Size <= Order + 1);
-    std::array<Number, Order + 1> sum{};
-    for (std::size_t i = differences; i < Size; ++i) {
-        std::array<Number, Order + 1> p{};
-        p[0] = 1;
-        for (std::size_t j = differences; j < Order; ++j) multiply(p, j < i ? -1.0 : 1.0);
-        const double power = std::pow(k, double(i) - double(Order));
-        for (std::size_t j = 0; j <= Order; ++j) sum[j] += c[i] * power * p[j];
-    }
-    return sum;
-}
-
 /// sum c_i x^i.
 template <std::size_t Size, class Coefficient>
 std::complex<double> polynomial(const std::array<Coefficient, Size>& c, std::complex<double> x) {
@@ -57,10 +40,22 @@ std::complex<double> polynomial(const std::array<Coefficient, Size>& c, std::com
     return y;
 }
 
-/// All roots of 1 + a[1] z^-1 + ... inside the unit circle, by Schur and Cohn's step-down.
-template <std::size_t Size, class Number> bool roots_inside_circle(std::array<Number, Size> a) {
-    for (std::size_t n = Size - 1; n > 0; --n) {
-        const double k = plain(a[n]) / plain(a[0]);
+/// All roots of sum c_i s^i left of the imaginary axis: inside the unit circle after the bilinear form, by Schur and Cohn's
+/// step-down. Any rate of that form would do; one of the polynomial's own keeps its digits.
+template <std::size_t Size, class Number> bool roots_left_of_axis(const std::array<Number, Size>& c) {
+    constexpr std::size_t order = Size - 1;
+    const double rate = order == 0 || plain(c[0]) == 0
+                            ? 1
+                            : std::pow(std::abs(plain(c[0]) / plain(c[order])), 1.0 / double(order));
+    std::array<double, Size> a{};
+    for (std::size_t i = 0; i < Size; ++i) {
+        std::array<double, Size> p{1}; // (1 - z^-1)^i (1 + z^-1)^(order - i)
+        for (std::size_t j = 0; j < order; ++j) multiply(p, j < i ? -1.0 : 1.0);
+        const double weight = plain(c[i]) * std::pow(rate, double(i) - double(order));
+        for (std::size_t j = 0; j < Size; ++j) a[j] += weight * p[j];
+    }
+    for (std::size_t n = order; n > 0; --n) {
+        const double k = a[n] / a[0];
         if (!(std::abs(k) < 1)) return false;
         const auto old = a;
         for (std::size_t i = 0; i < n; ++i) a[i] = old[i] - k * old[n - i];

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../standstill.hpp"
 
 #include <complex>
 #include <numbers>
@@ -66,9 +67,9 @@ public:
     }
 
     value operator()(argument position, acceleration a = acceleration(), command applied = command()) noexcept {
-        const value v =
-            state_.velocity + (from_acceleration_ * (a + state_.accelerated) +
-                               from_position_ * (position - state_.position) - forget_ * state_.velocity);
+        const value v = unless_died_out(state_.velocity + (from_acceleration_ * (a + state_.accelerated) +
+                                                           from_position_ * (position - state_.position) -
+                                                           forget_ * state_.velocity));
         const force d = mass_ * a + viscous_ * v - force_constant_ * applied;
         if (!finite(position, v, d)) return out_.hold();
         state_ = {position, v, a, d};

@@ -22,7 +22,7 @@ public:
           angle_(std::atan2(start.y - centre.y, start.x - centre.x)),
           length_(std::hypot(radius_ * sweep, rise)) {
         require_positive("arc.radius", radius_);
-        require(std::isfinite(sweep) && sweep != 0, "arc.sweep", sweep, "must be finite and not 0");
+        require(detail::is_finite(sweep) && sweep != 0, "arc.sweep", sweep, "must be finite and not 0");
         require_finite("arc.z", start.z);
         require_finite("arc.rise", rise);
         require_positive("arc.length", length_);

@@ -112,7 +112,7 @@ private:
         double value = 0;
         const auto [end, fault] =
             std::from_chars(text_.data() + from, text_.data() + text_.size(), value, form);
-        if (fault == std::errc::invalid_argument || sign_only || !std::isfinite(value))
+        if (fault == std::errc::invalid_argument || sign_only || !detail::is_finite(value))
             fail(at, "a number is missing");
         if (fault != std::errc{} || std::abs(value) > 1e9) fail(at, "the number is out of range");
         at = static_cast<std::size_t>(end - text_.data());

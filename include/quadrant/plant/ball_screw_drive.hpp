@@ -4,6 +4,7 @@
 #include "../finite.hpp"
 #include "../friction/asymmetric_stribeck.hpp"
 #include "../observer/nominal_plant.hpp"
+#include "../standstill.hpp"
 #include "viscous_step.hpp"
 
 #include <cstddef>
@@ -95,7 +96,7 @@ public:
         for (std::size_t n = 0; n < given_.substeps; ++n)
             if (!advance(w, turned, applied))
                 break; // at rest, and so it stays: what is applied does not change
-        const state next{state_.x + travel_ * turned, travel_ * w};
+        const state next{state_.x + travel_ * turned, unless_died_out(velocity(travel_ * w))};
         if (!finite(applied, next.x, next.v)) return out_.hold();
         state_ = next;
         return out_.keep(next.x);

@@ -2,6 +2,7 @@
 #pragma once
 #include "../error.hpp"
 #include "../finite.hpp"
+#include "../standstill.hpp"
 #include "oscillator.hpp"
 
 #include <array>
@@ -78,10 +79,10 @@ public:
                     "must not be below 0 and must be below 1");
             require_finite("flexible_modes.share", m.share);
             const detail::oscillator<number> bell(m.centre.value(), m.damping, number(period.value()));
-            steps_[i] = {.stay = Real(bell.stay),
+            steps_[i] = {.away = Real(bell.stay - number(1)),
                          .onward = Real(bell.onward),
                          .back = Real(bell.back),
-                         .keep = Real(bell.keep),
+                         .loss = Real(bell.keep - number(1)),
                          .compliance = Real(m.share / (p.mass.value() * bell.stiffness))};
         }
     }
@@ -89,18 +90,21 @@ public:
     value operator()(argument force) noexcept {
         state next;
         value sum{};
-        Real check{0};
+        bool good = finite(force);
         for (std::size_t i = 0; i < Modes; ++i) {
             const step& m = steps_[i];
             const Real bent = m.compliance * force.value(), q = state_.deflection[i].value() - bent,
                        v = state_.speed[i].value();
-            next.deflection[i] = value::from_value(bent + (m.stay * q + m.onward * v));
-            next.speed[i] = velocity::from_value(m.back * q + m.keep * v);
+            next.deflection[i] = value::from_value(state_.deflection[i].value() + (m.away * q + m.onward * v));
+            next.speed[i] = velocity::from_value(v + (m.back * q + m.loss * v));
             sum += next.deflection[i];
-            check += next.speed[i].value() - next.speed[i].value(); // NaN if it is not finite
+            good = good && finite(next.speed[i]);
         }
-        if (!finite(force, sum, check)) return out_.hold();
-        state_ = next;
+        if (!good || !finite(sum)) return out_.hold();
+        for (std::size_t i = 0; i < Modes; ++i) {
+            state_.deflection[i] = unless_died_out(next.deflection[i]);
+            state_.speed[i] = unless_died_out(next.speed[i]);
+        }
         return out_.keep(sum);
     }
     void reset() noexcept { settle(argument()); }
@@ -121,8 +125,8 @@ public:
         const auto z = std::polar(1.0, 2 * std::numbers::pi * f.value() * period_.value());
         std::complex<double> sum = 0;
         for (const step& m : steps_) {
-            const double a = detail::plain(m.stay), b = detail::plain(m.onward), c = detail::plain(m.back),
-                         d = detail::plain(m.keep);
+            const double a = 1 + detail::plain(m.away), b = detail::plain(m.onward), c = detail::plain(m.back),
+                         d = 1 + detail::plain(m.loss);
             // (z - step) [q, v] = (1 - step) [bent, 0]
             const auto q = ((1 - a) * (z - d) - b * c) / ((z - a) * (z - d) - b * c);
             sum += detail::plain(m.compliance) * q;
@@ -145,7 +149,8 @@ public:
 
 private:
     struct step {
-        Real stay{}, onward{}, back{}, keep{}, compliance{};
+        Real away{}, onward{}, back{}, loss{},
+            compliance{}; ///< away, loss: stay and keep minus one, so that float holds them
     };
 
     parameters given_;

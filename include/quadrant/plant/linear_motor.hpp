@@ -5,6 +5,7 @@
 #include "../friction/coulomb_viscous.hpp"
 #include "../friction/presliding.hpp"
 #include "../friction/stick_slip.hpp"
+#include "../standstill.hpp"
 #include "motor_load.hpp"
 
 #include <array>
@@ -106,7 +107,7 @@ public:
             return out_.hold();
         }
         state_.x = x;
-        state_.v = v;
+        state_.v = unless_died_out(v);
         for (std::size_t i = Capacity; i > 0; --i) state_.past[i] = state_.past[i - 1];
         limited_ = beyond;
         return out_.keep(reading);

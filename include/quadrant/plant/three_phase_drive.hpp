@@ -3,6 +3,7 @@
 #include "../error.hpp"
 #include "../finite.hpp"
 #include "../signal.hpp"
+#include "../standstill.hpp"
 
 #include <algorithm>
 #include <array>
@@ -90,6 +91,7 @@ public:
         }
         const value force = value::from_value(force_constant_ * sum / (step_ * Real(double(given_.steps))));
         if (!finite(force, s.alpha, s.beta, s.held_d, s.held_q)) return out_.hold();
+        for (Real* each : {&s.alpha, &s.beta, &s.held_d, &s.held_q}) *each = unless_died_out(*each);
         state_ = s;
         limited_ = clipped;
         return out_.keep(force);
@@ -137,7 +139,7 @@ private:
                 p.bandwidth,
                 "must be above 0 and at most 1/12 of the current loop's rate (" + detail::shortest(most) + ")");
         require_finite("three_phase_drive.commutation_offset", p.commutation_offset);
-        require(std::isfinite(detail::plain(p.gain_error)) && detail::plain(p.gain_error) > -1,
+        require(detail::is_finite(detail::plain(p.gain_error)) && detail::plain(p.gain_error) > -1,
                 "three_phase_drive.gain_error", p.gain_error, "must be finite and above -1");
         require_finite("three_phase_drive.current_offset", p.current_offset);
         return p;

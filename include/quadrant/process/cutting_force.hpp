@@ -81,7 +81,7 @@ public:
     void reset() noexcept { settle(duration()); }
     /// Not finite: changes nothing.
     void settle(duration t, bool engaged = true) noexcept {
-        if (!std::isfinite(t.value())) return;
+        if (!detail::is_finite(t.value())) return;
         state_.turn.settle(t);
         state_.tool.settle(engaged);
     }

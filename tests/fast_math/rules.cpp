@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSL-1.0
+// Compiled with -O3 -ffast-math, by which a compiler may take it that there is no NaN and no infinity.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <quadrant/control/limiter.hpp>
+#include <quadrant/control/proportional_integral.hpp>
+#include <quadrant/dual.hpp>
+#include <quadrant/filter/butterworth.hpp>
+#include <quadrant/filter/lowpass.hpp>
+#include <quadrant/filter/notch.hpp>
+#include <quadrant/literals.hpp>
+#include <quadrant/observer/disturbance_observer.hpp>
+#include <quadrant/plant/flexible_modes.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <limits>
+
+using namespace quadrant;
+using namespace quadrant::literals;
+namespace s = quadrant::signal;
+
+namespace {
+/// Numbers that the compiler cannot know.
+const double no_number = std::strtod("nan", nullptr), infinity = std::strtod("inf", nullptr);
+const duration T = 500_us;
+template <class F> bool refuses(F&& make) {
+    try {
+        make();
+        return false;
+    } catch (const invalid_parameter&) {
+        return true;
+    }
+}
+/// A bad sample gives the last output, raises the fault and changes no state.
+template <class Block> bool holds(Block block, double bad) {
+    using in = typename Block::argument;
+    for (int k = 0; k < 20; ++k) block(in::from_value(k % 3 - 0.7));
+    const auto last = block(in::from_value(0.4));
+    auto twin = block;
+    const auto given = block(in::from_value(bad));
+    const double off = (block(in::from_value(0.1)) - twin(in::from_value(0.1))).value();
+    return given == last && block.faulted() && off * off < 1e-24;
+}
+} // namespace
+
+TEST_CASE("-ffast-math: every rule refuses a NaN, and an infinity where it has to be finite") {
+    for (const double bad : {no_number, -no_number}) {
+        CHECK(refuses([&] { require_finite("a.b", bad); }));
+        CHECK(refuses([&] { require_positive("a.b", bad); }));
+        CHECK(refuses([&] { require_not_negative("a.b", bad); }));
+        CHECK(refuses([&] { require_below_nyquist("a.b", bad * 1_Hz, T); }));
+        CHECK(refuses([&] { require(bad > 0, "a.b", bad, "must be above 0"); }));
+        CHECK(refuses([&] { notch<s::force>({330_Hz, bad}, T); }));
+        CHECK(refuses([&] { butterworth<s::force>({bad * 1_Hz}, T); }));
+        CHECK(refuses([&] { limiter<s::force>({bad * 1_N, 1_N}, T); }));
+        CHECK(refuses([&] { limiter<s::force>({-1_N, bad * 1_N}, T); }));
+        CHECK(refuses([&] { proportional_integral<s::velocity, s::force>({1_N / 1_mps, {}, bad * 1_N}, T); }));
+    }
+    CHECK(refuses([&] { require_finite("a.b", infinity); }));
+    CHECK(refuses([&] { require_positive("a.b", infinity); }));
+    CHECK(refuses([&] { butterworth<s::force>({infinity * 1_Hz}, T); }));
+    require_positive("a.b", 3.0);
+}
+TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative that is not finite is caught") {
+    using D = dual<2>;
+    for (const double bad : {no_number, infinity, -infinity}) {
+        CHECK(holds(notch<s::force>({330_Hz, 0.1}, T), bad));
+        CHECK(holds(butterworth<s::force>({100_Hz}, T), bad));
+        CHECK(holds(lowpass<s::force>({100_Hz}, T), bad));
+        CHECK(holds(limiter<s::force>({-1_N, 1_N}, T), bad));
+        CHECK(holds(flexible_modes<1>({340_kg, {{{47_Hz, 0.1, 0.2}}}}, T), bad));
+        CHECK(holds(
+            disturbance_observer<s::voltage>({60_Hz, axis_model<s::voltage>{4_mps2 / 1_V, 20.0 / 1_s}}, T),
+            bad));
+        D x(1);
+        x.partial[1] = bad;
+        CHECK_FALSE(finite(x));
+        CHECK_FALSE(finite(bad));
+        CHECK_FALSE(finite(float(bad)));
+        CHECK_FALSE(finite(1.0, bad, 2.0));
+        notch<s::force, D> n({quantity<si::frequency, D>::from_value(330), 0.1}, T);
+        n(quantity_of<s::force, D>::from_value(x));
+        CHECK(n.faulted());
+    }
+    CHECK(finite(D(3), D(4)));
+}
+TEST_CASE("-ffast-math: a constant passes a slow float section to the last bit") {
+    using F = quantity_of<s::force, float>;
+    notch<s::force, float> n({0.5_Hz, 1}, 50_us);
+    butterworth<s::force, float> b({0.5_Hz}, 50_us);
+    float y = 0, z = 0;
+    for (int k = 0; k < 2'000'000; ++k)
+        y = n(F::from_value(100.1f)).value(), z = b(F::from_value(100.1f)).value();
+    CHECK(y == 100.1f);
+    CHECK(z == 100.1f);
+}
