@@ -5,6 +5,18 @@
 
 namespace quadrant::diagnosis {
 
+/// The force that the velocity loop inside a drive holds at the first row: no file can know it.
+inline parameter start_of_drive(const record_scales& scale) {
+    return {.key = "start_force",
+            .of = [](plant_model& p) -> double& { return p.drive.start_force; },
+            .start = 0,
+            .low = -scale.command,
+            .high = scale.command,
+            .step = 1e-3 * scale.command,
+            .expected = 0,
+            .spread = scale.command};
+}
+
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
 /// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which also
 /// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis alike.

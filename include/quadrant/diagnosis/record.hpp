@@ -86,7 +86,6 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
-/// `scale`: of this log, or of the one that it is compared with.
 /// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in a sub-step, in ten
 /// at most. A contact of one spring, which stands for what no record shows, needs none.
 inline std::size_t substeps_of(const plant_model& described, double period) {
@@ -154,6 +153,22 @@ inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows)
     return out;
 }
 
+/// residual_force() of a model on a record. Where something was measured behind the drive, what this drive would have made otherwise is
+/// part of it, unless only what lies behind the drive is asked for.
+inline std::vector<double> residual_of(const axis_record& r, const plant_model& plant,
+                                       std::span<const double> model_acceleration, bool behind_drive = false) {
+    auto out = residual_force(plant, r.position, model_acceleration, r.period, r.bandwidth_Hz, r.left_out);
+    const driven_motion* drive = r.observer.drive;
+    if (!drive || !drive->tapped() || behind_drive) return out;
+    auto beside = drive->force_beside_tap(plant.drive, plant.force_constant);
+    for (std::size_t k = 0; k < r.left_out.size(); ++k)
+        if (r.left_out[k]) beside[k] = 0;
+    beside = zero_phase(beside, r.bandwidth_Hz, r.period);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += beside[k];
+    return out;
+}
+
+/// `scale`: of this log, or of the one that it is compared with.
 inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
     axis_record r{.period = period,
                   .reference = log.reference,
@@ -165,7 +180,8 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
                                .position = log.position,
                                .command = log.command,
                                .other_acceleration = log.other_acceleration,
-                               .resolution = std::max({resolution, log.position_step, scale.count})}};
+                               .resolution = std::max({resolution, log.position_step, scale.count}),
+                               .drive = log.drive.get()}};
     const auto smooth = zero_phase(log.position, scale.corner_Hz, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
@@ -181,6 +197,8 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
         return lay_blocks(block, s.skip, gaps.settling, log.position.size());
     });
+    if (log.drive && log.drive->tapped())
+        s.channels = detail::and_tap(std::move(s.channels), log.position.size());
     r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;

@@ -25,6 +25,7 @@ public:
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
+        if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -153,7 +154,8 @@ public:
         const auto allowed = [&](const effect* e) {
             return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
                    !(e->rotary_only && axis_.kind == axis_kind::linear) &&
-                   !(measured && e->joins == joint::command);
+                   !(measured && e->joins == joint::command) &&
+                   (axis_.drive.closes() ? beside_drive(*e) : e->box != "drive");
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
         std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
@@ -381,16 +383,29 @@ public:
     }
 
 private:
+    /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command is its own, and
+    /// box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
+    bool beside_drive(const effect& e) const {
+        if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
+        return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
+    }
     /// use(i, residual force of plant i), one after the other.
-    template <class Use> void residuals(const std::vector<plant_model>& plants, const Use& use) const {
+    template <class Use>
+    void residuals(const std::vector<plant_model>& plants, const Use& use, bool behind_drive = false) const {
         std::array<std::vector<double>, predictor::abreast> e, a;
         for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
             const std::size_t n = std::min(plants.size() - first, predictor::abreast);
             record_.observer.run(std::span(plants).subspan(first, n), e, a);
             for (std::size_t i = 0; i < n; ++i)
-                use(first + i, residual_force(plants[first + i], record_.position, a[i], record_.period,
-                                              record_.bandwidth_Hz, record_.left_out));
+                use(first + i, residual_of(record_, plants[first + i], a[i], behind_drive));
         }
+    }
+    /// Residual force without what a drive made otherwise than measured: what effects of the mechanics look at.
+    std::vector<double> residual_behind_drive(const candidate& c) const {
+        std::vector<double> out;
+        residuals(
+            {c.fit.plant}, [&](std::size_t, std::vector<double> r) { out = std::move(r); }, true);
+        return out;
     }
     static double square(double x) { return x * x; }
     /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them make.
@@ -427,7 +442,7 @@ private:
     void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
                      std::vector<candidate>& models) const {
         if (which.empty()) return;
-        const auto left = residual(from);
+        const auto left = residual_behind_drive(from);
         const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
         const fitter fit(record_.observer, record_.score);
         fit_result here = from.fit;
