@@ -105,7 +105,8 @@ public:
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
     double floor_force() const {
-        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz);
+        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz,
+                                    record.reaction);
     }
     /// The described controller with the found key mended.
     controller_description mended() const {

@@ -24,6 +24,10 @@ struct drive_model {
     double supply = 1;                                                           ///< [V]
     double start_force = 0; ///< of the velocity loop's integral at the first row, which no file can know [N]
 
+    /// How old a reading of the position is beside what the drive received and what was measured behind it, which other
+    /// registers hold: no file can know it [s].
+    double reading_age = 0;
+
     drive_model() = default;
     explicit drive_model(const drive_description& d)
         : kind(d.kind), between(d.between.value_or(interpolation::hold)),

@@ -118,15 +118,15 @@ private:
         for (std::size_t i = 0; i < plants.size(); ++i) {
             std::size_t same = 0;
             while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
-            if (same == i) own[i] = drive->command(plants[i].drive);
-            command_of[i] = own[same].data();
-            if (!drive->tapped()) continue;
             if (same == i) {
-                const auto beside = drive->beside_tap(plants[i].drive);
-                std::copy(beside.begin(), beside.end(), innovation[i].begin() + n);
-            } else {
+                auto replay = drive->run(plants[i].drive);
+                own[i] = std::move(replay.command);
+                for (std::size_t k = 0; k < replay.beside.size(); ++k)
+                    innovation[i][position.size() + k] = drive->to_position * replay.beside[k];
+            } else if (drive->tapped()) {
                 std::copy(innovation[same].begin() + n, innovation[same].end(), innovation[i].begin() + n);
             }
+            command_of[i] = own[same].data();
         }
     }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "drive_noise.hpp"
 #include "fit.hpp"
 #include "log.hpp"
 #include "scales.hpp"
@@ -19,6 +20,8 @@ struct axis_record {
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
     record_scales scale{};   ///< what is long, fast and strong here
+    /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the command is logged.
+    std::vector<double> reaction{};
     predictor observer;
     scoring score{};
 };
@@ -67,10 +70,14 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
 }
 
 /// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
-inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz) {
-    std::vector<double> impulse(4001, 0.0);
-    impulse[1999] = impulse[2001] = mass / (period * period);
-    impulse[2000] = -2 * impulse[2001];
+/// `reaction`: of a drive whose replay is fed the position.
+inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz,
+                                   std::span<const double> reaction = {}) {
+    std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
+    const std::size_t at = impulse.size() / 2;
+    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
+    impulse[at] = -2 * impulse[at + 1];
+    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
     double sum = 0;
     for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
     return sigma * std::sqrt(sum);
@@ -206,7 +213,18 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
 
 /// The record with its observer stepping as finely as the described machine needs.
 inline axis_record for_machine(axis_record r, const axis_description& a) {
-    r.observer.substeps = substeps_of(plant_model(a, r.scale.give()), r.period);
+    const plant_model described(a, r.scale.give());
+    r.observer.substeps = substeps_of(described, r.period);
+    if (r.observer.drive && !r.observer.drive->tapped()) {
+        r.reaction = reaction_to_reading(described, *r.observer.drive);
+        const auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
+        for (channel& c : r.score.channels) {
+            const bool slow = 5 * c.mean > r.score.block;
+            detail::set_gains(c, e);
+            if (!slow) c.rounding = std::max(1.0, c.noise_gain);
+            c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
+        }
+    }
     return r;
 }
 

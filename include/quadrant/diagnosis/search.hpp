@@ -26,6 +26,8 @@ public:
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
         if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
+        if (record.observer.drive && record.observer.drive->tapped())
+            start.fit.parameters.push_back(age_of_reading(record.period));
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -225,7 +227,8 @@ public:
 
     /// The residual force that noise and rounding alone leave [N].
     double floor_force(const candidate& c) const {
-        return residual_force_floor(axis_.plant.mass_kg, noise(c), record_.period, record_.bandwidth_Hz);
+        return residual_force_floor(axis_.plant.mass_kg, noise(c), record_.period, record_.bandwidth_Hz,
+                                    record_.reaction);
     }
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
@@ -250,7 +253,8 @@ public:
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m") p.of(plants[j]) = p.from_fit(low + share * (high - low));
+                if (p.key != "presliding_length_m" && p.key != "start_force" && p.key != "reading_age")
+                    p.of(plants[j]) = p.from_fit(low + share * (high - low));
             }
         std::vector<std::vector<double>> e(plants.size());
         record_.observer.run(plants, e);
@@ -386,6 +390,7 @@ private:
     /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command is its own, and
     /// box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
     bool beside_drive(const effect& e) const {
+        if (e.name == "force_constant" && is_force(axis_.command_unit)) return false; // the drive's gain
         if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
         return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
     }

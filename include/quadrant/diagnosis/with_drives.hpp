@@ -9,18 +9,11 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Means of neighbouring rows: of a signal that was read at the rows, over each row.
-inline std::vector<double> over_rows(std::span<const double> x) {
-    std::vector<double> out(x.begin(), x.end());
-    for (std::size_t k = 0; k + 1 < x.size(); ++k) out[k] = 0.5 * (x[k] + x[k + 1]);
-    return out;
-}
-
 /// What was measured behind the drive, in the unit of what its law gives; empty: nothing. `step`: of the column, in that unit.
 inline std::vector<double> measured_behind(const axis_description& axis, const axis_log& log, double& step) {
     const bool servo = axis.drive.kind == drive_kind::position_servo;
     const auto scaled = [&](const std::vector<double>& x, double by, double written) {
-        std::vector<double> out = over_rows(x);
+        std::vector<double> out = x;
         for (double& v : out) v *= by;
         step = std::abs(by) * written;
         return out;
@@ -57,8 +50,6 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
         if (log.drive_off[k]) out.left_out[k] = 0; // the mechanics go on
     double step = 0;
     motion->measured = measured_behind(axis, log, step);
-    for (std::size_t k = 0; k < motion->measured.size(); ++k)
-        if (motion->is_off(k)) motion->measured[k] = 0;
     out.asked = log.command;
     out.command_unit = axis.command_unit;
     out.command_step = 0;
@@ -67,21 +58,20 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     const double count = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
     double corner = 0.06 / period;
-    std::vector<double> given;
+    driven_motion::replay replay;
     for (int round = 0; round < 2;
          ++round) { // the velocity's band follows from the scales, which follow from the force
-        motion->velocity =
-            derivative(zero_phase(log.position, std::min(2 * corner, 0.2 / period), period), period);
-        given = motion->given(model);
-        out.command = motion->command(model);
+        motion->band_Hz = 2 * corner;
+        motion->find_velocity();
+        replay = motion->run(model);
+        out.command = replay.command;
         corner = scales_of(axis.plant, out, period, count).bandwidth_Hz();
     }
     if (motion->tapped()) {
-        for (std::size_t k = 0; k < given.size(); ++k) given[k] -= motion->measured[k];
         double most = 0;
         for (double u : motion->measured) most = std::max(most, std::abs(u));
         motion->to_position =
-            reading_noise(log.position, count) / reading_noise(given, std::max(step, 1e-12 * most));
+            reading_noise(log.position, count) / reading_noise(replay.beside, std::max(step, 1e-12 * most));
     }
     out.drive = std::move(motion);
     return out;

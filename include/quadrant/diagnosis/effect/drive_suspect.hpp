@@ -5,12 +5,23 @@
 /// What the suspects of a drive with loops of its own share.
 namespace quadrant::diagnosis::detail {
 
+/// A number that is freed between a quarter and four times its value, from the best of several ratios: where friction holds a model that
+/// is driven too weakly, no slope leads out.
+inline parameter freed_from_the_best(const screening& s, const char* key, double& (*of)(plant_model&)) {
+    plant_model leader = s.leader;
+    const double value = of(leader);
+    parameter out = freed(key, of, value);
+    out.start =
+        best_start(s, of, {value, 0.3 * value, 0.5 * value, 0.7 * value, 1.4 * value, 2 * value, 3.3 * value});
+    return out;
+}
+
 /// One start that frees a number of the drive between a quarter and four times its value; none where the drive has no such number.
 inline void free_if_there(std::vector<std::vector<parameter>>& starts, const screening& s, const char* key,
                           double& (*of)(plant_model&)) {
     plant_model leader = s.leader;
     const double value = of(leader);
-    if (value > 0 && std::isfinite(value)) starts.push_back({freed(key, of, value)});
+    if (value > 0 && std::isfinite(value)) starts.push_back({freed_from_the_best(s, key, of)});
 }
 
 /// The largest of what the drive gives, in the unit of its law: duty of a position servo, else force.
