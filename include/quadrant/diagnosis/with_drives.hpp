@@ -61,7 +61,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     driven_motion::replay replay;
     for (int round = 0; round < 2;
          ++round) { // the velocity's band follows from the scales, which follow from the force
-        motion->band_Hz = 2 * corner;
+        motion->band_Hz = 4 * corner;
         motion->find_velocity();
         replay = motion->run(model);
         out.command = replay.command;

@@ -121,6 +121,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     result.name = c.axis.name;
     result.kind = c.axis.kind;
     result.command_unit = c.axis.command_unit;
+    result.driven = c.axis.drive.closes();
     auto rivals = rivals_by_weight(c);
     auto causes = plant_causes(c, rivals);
     const bool guess = untested(c);
