@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <numbers>
 #include <string_view>
+#include <sys/mman.h>
 #include <unistd.h>
 
 /// Pictures as SVG inside the page, drawn by gnuplot as a program of its own. Text, frame, grid and lines take
@@ -183,13 +184,12 @@ inline std::string svg(const picture& drawn, std::size_t number, std::string_vie
     if (panels > 1) script += fmt::format("set multiplot layout {},1\n", panels);
     for (std::size_t k = 0; k < panels; ++k) script += panel_script(drawn.panels[k], k).plot();
 
-    std::string path = (std::filesystem::temp_directory_path() / ("quadrant-" + std::string(6, 'X'))).string();
-    const int handle = mkstemp(path.data());
+    const int handle = memfd_create("quadrant", 0); // a file without a name leaves nothing behind
     if (handle < 0) return "";
+    const std::string path = fmt::format("/proc/{}/fd/{}", getpid(), handle);
     std::string out;
     if (FILE* const file = fdopen(handle, "w")) {
-        const bool written = std::fputs(script.c_str(), file) >= 0;
-        if (std::fclose(file) == 0 && written) {
+        if (std::fputs(script.c_str(), file) >= 0 && std::fflush(file) == 0) {
             if (FILE* const pipe = popen(("gnuplot " + in_shell_quotes(path) + " 2>&1").c_str(), "r")) {
                 std::array<char, 65536> part;
                 while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
@@ -197,8 +197,8 @@ inline std::string svg(const picture& drawn, std::size_t number, std::string_vie
                 if (pclose(pipe) != 0) out.clear();
             }
         }
+        std::fclose(file);
     }
-    std::filesystem::remove(path);
     return detail::fit_into_page(std::move(out), number, label);
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-cnc: what a machine makes of a part program, before there is a machine.
+#include "../page/nearest_option.hpp"
+#include "../page/outputs.hpp"
 #include "commands.hpp"
 
 #include <CLI/CLI.hpp>
@@ -38,13 +40,14 @@ int main(int argc, char** argv) {
         "quadrant-cnc"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     app.require_subcommand(1);
-    app.footer("Exit code: 0 when what was asked for is written, 2 on bad input (one line says where).");
+    app.footer("Exit code: 0 when what was asked for is written, 1 when standard output fails, 2 on bad "
+               "input (one line says where).");
     add_run(app);
     try {
         app.parse(argc, argv);
-        return 0;
+        return quadrant_page::ended(0, "quadrant-cnc");
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : bad_input_code;
+        return quadrant_page::ended(quadrant_page::said(app, e, argc, argv, bad_input_code), "quadrant-cnc");
     } catch (const std::exception& e) { // bad_input, bad_program, or what this computer refuses
         std::fprintf(stderr, "quadrant-cnc: %s\n", e.what());
     }

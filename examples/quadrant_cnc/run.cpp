@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-cnc run: a part program through the virtual machine, and what it leaves behind.
+#include "../page/outputs.hpp"
 #include "commands.hpp"
 #include "gap_machine.hpp"
 #include "read_cnc.hpp"
@@ -43,7 +44,9 @@ private:
 } // namespace
 
 void run(const run_options& o) {
-    using quadrant::diagnosis::write_aside;
+    quadrant_page::outputs files;
+    files.reads("--cnc", o.cnc).reads("--path", o.path).writes("--log", o.log);
+    files.writes("--export-gap-machine", o.machine).writes("--report", o.report).writes("--json", o.json);
     const auto dumped = [](const nlohmann::ordered_json& j) {
         return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     };
@@ -54,13 +57,11 @@ void run(const run_options& o) {
     run_outcome out = simulate(cnc, o.path, log.get(), [&](const progress& p) { line(p); });
     line.clear();
     if (log) log->finish();
-    if (!o.machine.empty()) write_aside(o.machine, dumped(to_json(gap_machine(cnc, out.notes))));
-    if (!o.report.empty()) write_aside(o.report, html_report(out));
-    if (!o.json.empty() && o.json != "-") write_aside(o.json, dumped(to_json(out)));
-    if (o.json == "-")
-        std::fputs(dumped(to_json(out)).c_str(), stdout);
-    else if (!o.quiet)
-        std::fputs(summary(out).c_str(), stdout);
+    if (!o.machine.empty())
+        quadrant_page::write_output(o.machine, dumped(to_json(gap_machine(cnc, out.notes))));
+    if (!o.report.empty()) quadrant_page::write_output(o.report, html_report(out));
+    if (!o.json.empty()) quadrant_page::write_output(o.json, dumped(to_json(out)));
+    if (!o.quiet) std::fputs(summary(out).c_str(), files.words());
 }
 
 } // namespace quadrant_cnc

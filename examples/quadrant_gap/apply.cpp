@@ -23,20 +23,22 @@ struct apply_options {
 
 void run(const apply_options& o) {
     using namespace quadrant::diagnosis;
+    outputs files;
+    files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).writes("--out", o.out);
     const std::string text = detail::read_whole(std::filesystem::path(o.machine));
     const auto diagnosis = read_diagnosis(std::filesystem::path(o.diagnosis));
     auto result = apply(text, o.machine, diagnosis, o.all ? 0 : o.at_least);
     if (!diagnosis.machine_sha256.empty() && diagnosis.machine_sha256 != sha256(text))
         result.notes.push_back(fmt::format("{} is not, byte for byte, the machine file that was diagnosed ({})",
                                            o.machine, diagnosis.machine_file));
-    write_aside(o.out, result.machine.dump(2) + "\n");
+    write_output(o.out, result.machine.dump(2) + "\n");
     if (o.say.quiet) return;
-    if (result.changes.empty()) std::puts("Nothing was changed.");
+    if (result.changes.empty()) std::fputs("Nothing was changed.\n", files.words());
     for (const auto& c : result.changes) {
-        std::printf("%s: %s -> %s (%s)\n", c.path.c_str(), c.before.empty() ? "absent" : c.before.c_str(),
-                    c.after.c_str(), c.reason.c_str());
+        std::fprintf(files.words(), "%s: %s -> %s (%s)\n", c.path.c_str(),
+                     c.before.empty() ? "absent" : c.before.c_str(), c.after.c_str(), c.reason.c_str());
     }
-    for (const auto& note : result.notes) std::printf("Note: %s.\n", note.c_str());
+    for (const auto& note : result.notes) std::fprintf(files.words(), "Note: %s.\n", note.c_str());
 }
 
 } // namespace

@@ -27,6 +27,9 @@ struct circle_command {
 };
 
 void run(const circle_command& o) {
+    outputs files;
+    for (const auto& log : o.logs) files.reads("--log", log);
+    files.reads("--machine", o.machine).writes("--json", o.json).writes("--report", o.report);
     circle_options options;
     options.shortest_period = 1e-3 * o.shortest_mm;
     if (!o.machine.empty())
@@ -52,10 +55,10 @@ void run(const circle_command& o) {
     }
     const auto result = ball_bar(std::move(runs), options);
     if (!o.json.empty())
-        write_aside(o.json,
-                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.report.empty()) write_aside(o.report, circle::page(result));
-    if (!o.say.quiet) std::fputs(circle::summary(result, o.say.verbose).c_str(), stdout);
+        write_output(o.json,
+                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.report.empty()) write_output(o.report, circle::page(result));
+    if (!o.say.quiet) std::fputs(circle::summary(result, o.say.verbose).c_str(), files.words());
 }
 
 } // namespace

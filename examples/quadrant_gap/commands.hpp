@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../page/outputs.hpp"
+
 #include <quadrant/diagnosis/bad_input.hpp>
 #include <quadrant/error.hpp>
 
@@ -9,6 +11,7 @@
 
 /// The subcommands of quadrant-gap, one file each. A command throws bad_input when it cannot do what it was asked for.
 namespace quadrant_gap {
+using quadrant_page::outputs, quadrant_page::write_output;
 
 /// How much is said on the terminal.
 struct terminal {

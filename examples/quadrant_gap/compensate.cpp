@@ -23,6 +23,9 @@ struct compensate_options {
 };
 
 void run(const compensate_options& o) {
+    outputs files;
+    files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).reads("--log", o.log);
+    files.writes("--json", o.json).writes("--controller", o.controller);
     const auto machine = read_machine(std::filesystem::path(o.machine));
     const auto diagnosis = read_diagnosis(std::filesystem::path(o.diagnosis));
     const auto log = read_log(std::filesystem::path(o.log));
@@ -30,11 +33,11 @@ void run(const compensate_options& o) {
     const auto result = quadrant::diagnosis::compensate(machine, diagnosis, log, o.all ? 0 : o.at_least);
     const auto write = [](const std::string& file, const nlohmann::ordered_json& json) {
         if (!file.empty())
-            write_aside(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+            write_output(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     };
     write(o.json, to_json(result));
     write(o.controller, controller_patch(result));
-    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
+    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), files.words());
 }
 
 } // namespace

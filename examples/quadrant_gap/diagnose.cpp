@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap diagnose: why does the machine not do what its simulation says?
+#include "../page/progress.hpp"
 #include "commands.hpp"
 #include "digested.hpp"
+#include "make_match.hpp"
 #include "report.hpp"
 #include "summary.hpp"
 
-#include <quadrant/diagnosis/at_period.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
-#include <quadrant/diagnosis/import/check_physics.hpp>
-#include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <memory>
 #include <optional>
-#include <unistd.h>
 
 namespace quadrant_gap {
 
@@ -26,28 +24,6 @@ struct diagnose_options {
     terminal say;
 };
 
-/// One line on the terminal that is overwritten; every line with --verbose, none with --quiet or into a file.
-class progress_line {
-public:
-    explicit progress_line(const diagnose_options& o)
-        : verbose_(o.say.verbose), shown_(!o.say.quiet && isatty(STDERR_FILENO)) {}
-    ~progress_line() { clear(); }
-    progress_line(const progress_line&) = delete;
-    progress_line& operator=(const progress_line&) = delete;
-    void operator()(const std::string& text) {
-        if (verbose_)
-            std::fprintf(stderr, "%s\n", text.c_str());
-        else if (shown_)
-            std::fprintf(stderr, "\r\033[K%.*s", 78, text.c_str());
-    }
-    void clear() const {
-        if (shown_ && !verbose_) std::fputs("\r\033[K", stderr);
-    }
-
-private:
-    bool verbose_, shown_;
-};
-
 rules chosen(const diagnose_options& o) {
     rules r = o.fast ? fast_rules() : rules{};
     r.threads = o.threads;
@@ -55,43 +31,33 @@ rules chosen(const diagnose_options& o) {
 }
 
 void run(const diagnose_options& o) {
+    outputs files;
+    files.reads("--machine", o.machine).reads("--log", o.log).reads("--holdout", o.holdout);
+    files.writes("--json", o.json).writes("--report", o.report).writes("--next-motion", o.next_motion);
     const auto machine = read_digested_machine(o.machine);
     auto log = read_digested_log(o.log);
-    check_match(machine.contents, log.contents);
-    check_physics(machine.contents, log.contents);
     std::optional<digested<machine_log>> holdout;
-    if (!o.holdout.empty()) {
-        holdout = read_digested_log(o.holdout);
-        if (!has_period_of(machine.contents, holdout->contents))
-            holdout->contents = at_period(holdout->contents, log.contents.sample_period_s);
-        check_match(machine.contents, holdout->contents);
-        check_physics(machine.contents, holdout->contents);
-    }
-    for (const auto& axis : machine.contents.axes)
-        for (const auto& logged : log.contents.axes)
-            if (logged.name == axis.name && logged.command_is != axis.actuator.command_is &&
-                logged.command_is == command_origin::measured)
-                log.contents.notes.push_back(fmt::format(
-                    "axis {}: its column says that the command was measured behind the amplifier; the machine "
-                    "file does not (actuator.command_is): amplifier effects are then suspects too.",
-                    axis.name));
-    progress_line tell(o);
+    if (!o.holdout.empty()) holdout = read_digested_log(o.holdout);
+    make_match(machine.contents, log.contents, holdout ? &holdout->contents : nullptr);
+    quadrant_page::progress_line line(o.say.quiet);
     auto result = diagnose(
         machine.contents, log.contents, holdout ? &holdout->contents : nullptr,
-        [&](const std::string& s) { tell(s); }, chosen(o));
-    tell.clear();
+        [&](const std::string& s) { o.say.verbose ? void(fmt::print(stderr, "{}\n", s)) : line(s); },
+        chosen(o));
+    line.clear();
     result.machine_sha256 = machine.sha256;
     result.log_sha256 = log.sha256;
     if (holdout) result.holdout_sha256 = holdout->sha256;
     if (!o.json.empty())
-        write_aside(o.json,
-                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.report.empty()) write_aside(o.report, html_report(result));
+        write_output(o.json,
+                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.report.empty()) write_output(o.report, html_report(result));
     if (!o.next_motion.empty() && !result.next.reference.empty())
-        write_aside(o.next_motion, reference_csv(result.next, result.kind_of(result.next.axis)));
-    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
+        write_output(o.next_motion, reference_csv(result.next, result.kind_of(result.next.axis)));
+    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), files.words());
     if (!o.next_motion.empty() && result.next.reference.empty() && !o.say.quiet)
-        std::printf("Note: no motion was found to propose: %s is not written\n", o.next_motion.c_str());
+        std::fprintf(files.words(), "Note: no motion was found to propose: %s is not written\n",
+                     o.next_motion.c_str());
 }
 
 } // namespace
@@ -110,8 +76,9 @@ void add_diagnose(CLI::App& app) {
     command->add_option("--next-motion", o->next_motion,
                         "write the reference of the next experiment (CSV: time, position), if one is proposed: "
                         "no further, faster or stronger than the log");
-    command->add_option("--threads", o->threads,
-                        "at most; 0: as many as there are cores. The answer is the same");
+    command
+        ->add_option("--threads", o->threads, "at most; 0: as many as there are cores. The answer is the same")
+        ->check(CLI::Range(0, 4096));
     command->add_flag("--fast", o->fast, "fewer models tried: half of the time, the same judgement at the end");
     add_terminal_options(*command, o->say, "every model tried, with its gain; and what this log cannot see");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });

@@ -113,10 +113,13 @@ void add_options(CLI::App& command, options& o) {
         .add_option("--jobs", o.jobs,
                     "logs at a time (default: as many as there are cores; under MPI 1 a process)")
         ->check(CLI::Range(1, 4096));
-    command.add_option("--threads", o.threads,
-                       "of one diagnosis (default: what the logs at a time leave of the cores; "
-                       "under MPI 1). The answer is the same");
+    command
+        .add_option("--threads", o.threads,
+                    "of one diagnosis (default: what the logs at a time leave of the cores; "
+                    "under MPI 1). The answer is the same")
+        ->check(CLI::Range(0, 4096));
     command.add_option("--limit", o.limit_s, "seconds after which a diagnosis counts as failed")
+        ->check(CLI::PositiveNumber)
         ->capture_default_str();
     command.add_option("--program", o.program, "diagnose with this quadrant-gap instead of the one at hand");
     command.add_flag("--retry", o.retry,
@@ -216,6 +219,7 @@ void add_fleet(CLI::App& app) {
         if (o->program.empty()) o->program = std::filesystem::read_symlink("/proc/self/exe").string();
         o->quiet = say->quiet;
         o->verbose = say->verbose;
+        quadrant_page::remove_scratch_when_interrupted();
         fleet::crew alone;
         fleet::lead(*o, alone);
     });

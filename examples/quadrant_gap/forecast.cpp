@@ -44,6 +44,9 @@ std::string summary(const forecast_result& f, bool verbose) {
 
 void run(const forecast_options& o) {
     using namespace quadrant::diagnosis;
+    outputs files;
+    files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).reads("--motion", o.motion);
+    files.writes("--json", o.json);
     const auto machine = read_machine(std::filesystem::path(o.machine));
     auto motion = read_motion(std::filesystem::path(o.motion));
     for (auto& planned : motion.axes)
@@ -53,9 +56,9 @@ void run(const forecast_options& o) {
     const auto found = read_diagnosis(std::filesystem::path(o.diagnosis));
     const auto result = forecast(machine, found, motion, o.at_least);
     if (!o.json.empty())
-        write_aside(o.json,
-                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
+        write_output(o.json,
+                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), files.words());
 }
 
 } // namespace

@@ -40,6 +40,11 @@ void ask_origin(quadrant::diagnosis::import_map& map) {
 
 void run(const import_options& o) {
     using namespace quadrant::diagnosis;
+    outputs paths;
+    paths.reads("--map", o.map);
+    for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
+        paths.reads(fmt::format("input {}", i + 1), o.files[i]);
+    paths.writes("OUT", o.files.back());
     std::vector<foreign_file> files;
     for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
         files.push_back(
@@ -58,11 +63,11 @@ void run(const import_options& o) {
         ask_origin(map);
     auto imported = import_log(map, files, o.choice);
     if (!o.unchecked) check_physics(imported, o.known);
-    write_aside(out, imported.text);
+    write_output(out, imported.text);
     if (o.say.quiet) return;
-    std::printf("%zu rows, sample period %.6g s: %s\n", imported.log.samples, imported.log.sample_period_s,
-                out.c_str());
-    for (const auto& note : imported.notes) std::printf("Note: %s.\n", note.c_str());
+    std::fprintf(paths.words(), "%zu rows, sample period %.6g s: %s\n", imported.log.samples,
+                 imported.log.sample_period_s, out.c_str());
+    for (const auto& note : imported.notes) std::fprintf(paths.words(), "Note: %s.\n", note.c_str());
 }
 
 } // namespace

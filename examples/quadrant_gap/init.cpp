@@ -78,6 +78,11 @@ void ask_origin(init_options& o) {
 }
 
 void run(init_options& o) {
+    outputs files;
+    const bool to_file = o.out != quadrant_page::standard_output;
+    const std::string beside =
+        to_file ? std::filesystem::path(o.out).replace_extension("md").string() : std::string();
+    files.reads("--log", o.log).writes("--out", o.out).writes("the comments of --out", beside);
     std::optional<machine_log> log;
     if (!o.log.empty()) log = read_log(std::filesystem::path(o.log));
     const auto kind_of = [&](const std::string& axis) { // "": of the log's first
@@ -102,14 +107,14 @@ void run(init_options& o) {
         }
     if (o.command_is == name_of(command_origin::measured)) o.request.command_is = command_origin::measured;
     const auto begun = init_machine(o.request, log ? &*log : nullptr);
-    write_aside(o.out, begun.machine.dump(2) + "\n");
-    const std::string beside = std::filesystem::path(o.out).replace_extension("md").string();
-    write_aside(beside, begun.comments);
+    write_output(o.out, begun.machine.dump(2) + "\n");
+    if (to_file) write_output(beside, begun.comments);
     if (o.say.quiet) return;
-    std::printf("%s written; %s says what each value means and where it is from.\n", o.out.c_str(),
-                beside.c_str());
-    for (const auto& note : begun.notes) std::printf("Note: %s\n", note.c_str());
-    if (o.say.verbose) std::fputs(("\n" + begun.comments).c_str(), stdout);
+    if (to_file)
+        std::fprintf(files.words(), "%s written; %s says what each value means and where it is from.\n",
+                     o.out.c_str(), beside.c_str());
+    for (const auto& note : begun.notes) std::fprintf(files.words(), "Note: %s\n", note.c_str());
+    if (o.say.verbose) std::fputs(("\n" + begun.comments).c_str(), files.words());
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap: why does the machine not do what its simulation says?
+#include "../page/nearest_option.hpp"
 #include "commands.hpp"
 
 int main(int argc, char** argv) {
@@ -7,7 +8,12 @@ int main(int argc, char** argv) {
     CLI::App app{"Why does the machine not do what its simulation says?", "quadrant-gap"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     app.require_subcommand(1);
-    app.footer("Exit code: 0 when what was asked for is written, 2 on bad input (one line says where).");
+    app.footer("Output files: \"-\" is standard output, words then go to standard error. An output that is "
+               "also an input is\n"
+               "refused.\n"
+               "Exit code: 0 when what was asked for is written, 1 when standard output fails, 2 on bad input "
+               "(one line\n"
+               "says where).");
     quadrant_gap::add_diagnose(app);
     quadrant_gap::add_apply(app);
     quadrant_gap::add_simulate(app);
@@ -20,9 +26,9 @@ int main(int argc, char** argv) {
     quadrant_gap::add_fleet(app);
     try {
         app.parse(argc, argv);
-        return 0;
+        return quadrant_page::ended(0, "quadrant-gap");
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : bad_input_code;
+        return quadrant_page::ended(quadrant_page::said(app, e, argc, argv, bad_input_code), "quadrant-gap");
     } catch (const std::exception& e) { // bad_input, or what this computer refuses
         std::fprintf(stderr, "quadrant-gap: %s\n", e.what());
     }

@@ -48,7 +48,7 @@ inline std::string html_report(const diagnosis_result& d) {
     std::string next = paragraph(capital(d.next.motion));
     for (const std::string& line : experiment_lines(d.next)) next += paragraph(line);
     return report_page(
-        {{"title", escape(d.log_file + " against " + d.machine_file)},
+        {{"title", escape(file_name(d.log_file) + " against " + file_name(d.machine_file))},
          {"badge", badge(d.verdict)},
          {"sentence", escape(verdict_sentence(d))},
          {"overview", overviews},

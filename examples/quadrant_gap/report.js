@@ -43,17 +43,26 @@ const touch = Object.fromEntries(['touchstart', 'touchmove', 'touchend'].map(nam
     if (event.touches.length > 1) Dygraph.defaultInteractionModel[name](event, graph, context);
 }]));
 
+// A few spikes do not flatten a chart: when the largest value is far beyond all but a thousandth of them, the chart shows
+// those, and says how far the spikes go.
+function spikes(columns) {
+    const values = columns.flat().filter(v => v !== null).sort((a, b) => a - b), at = part => values[Math.round(part * (values.length - 1))];
+    const low = at(0.001), high = at(0.999), span = high - low, most = Math.max(at(1), -at(0));
+    return span > 0 && (at(1) - high > 3 * span || low - at(0) > 3 * span) ? {range: [low - span / 4, high + span / 4], most} : null;
+}
+
 function draw_time(figure) {
-    const c = chart_of(figure), first = !graphs[c.axis];
+    const c = chart_of(figure), first = !graphs[c.axis], cut = spikes(c.columns.slice(1));
     const rows = c.columns[0].map((_, k) => c.columns.map(column => column[k]));
     const plot = figure.querySelector('.plot');
     plot.classList.toggle('first', first);
     const graph = new Dygraph(plot, rows, {
-        ...theme(c.names), labels: ['time', ...c.names], xlabel: c.x, ylabel: c.y, axisLabelWidth: 50,
+        ...theme(c.names), ...(cut ? {valueRange: cut.range} : {}), labels: ['time', ...c.names], xlabel: c.x, ylabel: c.y, axisLabelWidth: 50,
         strokeWidth: 1.2, series: {logged: {strokeWidth: c.names.length > 1 ? 4 : 1.2}}, xLabelHeight: 18, yLabelWidth: 18, highlightCircleSize: 3, showRangeSelector: first, rangeSelectorHeight: 34,
         underlayCallback: canvas => { canvas.lineJoin = 'round'; }, // a mitred zigzag shows spikes that the data have not
         legend: 'always', labelsDiv: figure.querySelector('.legend'),
         legendFormatter: data => legend(c.names, data.x === undefined ? null : data.series.map(s => s.y === undefined ? '' : digits(s.y)))
+            + (cut ? ` <span>spikes up to ${digits(cut.most)} go beyond the chart</span>` : '')
             + (data.x === undefined ? '' : ` <span>at ${digits(data.x)} s</span>`),
         interactionModel: {...Dygraph.defaultInteractionModel, ...touch},
         axes: {x: {valueFormatter: digits, pixelsPerLabel: 70}, y: {valueFormatter: digits, pixelsPerLabel: 25}},
@@ -169,5 +178,32 @@ const redraw = () => redraws.forEach(r => r());
 document.querySelectorAll('button[data-axis]').forEach(b => b.addEventListener('click', () => graphs[b.dataset.axis][0].resetZoom()));
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
 addEventListener('resize', redraw);
-for (const [name, printing] of [['beforeprint', true], ['afterprint', false]])
-    addEventListener(name, () => { document.documentElement.classList.toggle('printing', printing); redraw(); });
+
+// ---- on paper ----
+
+// A browser prints what was drawn on a canvas from a list of strokes, and of Dygraphs' lists little is left: paper gets
+// copies of the finished pictures, twice as fine as the screen.
+function freeze(figure) {
+    for (const canvas of figure.querySelectorAll('.plot canvas')) {
+        if (!canvas.width || canvas.style.display === 'none') continue;
+        const copy = canvas.cloneNode();
+        copy.classList.add('frozen');
+        copy.getContext('2d').drawImage(canvas, 0, 0);
+        canvas.after(copy);
+        canvas.classList.add('live');
+    }
+}
+const times = figures.filter(f => chart_of(f).kind === 'time');
+addEventListener('beforeprint', () => {
+    document.documentElement.classList.add('printing');
+    Object.values(graphs).flat().forEach(g => g.updateOptions({pixelRatio: 2}));
+    redraw();
+    times.forEach(freeze);
+});
+addEventListener('afterprint', () => {
+    document.querySelectorAll('canvas.frozen').forEach(copy => copy.remove());
+    document.querySelectorAll('canvas.live').forEach(canvas => canvas.classList.remove('live'));
+    document.documentElement.classList.remove('printing');
+    Object.values(graphs).flat().forEach(g => g.updateOptions({pixelRatio: null}));
+    redraw();
+});

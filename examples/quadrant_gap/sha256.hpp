@@ -39,8 +39,10 @@ inline std::string sha256(std::string_view text) {
     return sum.digits();
 }
 
-/// Empty when the file cannot be read.
+/// Empty when the file cannot be read, or is no file.
 inline std::string sha256_of_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return ""; // a FIFO would never end
     std::ifstream file(path, std::ios::binary);
     sha256_sum sum;
     std::array<char, 1 << 16> part;

@@ -20,6 +20,9 @@ struct simulate_options {
 };
 
 void run(const simulate_options& o) {
+    outputs files;
+    files.reads("--machine", o.machine).reads("--log", o.log);
+    files.writes("--json", o.json).writes("--report", o.report);
     const auto machine = read_digested_machine(o.machine);
     const auto log = read_digested_log(o.log);
     check_match(machine.contents, log.contents);
@@ -27,10 +30,10 @@ void run(const simulate_options& o) {
     result.machine_sha256 = machine.sha256;
     result.log_sha256 = log.sha256;
     if (!o.json.empty())
-        write_aside(o.json,
-                    to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.report.empty()) write_aside(o.report, html_report(result, log.contents));
-    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), stdout);
+        write_output(o.json,
+                     to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.report.empty()) write_output(o.report, html_report(result, log.contents));
+    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), files.words());
 }
 
 } // namespace

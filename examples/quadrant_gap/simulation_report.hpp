@@ -59,19 +59,20 @@ inline std::string html_report(const simulation_result& s, const machine_log& lo
         for (const place& p : a.where)
             places += fmt::format("<dt>{}</dt><dd>axis {}: {}</dd>", escape(percent(p.share)), escape(a.name),
                                   escape(p.finding));
-    return report_page({{"title", escape(s.log_file + " as " + s.machine_file + " predicts it")},
-                        {"badge", ""},
-                        {"sentence", escape(sentences)},
-                        {"overview", overviews},
-                        {"causes", none},
-                        {"remaining", "<dl>" + places + "</dl>"},
-                        {"next", none},
-                        {"unseen", ""},
-                        {"axes", charts},
-                        {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
-                        {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Log</dt><dd>{}</dd></dl>",
-                                              escape(s.machine_file), escape(s.log_file))},
-                        {"charts", book.json_of_all()}});
+    return report_page(
+        {{"title", escape(file_name(s.log_file) + " as " + file_name(s.machine_file) + " predicts it")},
+         {"badge", ""},
+         {"sentence", escape(sentences)},
+         {"overview", overviews},
+         {"causes", none},
+         {"remaining", "<dl>" + places + "</dl>"},
+         {"next", none},
+         {"unseen", ""},
+         {"axes", charts},
+         {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
+         {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Log</dt><dd>{}</dd></dl>",
+                               escape(s.machine_file), escape(s.log_file))},
+         {"charts", book.json_of_all()}});
 }
 
 } // namespace quadrant_gap

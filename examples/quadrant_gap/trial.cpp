@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap trial: does the diagnosis find what was put into machines that it did not make?
 #include "../for_each_index.hpp"
+#include "../page/progress.hpp"
+#include "../page/scratch_folder.hpp"
 #include "commands.hpp"
 #include "sha256.hpp"
 #include "trial/child.hpp"
@@ -31,23 +33,25 @@ struct trial_options {
     terminal say;
 };
 
-/// One line on the terminal that is overwritten; with --verbose a line a machine.
+/// In per cent, with the time that is left; with --verbose a line a machine.
 class progress {
 public:
-    progress(const char* what, std::size_t of, const terminal& say) : what_(what), of_(of), say_(say) {}
+    progress(const char* what, std::size_t of, const terminal& say)
+        : what_(what), of_(of), say_(say), line_(say.quiet) {}
     void operator()(const std::string& more = "") {
         const std::lock_guard lock(telling_);
         ++done_;
         if (say_.verbose)
             std::fprintf(stderr, "%s %zu of %zu%s\n", what_, done_, of_, more.c_str());
-        else if (!say_.quiet && isatty(STDERR_FILENO))
-            std::fprintf(stderr, "\r\033[K%s %zu of %zu%s", what_, done_, of_, done_ == of_ ? "\n" : "");
+        else
+            line_(done_, of_, fmt::format("{} {} of {}", what_, done_, of_));
     }
 
 private:
     const char* what_;
     std::size_t of_, done_ = 0;
     terminal say_;
+    quadrant_page::progress_line line_;
     std::mutex telling_;
 };
 
@@ -82,7 +86,8 @@ std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const s
 }
 
 /// Before the work, that what it finds can be written.
-void check_folders(const trial_options& o) {
+void check_folders(const trial_options& o, outputs& files) {
+    files.writes("--json", o.json).writes("--report", o.report);
     for (const std::filesystem::path file : {o.json, o.report})
         if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path()))
             throw bad_input(file.string(), "cannot be written: no such folder");
@@ -93,7 +98,9 @@ void check_folders(const trial_options& o) {
 }
 
 void run_trial(trial_options o) {
-    check_folders(o);
+    quadrant_page::remove_scratch_when_interrupted();
+    outputs files;
+    check_folders(o, files);
     if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
     const auto planned_machines = plan(o.seed, o.machines);
     std::vector<std::size_t> chosen(o.machines);
@@ -111,15 +118,15 @@ void run_trial(trial_options o) {
     });
     const std::string truth = ordered_json(truths).dump(1) + "\n", digest = sha256(truth);
     if (!o.say.quiet) {
-        std::printf("truth of %zu machines, seed %llu, sealed: SHA-256 %s\n", chosen.size(),
-                    static_cast<unsigned long long>(o.seed), digest.c_str());
-        std::fflush(stdout);
+        std::fprintf(files.words(), "truth of %zu machines, seed %llu, sealed: SHA-256 %s\n", chosen.size(),
+                     static_cast<unsigned long long>(o.seed), digest.c_str());
+        std::fflush(files.words());
     }
 
     std::vector<judged_machine> judged(chosen.size());
     progress diagnosed("diagnosed", chosen.size(), o.say);
     for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
-        const neutral_folder folder;
+        const quadrant_page::scratch_folder folder(neutral_folder());
         write_files(machines[k], folder.path());
         machines[k] = {};
         const answer a = diagnose_files(o.program, folder.path(), true, o.limit_s);
@@ -145,9 +152,9 @@ void run_trial(trial_options o) {
     result.update(tally(judged));
     const std::string text = summary_text(result);
     if (!o.keep.empty()) write_aside(std::filesystem::path(o.keep) / "truth.json", truth);
-    if (!o.json.empty()) write_aside(o.json, result.dump(1) + "\n");
-    if (!o.report.empty()) write_aside(o.report, page(result));
-    if (!o.say.quiet) std::fputs(text.c_str(), stdout);
+    if (!o.json.empty()) write_output(o.json, result.dump(1) + "\n");
+    if (!o.report.empty()) write_output(o.report, page(result));
+    if (!o.say.quiet) std::fputs(text.c_str(), files.words());
 }
 
 } // namespace
@@ -157,14 +164,18 @@ void add_trial(CLI::App& app) {
     CLI::App* const command = app.add_subcommand(
         "trial", "draw machines at random, diagnose them from their files, and judge what was said");
     command->add_option("--machines", o->machines, "how many")->check(CLI::Range(1, 100000));
-    command->add_option("--seed", o->seed, "another seed, another population; the same seed, the same result");
-    command->add_option("--only", o->only, "of that population, these machines alone")->delimiter(',');
+    command->add_option("--seed", o->seed, "another seed, another population; the same seed, the same result")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--only", o->only, "of that population, these machines alone")
+        ->delimiter(',')
+        ->check(CLI::NonNegativeNumber);
     command->add_option("--json", o->json, "write every figure and case (JSON)");
     command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
     command->add_option("--keep", o->keep, "keep every machine's files and diagnosis in this folder");
     command->add_option("--jobs", o->jobs, "machines at a time")->check(CLI::Range(1, 256));
     command->add_option("--program", o->program, "diagnose with this quadrant-gap instead of the running one");
-    command->add_option("--limit", o->limit_s, "seconds after which a diagnosis counts as not answered");
+    command->add_option("--limit", o->limit_s, "seconds after which a diagnosis counts as not answered")
+        ->check(CLI::PositiveNumber);
     command->add_flag("--no-forecast", o->no_forecast, "do not diagnose again without the hold-out log");
     add_terminal_options(*command, o->say, "every machine as it is diagnosed");
     command->callback([o] { run_trial(*o); });

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-latency: does my loop fit my period, with what margin?
+#include "../page/nearest_option.hpp"
+#include "../page/outputs.hpp"
 #include "page.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <optional>
 
 namespace {
 
@@ -22,36 +23,21 @@ CLI::Validator between(double low, double high) {
             fmt::format("{} ... {}", low, high)};
 }
 
-/// Written beside its place and renamed when complete; opened before a minute has been spent.
-class file_aside {
-public:
-    explicit file_aside(const std::string& path) : path_(path), out_(path + ".part") {
-        if (!out_) throw std::runtime_error(path + ": cannot be written");
-    }
-    ~file_aside() {
-        std::error_code ignored;
-        std::filesystem::remove(path_ + ".part", ignored);
-    }
-    file_aside(const file_aside&) = delete;
-    file_aside& operator=(const file_aside&) = delete;
-    void write(const std::string& text) {
-        out_ << text;
-        out_.close();
-        if (!out_) throw std::runtime_error(path_ + ": could not be written");
-        std::filesystem::rename(path_ + ".part", path_);
-    }
-
-private:
-    std::string path_;
-    std::ofstream out_;
-};
-
 int run(const quadrant_latency::plan& plan, const std::string& html) {
-    file_aside file(html);
+    const bool to_file = html != quadrant_page::standard_output;
+    std::optional<quadrant::diagnosis::output_file> file; // opened before a minute has been spent
+    if (to_file) file.emplace(html);
     const auto result = quadrant_latency::measure(plan);
     const bool can_draw = quadrant_page::gnuplot_is_here();
-    file.write(quadrant_latency::page(result, plan.period_us, can_draw));
-    fmt::print("{}Page: {}\n", quadrant_latency::text(result, plan.period_us), html);
+    const std::string page = quadrant_latency::page(result, plan.period_us, can_draw);
+    if (file) {
+        file->write(page);
+        file->finish();
+    } else {
+        quadrant_page::write_output(html, page);
+    }
+    fmt::print(to_file ? stdout : stderr, "{}{}\n", quadrant_latency::text(result, plan.period_us),
+               to_file ? "Page: " + html : "");
     if (!can_draw)
         fmt::print(stderr, "quadrant-latency: no gnuplot, so the page has no picture (Debian package {})\n",
                    quadrant_page::gnuplot_package);
@@ -81,9 +67,9 @@ int main(int argc, char** argv) {
     app.footer("Exit code: 0 when no call was longer than the period, 1 when one was, 2 on bad input.");
     try {
         app.parse(argc, argv);
-        return run(plan, html);
+        return quadrant_page::ended(run(plan, html), "quadrant-latency");
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : bad_input_code;
+        return quadrant_page::said(app, e, argc, argv, bad_input_code);
     } catch (const std::exception& e) { // what this computer refuses
         fmt::print(stderr, "quadrant-latency: {}\n", e.what());
     }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-reproduce: published experiments computed again, and their figures beside ours.
+#include "../page/nearest_option.hpp"
+#include "../page/outputs.hpp"
+#include "../page/progress.hpp"
 #include "choose.hpp"
 #include "experiments.hpp"
 #include "markdown.hpp"
 #include "page.hpp"
-
-#include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -14,7 +15,7 @@
 namespace {
 
 namespace qr = quadrant_reproduce;
-using quadrant::diagnosis::write_aside;
+using quadrant_page::write_output;
 
 constexpr int bad_input_code = 2;
 
@@ -43,55 +44,54 @@ nlohmann::ordered_json to_json(const std::vector<qr::section>& all) {
     return rows;
 }
 
-void print_summary(const std::vector<qr::section>& all) {
+void print_summary(const std::vector<qr::section>& all, std::FILE* out) {
     for (const qr::section& s : all) {
         const qr::tally t = qr::count(s.rows, s.what.tolerance);
-        fmt::print("{}: {} figures", s.what.title, s.rows.size());
+        fmt::print(out, "{}: {} figures", s.what.title, s.rows.size());
         if (t.compared > 0)
-            fmt::print(", {} of {} within {:g} % of the reference computation", t.within, t.compared,
+            fmt::print(out, ", {} of {} within {:g} % of the reference computation", t.within, t.compared,
                        100 * s.what.tolerance);
-        fmt::print("\n");
+        fmt::print(out, "\n");
         for (const qr::row* r : t.outside)
-            fmt::print("  outside: {} {}: {} {} instead of {}\n", r->id, r->quantity, qr::number(r->simulated),
-                       r->unit, qr::compared(*r, r->reference_computation));
+            fmt::print(out, "  outside: {} {}: {} {} instead of {}\n", r->id, r->quantity,
+                       qr::number(r->simulated), r->unit, qr::compared(*r, r->reference_computation));
         for (const qr::row& r : s.rows)
-            if (!r.simulated) fmt::print("  no figure: {} {}: {}\n", r.id, r.quantity, r.note);
+            if (!r.simulated) fmt::print(out, "  no figure: {} {}: {}\n", r.id, r.quantity, r.note);
     }
 }
 
 int reproduce(const options& o, bool wants_page) {
-    const bool shown = !o.quiet && isatty(STDERR_FILENO);
-    const auto say = [&](const std::string& text) {
-        if (shown) fmt::print(stderr, "\r\033[K{:.78}", text);
-    };
+    quadrant_page::outputs files;
+    files.writes("--json", o.json).writes("--markdown", o.markdown);
+    if (wants_page) files.writes("--html", o.html);
+    quadrant_page::progress_line line(o.quiet);
     const auto chosen = qr::choose(qr::experiments(), o.ids);
     if (o.list) {
         for (const qr::experiment& e : chosen)
             for (const qr::run_case& c : e.cases) fmt::print("{:28} {}\n", c.id, e.title);
         return 0;
     }
-    const auto all = qr::run_all(chosen, [&](const std::string& id, std::size_t done, std::size_t of) {
-        say(fmt::format("{} of {}: {}", done, of, id));
-    });
+    const auto all = qr::run_all(
+        chosen, [&](const std::string& id, std::size_t done, std::size_t of) { line(done, of, id); });
     if (!o.json.empty())
-        write_aside(o.json, to_json(all).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.markdown.empty()) write_aside(o.markdown, qr::markdown(all));
+        write_output(o.json, to_json(all).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!o.markdown.empty()) write_output(o.markdown, qr::markdown(all));
     if (wants_page) {
         const bool can_draw = quadrant_page::gnuplot_is_here();
-        write_aside(o.html, qr::page(all, can_draw, [&](std::size_t done, std::size_t of) {
-                        say(fmt::format("picture {} of {}", done, of));
-                    }));
-        say("");
+        write_output(o.html, qr::page(all, can_draw, [&](std::size_t done, std::size_t of) {
+                         line(fmt::format("picture {} of {}", done, of));
+                     }));
+        line.clear();
         if (!can_draw)
             fmt::print(stderr,
                        "quadrant-reproduce: no gnuplot, so the page has its tables but no pictures (Debian "
                        "package {})\n",
                        quadrant_page::gnuplot_package);
     }
-    say("");
+    line.clear();
     if (!o.quiet) {
-        print_summary(all);
-        if (wants_page) fmt::print("Page: {}\n", o.html);
+        print_summary(all, files.words());
+        if (wants_page) fmt::print(files.words(), "Page: {}\n", o.html);
     }
     return 0;
 }
@@ -119,9 +119,10 @@ int main(int argc, char** argv) {
     app.add_flag("--quiet", o.quiet, "no text, only the files");
     try {
         app.parse(argc, argv);
-        return reproduce(o, page->count() > 0 || (o.json.empty() && o.markdown.empty()));
+        return quadrant_page::ended(reproduce(o, page->count() > 0 || (o.json.empty() && o.markdown.empty())),
+                                    "quadrant-reproduce");
     } catch (const CLI::ParseError& e) {
-        return app.exit(e) == 0 ? 0 : bad_input_code;
+        return quadrant_page::said(app, e, argc, argv, bad_input_code);
     } catch (const std::exception& e) { // unknown_id, bad_input, or what this computer refuses
         fmt::print(stderr, "quadrant-reproduce: {}\n", e.what());
     }

@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "lanes/instruction_set.hpp"
+#include "portable.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#ifdef __cpp_exceptions
-#    include <charconv>
-#endif
 
 /// A number as text, for messages.
 namespace quadrant::detail {
 
-struct number_text {
-    std::array<char, 32> text{}; ///< ends in a zero
-};
-
 #ifdef __cpp_exceptions
 /// The shortest text that reads back as the same number.
 template <class Isa = isa::here> number_text digits(double x) {
+#    ifdef __cpp_lib_to_chars
     number_text out;
     std::to_chars(out.text.data(), out.text.data() + out.text.size() - 1, x);
     return out;
+#    else
+    return shortest_digits<Isa>(x);
+#    endif
 }
 #else
 /// Nine significant digits at most, without the standard library, whose to_chars brings in an unwinder and files.
@@ -35,7 +31,7 @@ template <class Isa = isa::here> number_text digits(double x) {
         return out;
     };
     if (x != x) return word("nan");
-    if (std::bit_cast<std::uint64_t>(x) >> 63 != 0) *at++ = '-', x = -x;
+    if (bits_as<std::uint64_t>(x) >> 63 != 0) *at++ = '-', x = -x;
     if (x == 0) return word("0");
     if (x - x != 0) return word("inf");
     int exponent = 0;

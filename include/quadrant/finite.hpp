@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "portable.hpp"
 #include "select.hpp"
 
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -15,11 +15,11 @@ namespace detail {
 // By bits, not by std::isfinite: stays true to its word under -ffast-math.
 constexpr bool is_finite(double x) noexcept {
     constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
-    return (std::bit_cast<std::uint64_t>(x) & exponent) != exponent;
+    return (bits_as<std::uint64_t>(x) & exponent) != exponent;
 }
 constexpr bool is_finite(float x) noexcept {
     constexpr std::uint32_t exponent = 0x7f80'0000;
-    return (std::bit_cast<std::uint32_t>(x) & exponent) != exponent;
+    return (bits_as<std::uint32_t>(x) & exponent) != exponent;
 }
 template <class Dual>
 requires requires(const Dual& d) {

@@ -330,7 +330,9 @@ TEST_CASE("read_log: a missing column is refused by name") {
           "log.csv:1:20: column x_cmd_V is missing (or x_cmd_A, x_cmd_N; measured: x_current_A, x_torque_Nm)");
     CHECK(refusal("t_s,a\n0,0\n") ==
           "log.csv:1:6: no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
-    CHECK(refusal("t_s;x_ref_m;x_pos_m\n0;0;0\n") == "log.csv:1:4: cells must be separated by commas");
+    CHECK(refusal("t_s;x_ref_m;x_pos_m\n0;0;0\n") == "log.csv:1:4: cells must be separated by commas: bring "
+                                                     "the file in with quadrant-gap import (with --map "
+                                                     "where its columns have other names)");
     CHECK(refusal("0,0,0,0\n0.1,0,1,0\n") ==
           "log.csv:1:1: the first line must name the columns (t_s, x_ref_m, ...)");
 }

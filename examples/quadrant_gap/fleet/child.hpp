@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../page/scratch_folder.hpp"
+
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -30,6 +32,7 @@ public:
         id_ = nothing < 0 || said < 0 ? -1 : fork();
         if (id_ == 0) {
             prctl(PR_SET_PDEATHSIG, SIGKILL);
+            quadrant_page::undo_interruption_mask();
             if (getppid() != parent) _exit(cannot_start); // it died before the line above
             dup2(nothing, STDIN_FILENO);
             dup2(said, STDOUT_FILENO);

@@ -67,6 +67,10 @@ inline void complete(entry& e, const fs::path& top) {
     if (e.machine.empty())
         e.fault = fmt::format("{}: no machine file: neither beside it nor a machine.json above it",
                               quadrant::diagnosis::detail::one_line(e.log.string()));
+    for (const fs::path& file : {e.log, e.machine, e.holdout})
+        if (!file.empty() && fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
+            e.fault =
+                fmt::format("{}: is no regular file", quadrant::diagnosis::detail::one_line(file.string()));
     const auto bytes = fs::file_size(e.log, ignored);
     e.bytes = ignored ? 0 : bytes;
 }

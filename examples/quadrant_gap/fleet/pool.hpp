@@ -37,8 +37,6 @@ public:
           folder_(with_.out / fmt::format("{}{}-{}", working_prefix, with_.host, getpid())) {}
     ~pool() {
         for (auto& s : slots_) s.reset(); // ends what runs
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
     }
     pool(const pool&) = delete;
     pool& operator=(const pool&) = delete;
@@ -51,7 +49,7 @@ public:
         auto w = std::make_unique<work>();
         w->index = index;
         w->e = std::move(e);
-        w->folder = folder_ / std::to_string(free - slots_.begin());
+        w->folder = folder_.path() / std::to_string(free - slots_.begin());
         try {
             begin(*w);
         } catch (const std::exception& fault) {
@@ -159,7 +157,7 @@ private:
 
     workshop with_;
     std::vector<std::unique_ptr<work>> slots_;
-    fs::path folder_;
+    quadrant_page::scratch_folder folder_;
 };
 
 } // namespace quadrant_gap::fleet

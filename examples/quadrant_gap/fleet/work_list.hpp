@@ -58,8 +58,9 @@ public:
         bytes_done_ += bytes_of(o.index);
     }
     std::string progress(double seconds) const {
-        std::string text =
-            fmt::format("{} done, {} failed, {} left", done_before_ + done_, failed_before_ + failed_, left_);
+        std::string text = fmt::format("{:.0f} %: {} done, {} failed, {} left",
+                                       left_ == 0 ? 100 : 100 * bytes_done_ / (bytes_done_ + bytes_left_),
+                                       done_before_ + done_, failed_before_ + failed_, left_);
         if (bytes_done_ > 0 && left_ > 0) text += ", about " + duration(seconds * bytes_left_ / bytes_done_);
         return text;
     }

@@ -13,16 +13,20 @@ inline std::string lines(const std::vector<std::string>& all) {
 }
 
 /// The 95 % interval as a band on a track that begins at zero and reaches `to` at least; the value is the stroke in it.
-inline std::string interval_bar(const estimate& e, double to = 0) {
+/// The ends of the track are written below it in `unit`.
+inline std::string interval_bar(const estimate& e, std::string_view unit, double to = 0) {
     const double low = std::min(0.0, e.low), high = std::max(to, e.high);
     if (!(e.high > e.low) || !std::isfinite(high - low)) return "";
     const double margin = 0.06 * (high - low), from = low < 0 ? low - margin : 0,
                  whole = (high > 0 ? high + margin : 0) - from;
     const auto at = [&](double v) { return 100 * (v - from) / whole; };
+    const scale shown = scale_of(unit, std::max(std::abs(low), std::abs(high)));
+    const auto end = [&](double v) { return with_unit(number(v * shown.factor), shown.unit); };
     return fmt::format(
         "<span class=\"bar range\" aria-hidden=\"true\"><i class=\"ends\" "
-        "style=\"left:{:.1f}%;width:{:.1f}%\"></i><i class=\"value\" style=\"left:{:.1f}%\"></i></span>",
-        at(e.low), at(e.high) - at(e.low), at(e.value));
+        "style=\"left:{:.1f}%;width:{:.1f}%\"></i><i class=\"value\" style=\"left:{:.1f}%\"></i></span><small "
+        "class=\"ends\" aria-hidden=\"true\"><span>{}</span><span>{}</span></small>",
+        at(e.low), at(e.high) - at(e.low), at(e.value), escape(end(from)), escape(end(from + whole)));
 }
 
 /// Each value with its interval, in words and as a bar.
@@ -32,7 +36,9 @@ inline std::string values(const std::vector<parameter_estimate>& parameters, con
         const std::vector<std::string> said = lines_of(p, voice);
         for (std::size_t k = 0; k < said.size(); ++k)
             html += fmt::format("<div>{}{}</div>", escape(said[k]),
-                                p.key.ends_with("phase_rad") ? "" : interval_bar(p.values[k]));
+                                p.key.ends_with("phase_rad")
+                                    ? ""
+                                    : interval_bar(p.values[k], voice.in_command_unit(label_of(p.key).second)));
     }
     return html;
 }
@@ -75,7 +81,7 @@ inline std::string causes(const diagnosis_result& d) {
             box.empty() ? "" : ", ", box, claimed(c) ? "" : "<br>a suspect, not a claim", probability_bar(c),
             (c.waveform ? fmt::format("<div>{}</div>", escape(capital(waveform_in_words(d, c)))) : "") +
                 values(c.parameters, voice),
-            lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, 1));
+            lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, "%", 1));
         std::string more;
         if (!c.confusable_with.empty())
             more += fmt::format("On this record it cannot be told apart from {}.",

@@ -2,6 +2,7 @@
 #pragma once
 #include "../../page/html.hpp"
 
+#include <filesystem>
 #include <map>
 
 /// Text of a report as HTML, and its template. User strings go through escape(); the chart data holds none.
@@ -15,6 +16,12 @@ inline std::string escape(std::string_view text) {
     for (std::size_t at = 1; at < safe.size(); ++at)
         if (safe[at] == ' ' && safe[at - 1] >= '0' && safe[at - 1] <= '9') safe.replace(at, 1, "&nbsp;");
     return safe;
+}
+
+/// The last part of a path, for a title; what is no path stays as it is.
+inline std::string file_name(const std::string& path) {
+    const std::string name = std::filesystem::path(path).filename().string();
+    return name.empty() ? path : name;
 }
 
 /// Replaces each {{name}} of the template; what is filled in is not searched again.

@@ -19,25 +19,12 @@ extern char** environ;
 /// The diagnosing process: another program run that is given files and nothing else.
 namespace quadrant_gap::trial {
 
-/// A folder with a name that says nothing, removed at the end.
-class neutral_folder {
-public:
-    neutral_folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "quadrant-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
-        path_ = name;
-    }
-    ~neutral_folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    neutral_folder(const neutral_folder&) = delete;
-    neutral_folder& operator=(const neutral_folder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
+/// A folder with a name that says nothing.
+inline std::filesystem::path neutral_folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "quadrant-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder can be made");
+    return name;
+}
 
 /// Exit code; -1 when the program did not start, was killed, or took longer than `seconds`.
 inline int run_child(std::vector<std::string> words, const std::filesystem::path& heard, double seconds) {
@@ -49,8 +36,15 @@ inline int run_child(std::vector<std::string> words, const std::filesystem::path
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, heard.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawnattr_t how; // a child is interrupted as any program
+    posix_spawnattr_init(&how);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&how, &none);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGMASK);
     pid_t child = 0;
-    const int failed = posix_spawnp(&child, words[0].c_str(), &files, nullptr, arguments.data(), environ);
+    const int failed = posix_spawnp(&child, words[0].c_str(), &files, &how, arguments.data(), environ);
+    posix_spawnattr_destroy(&how);
     posix_spawn_file_actions_destroy(&files);
     if (failed) return -1;
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

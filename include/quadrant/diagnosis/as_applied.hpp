@@ -50,6 +50,8 @@ inline std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
             left = 0;
             continue;
         }
+        // Beside the other name something else was no longer needed, and the whole explains less.
+        if (way.back().total + c.limits.margin < c.best().total) continue;
         --left;
         c.follow(std::move(way));
         out.clear();

@@ -61,6 +61,8 @@ public:
     bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
     bool settled = false;            ///< the last model leaves noise, or nothing that matters to the owner
     bool settled_on_second = true;   ///< the same on the hold-out log
+    /// What is left speaks against no cause: it does not matter to the owner, and what the causes take off does.
+    bool excused = false;
 
     const candidate& best() const { return path.back(); }
     /// The model of the claims alone: what apply writes.
@@ -71,7 +73,8 @@ public:
         claims = path.size() - 1;
         noise = models.noise(best());
         settled = models.settled(best().fit.ms, record.score, noise) &&
-                  (best().effects.empty() || models.near_floor(best()));
+                  (best().effects.empty() || models.near_its_laws(best()));
+        excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
         if (second) settled_on_second = second_log(best()).settled;
     }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }

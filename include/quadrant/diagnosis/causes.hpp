@@ -23,8 +23,6 @@ inline double square(double x) { return x * x; }
 /// Two that are one model (docs/formats.md) stay one name while their predictions differ by less than this share of what is
 /// left, in energy; or by less than no law is right to.
 inline constexpr double alike = 0.2;
-/// No law is better than some five per cent of the force that it explains.
-inline constexpr double law_error = 0.05;
 
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
 /// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A hold-out log counts as it
@@ -126,14 +124,15 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 
 /// What is left above the noise beside it.
 inline double left_beside(const axis_case& c, std::size_t which) {
-    return c.settled ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
+    return c.excused ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
-/// The same with what the laws of the other causes may leave: none is better than some five per cent of what it explains.
-inline double doubtful_beside(const axis_case& c, std::size_t which) {
-    if (c.settled) return 0;
-    const double own = explained_by(c, which);
+/// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some five per
+/// cent of what it explains.
+inline double doubtful_beside(const axis_case& c, double explained) {
+    if (c.excused) return 0;
+    const double left = between(c.models.held_out_force(c.best()), c.floor_force());
     const double all = between(c.models.held_out_force(c.path.front()), c.models.held_out_force(c.best()));
-    return std::hypot(left_beside(c, which), all > own ? law_error * between(all, own) / own : 0);
+    return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
 
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the
@@ -151,15 +150,13 @@ inline double by_chance(double left) {
 /// The probability that the cause is none of the suspects: on the log, and on the hold-out log, beside what the name
 /// explains there or here (the motion there may not show it); a name that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    double out = by_chance(doubtful_beside(c, which));
-    if (!c.second) return out;
+    if (!c.second) return by_chance(doubtful_beside(c, explained_by(c, which)));
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
-    if (!c.settled_on_second) {
-        const double explained = std::max(explained_by(c, which), between(before.force, after.force));
-        out = std::max(out, by_chance(between(after.force, c.floor_force()) / explained));
-    }
+    const double explained = std::max(explained_by(c, which), between(before.force, after.force));
+    double out = by_chance(doubtful_beside(c, explained));
+    if (!c.settled_on_second) out = std::max(out, by_chance(between(after.force, c.floor_force()) / explained));
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }

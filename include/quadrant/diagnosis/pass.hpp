@@ -61,7 +61,8 @@ public:
         const Real e = Real(in.position[k]) - newer_.reading(state_);
         keep(in, in.innovation, k, e);
         state_.shift(Real(in.to_position) * e, Real(in.to_velocity) * e);
-        before_ = newer_.load_velocity(state_);
+        begun_at_ = state_.load;
+        begun_with_ = newer_.load_velocity(state_);
     }
     /// The part of the period in which the older command acts.
     void begin(const pass_input& in, std::size_t k) {
@@ -77,8 +78,15 @@ public:
     /// The rest of it.
     void end(const pass_input& in, std::size_t k) {
         advance(newer_, state_, command(in, k, 0), Real(in.period) - delay_.late, in.substeps);
-        if (in.acceleration)
-            keep(in, in.acceleration, k, (newer_.load_velocity(state_) - before_) * Real(1 / in.period));
+        if (!in.acceleration) return;
+        // Second difference of the model's positions. Its corrections at row k are taken out: the velocity's by the jump
+        // between the two periods, the position's because each way begins behind it.
+        const Real way = state_.load - begun_at_, period(in.period);
+        keep(in, in.acceleration, k,
+             k == 0 ? Real(0)
+                    : ((ended_with_ - begun_with_) * period + way - way_) * Real(1 / (in.period * in.period)));
+        way_ = way;
+        ended_with_ = newer_.load_velocity(state_);
     }
 
 private:
@@ -150,7 +158,8 @@ private:
     axis older_, newer_;
     typename axis::state state_;
     typename axis::surroundings now_{};
-    Real before_{0};
+    Real begun_at_{0}, begun_with_{0}; ///< load at the start of the period: position, velocity
+    Real way_{0}, ended_with_{0};      ///< in the period before: way, velocity at its end
 };
 
 /// The observer of predictor.hpp on up to lanes times groups plants, from the first row to the last. The groups take turns, so that

@@ -34,8 +34,9 @@ struct predictor {
     const driven_motion* drive =
         nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
 
-    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the mean acceleration that the model gives the encoder over each
-    /// period [m/s^2].
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from
+    /// the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the second difference of the
+    /// model's positions around each row, over the square of the period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const {
         const std::span one(&plant, 1);

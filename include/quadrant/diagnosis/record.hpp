@@ -52,9 +52,9 @@ inline std::vector<std::size_t> motion_segments(std::span<const double> motion, 
 }
 
 /// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
-/// accelerations through the identical zero-phase filter. The measured one is the second difference of the position;
-/// the model's is averaged over the same two periods, so that a right model leaves the encoder's rounding only. Rows that
-/// are left out (axis_record::left_out) count as if nothing were left there.
+/// accelerations through the identical zero-phase filter. Both are second differences of positions, so that a right
+/// model leaves the encoder's rounding only. Rows that are left out (axis_record::left_out) count as if nothing were left
+/// there.
 inline std::vector<double> residual_force(const plant_model& plant, std::span<const double> position,
                                           std::span<const double> model_acceleration, double period,
                                           double bandwidth_Hz, std::span<const unsigned char> left_out = {}) {
@@ -62,8 +62,7 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
     std::vector<double> raw(n, 0.0);
     const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
     for (std::size_t k = 1; k + 1 < n; ++k)
-        raw[k] = plant.mass * (0.5 * (model_acceleration[k - 1] + model_acceleration[k]) -
-                               (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
+        raw[k] = plant.mass * (model_acceleration[k] - (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
     for (std::size_t k = 0; k < left_out.size(); ++k)
         if (left_out[k]) raw[k] = 0;
     return zero_phase(raw, bandwidth_Hz, period);

@@ -10,6 +10,9 @@
 
 namespace quadrant::diagnosis {
 
+/// No law is better than some five per cent of the force that it explains.
+inline constexpr double law_error = 0.05;
+
 /// One axis under diagnosis: the record, the described machine and the models tried so far.
 class search {
 public:
@@ -134,19 +137,23 @@ public:
     /// where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
     candidate exchanged(const candidate& best, const candidate& without, const effect* added) const {
         candidate from = without;
-        plant_model known = best.fit.plant;
-        for (std::size_t i = 0; i < from.fit.parameters.size(); ++i) {
-            const parameter& p = from.fit.parameters[i];
-            for (const parameter& q : best.fit.parameters)
-                if (&p.of(known) == &q.of(known))
-                    from.fit.x[static_cast<Eigen::Index>(i)] =
-                        std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
-        }
-        fitter::put(from.fit.plant, from.fit.parameters, from.fit.x);
+        begin_at(from, best.fit.plant);
         std::vector<candidate> out{joined(from, added)};
         sketch_each(from, {0}, out);
         if (std::isfinite(out.front().fit.objective)) finish(record_, out.front());
         return out.front();
+    }
+
+    /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is calibration.
+    bool is_calibration(const candidate& c, const effect* e) const {
+        plant_model fitted = c.fit.plant;
+        const auto values = e->read(fitted);
+        for (const parameter& own : calibrated_.fit.parameters)
+            if (!values.empty() && own.key == values.front().key && own.key != "presliding_length_m") {
+                const double x = own.of(fitted);
+                return x >= own.low && x <= own.high;
+            }
+        return false;
     }
 
     std::vector<const effect*> suspects() const {
@@ -240,6 +247,13 @@ public:
 
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
     bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
+    /// The same, or what the laws of its friction and of its causes may be wrong by.
+    bool near_its_laws(const candidate& c) const {
+        const auto& f = c.fit.plant.friction;
+        const double taken = std::max(0.0, square(held_out_force(calibrated_)) - square(held_out_force(c)));
+        const double laws = law_error * std::hypot(f.coulomb + f.excess, std::sqrt(taken));
+        return held_out_force(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
+    }
 
     /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
     /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
@@ -283,6 +297,10 @@ public:
                         next.push_back(std::move(c));
             };
             for (const candidate& from : beam) add(with_each(from));
+            if (calibrate_again(best, next)) {
+                beam.assign(1, best);
+                continue;
+            }
             const candidate* step = paying(next, best);
             if (best.effects.empty() && !(step && (at_noise(*step) || near_floor(*step)))) {
                 add(everyday());
@@ -365,6 +383,8 @@ public:
 
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
     bool pays(const candidate& more, const candidate& less) const {
+        for (const effect* e : more.effects)
+            if (!has(less, e) && is_calibration(more, e)) return false;
         const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
         const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
         if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far))
@@ -393,6 +413,34 @@ private:
         if (e.name == "force_constant" && is_force(axis_.command_unit)) return false; // the drive's gain
         if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
         return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
+    }
+    /// Moves the numbers of a model to those of another plant, where the fit goes on.
+    static void begin_at(candidate& c, plant_model known) {
+        for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
+            const parameter& p = c.fit.parameters[i];
+            c.fit.x[static_cast<Eigen::Index>(i)] =
+                std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
+        }
+        fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
+    }
+    /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit of `best` stopped
+    /// short (a play or a contact makes its score rough): it goes on from there. True: it got better.
+    bool calibrate_again(candidate& best, const std::vector<candidate>& next) const {
+        if (best.effects.empty()) return false;
+        const candidate* better = nullptr;
+        for (const candidate& c : next)
+            if (c.effects.size() == best.effects.size() + 1 && is_calibration(c, c.effects.back()) &&
+                c.total > best.total + rules_.margin && (!better || c.total > better->total))
+                better = &c;
+        if (!better) return false;
+        candidate again = best;
+        begin_at(again, better->fit.plant);
+        finish(record_, again);
+        if (!(again.total > best.total + rules_.margin)) return false;
+        for (candidate& known : tried_)
+            if (same(known, again)) known = again;
+        best = std::move(again);
+        return true;
     }
     /// use(i, residual force of plant i), one after the other.
     template <class Use>

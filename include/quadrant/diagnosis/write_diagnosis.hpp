@@ -2,13 +2,10 @@
 #pragma once
 #include "added/words.hpp"
 #include "bad_input.hpp"
+#include "output_file.hpp"
 #include "result.hpp"
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 
 namespace quadrant::diagnosis {
 
@@ -185,22 +182,6 @@ inline std::string reference_csv(const experiment& e, axis_kind kind) {
     for (std::size_t k = 0; k < e.reference.size(); ++k)
         out += fmt::format("{:.9g},{:.12f}\n", static_cast<double>(k) * e.period_s, e.reference[k]);
     return out;
-}
-
-/// Writes beside `path` and renames: a reader sees the old file or the whole new one. Throws bad_input.
-inline void write_aside(const std::filesystem::path& path, std::string_view text) {
-    std::filesystem::path aside = path;
-    aside += fmt::format(".tmp-{}", getpid());
-    std::ofstream out(aside, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    std::error_code fault;
-    if (out) std::filesystem::rename(aside, path, fault);
-    if (out && !fault) return;
-    std::error_code ignored;
-    std::filesystem::remove(aside, ignored);
-    const bool no_folder = path.has_parent_path() && !std::filesystem::exists(path.parent_path(), ignored);
-    throw bad_input(path.string(), no_folder ? "cannot be written: no such folder" : "cannot be written");
 }
 
 } // namespace quadrant::diagnosis

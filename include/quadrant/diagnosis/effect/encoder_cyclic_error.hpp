@@ -63,7 +63,7 @@ inline constexpr effect encoder_cyclic_error{
                                                std::max(shortest, longest / 20), 1, s.record.score.skip))
                 out.push_back(detail::repeating<detail::encoder_cyclic_error_harmonics, 1>(
                     "encoder.cyclic_period_m", "encoder.cyclic_m", period, travel,
-                    std::min(5e-4 * travel, 0.1 * period)));
+                    std::min(5e-3 * travel, 0.1 * period)));
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

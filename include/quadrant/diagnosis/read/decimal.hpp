@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../portable.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -15,7 +17,8 @@ inline const char* parse_number(std::string_view cell, double& value) {
     constexpr double largest = 1e12; // beyond it no SI value of a machine, and squares still far from overflow
     if (cell.empty()) return "is empty";
     if (cell.size() > 1 && cell[0] == '+' && cell[1] != '-') cell.remove_prefix(1);
-    const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    const auto [end, fault] =
+        quadrant::detail::number_from_chars(cell.data(), cell.data() + cell.size(), value);
     if (fault == std::errc::invalid_argument || end != cell.data() + cell.size()) return "is not a number";
     if (fault != std::errc{}) return "is out of range";
     if (!std::isfinite(value)) return "is not finite";
@@ -73,7 +76,7 @@ private:
     static double power_of_ten(int power) {
         const std::string text = "1e" + std::to_string(power);
         double value = 0; // stays so below the smallest double
-        std::from_chars(text.data(), text.data() + text.size(), value);
+        quadrant::detail::number_from_chars(text.data(), text.data() + text.size(), value);
         return value;
     }
 

@@ -156,8 +156,14 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
 /// `refuse(offset, message)` throws. Of a motion only the reference is read.
 template <class Refuse>
 log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose = log_purpose::record) {
+    if (line.find('\0') != line.npos)
+        refuse(line.find('\0'),
+               "holds zero bytes: it is UTF-16 without a byte order mark, or no text; save it as "
+               "UTF-8");
     if (const auto other = line.find_first_of(";\t"); other != line.npos && line.find(',') == line.npos)
-        refuse(other, "cells must be separated by commas");
+        refuse(other,
+               "cells must be separated by commas: bring the file in with quadrant-gap import (with --map "
+               "where its columns have other names)");
     log_header out;
     std::set<std::string_view> seen;
     std::optional<std::size_t> time;

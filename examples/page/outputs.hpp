@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <quadrant/diagnosis/output_file.hpp>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+/// The files that a program is told to read and to write: no output destroys an input or another output.
+namespace quadrant_page {
+
+/// The name that stands for standard output.
+inline constexpr std::string_view standard_output = "-";
+
+/// Checked before anything is computed.
+class outputs {
+public:
+    /// A file that is read; an empty path is none.
+    outputs& reads(const std::string& option, const std::string& path) {
+        if (!path.empty()) inputs_.push_back({option, path});
+        return *this;
+    }
+    /// A file that will be written, or "-"; an empty path is none. Throws bad_input.
+    outputs& writes(const std::string& option, const std::string& path) {
+        if (path.empty()) return *this;
+        for (const file& in : inputs_)
+            if (same(in.path, path))
+                refuse(path,
+                       fmt::format("{} would destroy what {} reads: give it another name", option, in.option));
+        for (const file& out : outputs_)
+            if (same(out.path, path))
+                refuse(path,
+                       fmt::format("{} and {} cannot both be written to it: give one of them another name",
+                                   out.option, option));
+        outputs_.push_back({option, path});
+        return *this;
+    }
+    /// Where words for a person go: to standard error when a file is written to standard output.
+    std::FILE* words() const {
+        for (const file& out : outputs_)
+            if (out.path == standard_output) return stderr;
+        return stdout;
+    }
+
+private:
+    struct file {
+        std::string option, path;
+    };
+
+    /// The same name, or two names of one file. A device that takes anything is no file.
+    static bool same(const std::string& a, const std::string& b) {
+        if (a == standard_output || b == standard_output) return a == b;
+        std::error_code fault;
+        if (std::filesystem::is_character_file(a, fault)) return false;
+        if (std::filesystem::equivalent(a, b, fault)) return true;
+        const auto whole = [&](const std::string& path) {
+            return std::filesystem::weakly_canonical(std::filesystem::absolute(path, fault), fault);
+        };
+        return whole(a) == whole(b) && !fault;
+    }
+    [[noreturn]] static void refuse(const std::string& path, const std::string& why) {
+        throw quadrant::diagnosis::bad_input(path, why);
+    }
+    std::vector<file> inputs_, outputs_;
+};
+
+/// Writes a whole file, or to standard output for "-".
+inline void write_output(const std::string& path, std::string_view text) {
+    if (path != standard_output) return quadrant::diagnosis::write_aside(path, text);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+        throw quadrant::diagnosis::bad_input("standard output", "cannot be written");
+}
+
+/// The exit code of a program that would end with `code`: 1 and a line when not all of its standard output was taken.
+inline int ended(int code, const char* program) {
+    constexpr int unwritten = 1;
+    const bool lost = std::ferror(stdout) != 0;
+    if (std::fflush(stdout) == 0 && !lost) return code;
+    std::fprintf(stderr, "%s: standard output cannot be written\n", program);
+    return code == 0 ? unwritten : code;
+}
+
+} // namespace quadrant_page

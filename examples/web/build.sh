@@ -1,0 +1,48 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSL-1.0
+# usage: build.sh [OUT.html]     builds the page (default: build/web/quadrant.html) with emscripten; some minutes
+# Installs the Debian packages that are missing. The page is one file: it opens from disk and asks nothing of a network.
+# Environment: QUADRANT_BUILD  where to build (default: build in the repository)
+set -eu
+export NODE_PATH=/usr/share/nodejs${NODE_PATH:+:$NODE_PATH} # where Debian keeps what emscripten asks node for
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${QUADRANT_BUILD:-$root/build}/web
+page=${1:-$build/quadrant.html}
+here=$root/examples/web
+dygraphs=/usr/share/javascript/dygraphs
+
+sh "$root/examples/install.sh" emscripten node-acorn cmake python3 libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev libjs-dygraphs
+command -v em++ >/dev/null || { echo "no em++: install emscripten" >&2; exit 77; }
+mkdir -p "$build/include" "$(dirname "$page")"
+
+# The system's headers-only libraries, without the system's C library.
+for library in boost eigen3/Eigen nlohmann fmt; do
+    ln -sfn "/usr/include/$library" "$build/include/${library##*/}"
+done
+cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
+    "-DFILES=$root/examples/quadrant_gap/report_template.html;$root/examples/quadrant_gap/report.css;$root/examples/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
+    -P "$root/examples/page/embed.cmake"
+
+# One file each, as many at once as there are cores.
+version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/version.hpp")
+flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+    -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$build/include"
+part() { # NAME HEADER...
+    name=$1
+    shift
+    for header; do printf '#include <quadrant/diagnosis/impl/%s.hpp>\n' "$header"; done >"$build/$name.cpp"
+}
+part diagnose diagnose
+part apply apply read_diagnosis read_machine effect_list
+part passes simulate passes
+part controllers controllers
+cp "$here/binding.cpp" "$build/binding.cpp"
+sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
+set -- diagnose apply passes controllers binding
+printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
+cd "$build"
+em++ -O2 -fwasm-exceptions diagnose.o apply.o passes.o controllers.o binding.o -o quadrant.js --no-entry \
+    -s MODULARIZE=1 -s EXPORT_NAME=quadrant_module -s ENVIRONMENT=worker -s ALLOW_MEMORY_GROWTH=1 -s FILESYSTEM=0 \
+    -s DYNAMIC_EXECUTION=0 -s TOTAL_STACK=2MB -s "EXPORTED_FUNCTIONS=_malloc,_free" \
+    -s "EXPORTED_RUNTIME_METHODS=UTF8ToString,stringToUTF8,lengthBytesUTF8"
+python3 "$here/bundle.py" "$here" "$build" "$version" "$page"

@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""The page as one file: bundle.py SOURCES BUILD VERSION OUT.html
+
+SOURCES holds page.html and its parts; BUILD holds quadrant.js and quadrant.wasm as emscripten wrote them.
+"""
+import base64
+import gzip
+import pathlib
+import sys
+
+sources, build = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+version, out = sys.argv[3], pathlib.Path(sys.argv[4])
+most = 1_500_000  # bytes of the page when it is sent
+
+
+def script(*parts):
+    """Scripts one after the other, unable to end the element that holds them."""
+    return "\n".join(p.read_text() for p in parts).replace("</script", "<\\/script")
+
+
+wasm = gzip.compress((build / "quadrant.wasm").read_bytes(), 9, mtime=0)
+values = {
+    "version": version,
+    "report_css": (sources / "../quadrant_gap/report.css").read_text(),
+    "page_css": (sources / "page.css").read_text(),
+    "wasm": base64.b64encode(wasm).decode(),
+    "worker": script(build / "quadrant.js", sources / "worker.js"),
+    "page_js": script(*(sources / f"{name}.js" for name in ("call", "intake", "machine_form", "what_if", "page"))),
+}
+page = (sources / "page.html").read_text()
+for name, value in values.items():
+    page = page.replace("{{" + name + "}}", value)
+out.write_text(page)
+size = len(gzip.compress(page.encode(), 9))
+print(f"{out}: {len(page.encode())} bytes, {size} gzipped")
+if size > most:
+    sys.exit(f"{out}: more than {most} bytes gzipped")

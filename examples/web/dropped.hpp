@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <quadrant/diagnosis/import/check_physics.hpp>
+#include <quadrant/diagnosis/import/import_log.hpp>
+#include <quadrant/diagnosis/import/own_header.hpp>
+#include <quadrant/diagnosis/import/read_map.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+/// What was dropped on the page: a machine file, a log, a map, or a table whose columns have to be named first.
+namespace quadrant_web {
+using namespace quadrant::diagnosis;
+
+/// A log that was read, as the page shows it.
+inline nlohmann::json described(const machine_log& log) {
+    nlohmann::json axes = nlohmann::json::array();
+    for (const axis_log& a : log.axes)
+        axes.push_back({{"name", a.name},
+                        {"rotary", a.kind == axis_kind::rotary},
+                        {"command_unit", a.command_unit},
+                        {"has_reference", a.has_reference},
+                        {"still", a.still}});
+    return {{"kind", "log"},
+            {"rows", log.samples},
+            {"period_s", log.sample_period_s},
+            {"axes", axes},
+            {"notes", log.notes}};
+}
+
+/// The columns of a table that names none of our columns, and what can be guessed of each. A first line of numbers
+/// alone names no columns: they go by number.
+inline nlohmann::json columns_of(const std::string& text, const std::string& name) {
+    auto layout = detail::layout_of(text);
+    const std::string_view first = std::string_view(text).substr(0, text.find('\n'));
+    if (layout.separator == ',' && first.find(',') == first.npos) layout.separator = ' ';
+    detail::foreign_lines lines(layout, text, name);
+    nlohmann::json columns = nlohmann::json::array(), units = nlohmann::json::array(),
+                   roles = nlohmann::json::array();
+    bool named = false;
+    double number = 0;
+    if (lines.next())
+        for (const auto& cell : lines.cells()) {
+            const unit_name* unit = unit_at_end(cell.text);
+            named = named || lines.parse(cell.text, number) != nullptr;
+            columns.push_back({{"name", std::string(cell.text)},
+                               {"unit", unit ? std::string(unit->name) : ""},
+                               {"time", detail::names_time(cell.text)}});
+        }
+    for (const unit_name& u : unit_names) units.push_back(u.name);
+    for (const signal_kind& k : signal_kinds) roles.push_back(k.key);
+    const std::string separator = layout.separator == '\t'  ? "tab"
+                                  : layout.separator == ' ' ? "blanks"
+                                                            : std::string(1, layout.separator);
+    return {{"columns", columns},     {"named", named},
+            {"separator", separator}, {"decimal", std::string(1, layout.decimal)},
+            {"units", units},         {"roles", roles}};
+}
+
+/// A log, by our own reader or through a map; with jittering stamps on an even clock.
+inline imported_log imported(const import_map& map, const std::vector<foreign_file>& files) {
+    imported_log out;
+    try {
+        out = import_log(map, files);
+    } catch (const bad_input&) {
+        out = import_log(map, files, {.resample = true}); // or this refusal, which says why
+    }
+    check_physics(out);
+    out.log.notes.insert(out.log.notes.begin(), out.notes.begin(), out.notes.end());
+    return out;
+}
+
+/// A log from its text alone. Throws the refusal of our own reader where the columns have our names in SI.
+inline machine_log read_dropped_log(const std::string& text, const std::string& name) {
+    std::optional<bad_input> refused;
+    try {
+        return detail::log_reader(text, name).read();
+    } catch (const bad_input& fault) {
+        refused = fault;
+    }
+    std::optional<import_map> map;
+    try {
+        map = map_of_header(text, name);
+    } catch (const bad_input&) {
+        throw *refused;
+    }
+    return imported(*map, {{text, name}}).log;
+}
+
+/// The schema that a JSON text names; empty: none, or no JSON.
+inline std::string schema_of(const std::string& text) {
+    const auto json = nlohmann::json::parse(detail::without_byte_order_mark(text), nullptr, false);
+    return json.is_object() && json.contains("schema") && json["schema"].is_string()
+               ? json["schema"].get<std::string>()
+               : "";
+}
+
+inline bool looks_like_json(const std::string& text) {
+    const auto first = detail::without_byte_order_mark(text).find_first_not_of(" \t\r\n");
+    return first != std::string::npos && detail::without_byte_order_mark(text)[first] == '{';
+}
+
+} // namespace quadrant_web

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSL-1.0
+// Sliders for what was found; gap and curves of the simulation with their values.
+const wanted = () => ({
+    causes: [...the('knobs').querySelectorAll('.knob.cause')].map(knob => ({
+        on: knob.querySelector('input[type=checkbox]').checked,
+        values: [...knob.querySelectorAll('input[type=range]')].map(s => Number(s.value)),
+    })),
+    calibrated: the('calibrated')?.checked ?? true,
+});
+let found = null, shown = null, at_work = false, again = false;
+
+const in_digits = v => v === 0 ? '0' : String(+v.toPrecision(4));
+
+function lay_out_knobs({causes, has_calibration}) {
+    const knobs = causes.map((c, k) => {
+        const tick = make('input', {type: 'checkbox', checked: c.claimed, disabled: !c.sliders.length, id: `cause-${k}`});
+        const knob = make('div', {className: 'knob cause'}, make('label', {}, tick, ` ${c.label}, axis ${c.axis}`),
+            make('small', {textContent: ` ${c.claimed ? 'claimed' : 'a suspect'}, ${c.probability}${c.sliders.length ? '' : '; it has no value to set'}`}));
+        c.sliders.forEach((s, i) => {
+            const id = `value-${k}-${i}`, say = make('output');
+            const range = make('input', {type: 'range', id, min: s.low, max: s.high, step: 'any'});
+            const tell = () => {
+                say.textContent = `${in_digits(range.value * s.factor)} ${s.unit}`;
+                range.setAttribute('aria-valuetext', say.textContent);
+            };
+            range.value = s.value;
+            range.addEventListener('input', tell);
+            tell();
+            say.htmlFor = id;
+            knob.append(make('div', {className: 'slide'}, make('label', {htmlFor: id, textContent: s.label}), range, say));
+        });
+        return knob;
+    });
+    if (has_calibration)
+        knobs.push(make('div', {className: 'knob'}, make('label', {}, make('input', {type: 'checkbox', id: 'calibrated', checked: true}),
+            ' Calibration'), make('small', {textContent: ' values moved within the tolerances of the machine file'})));
+    the('knobs').replaceChildren(...knobs);
+}
+
+function gap_table(title, before, after) {
+    const rows = before.flatMap((axis, k) => axis.gap.map(([name, was], r) => make('tr', {},
+        make('th', {scope: 'row', textContent: before.length > 1 ? `${axis.axis}: ${name}` : name}),
+        make('td', {className: 'was', textContent: was}), make('td', {className: 'now', textContent: after[k].gap[r]?.[1] ?? ''}))));
+    return [make('h3', {textContent: title}), make('table', {}, make('thead', {}, make('tr', {}, ...['Gap', 'machine file', 'with these'].map(textContent => make('th', {scope: 'col', textContent})))), make('tbody', {}, ...rows))];
+}
+
+const tint = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+
+function draw_curve(canvas, unit, seconds, before, after) {
+    const w = canvas.clientWidth, h = canvas.clientHeight, dpr = devicePixelRatio || 1, pen = canvas.getContext('2d');
+    Object.assign(canvas, {width: w * dpr, height: h * dpr});
+    pen.scale(dpr, dpr);
+    const size = Math.max(...before[1].map(Math.abs), ...before[0].map(Math.abs), 1e-300);
+    const [factor, prefix] = [[1, ''], [1e3, 'm'], [1e6, 'µ'], [1e9, 'n']].find(([f]) => size * f >= 1) || [1e9, 'n'];
+    const left = 74, bottom = h - 20, y = v => 6 + (bottom - 6) * (1 - (Math.max(-1, Math.min(1, v / size)) + 1) / 2);
+    pen.font = '12px ' + getComputedStyle(document.body).fontFamily;
+    pen.fillStyle = tint('muted');
+    pen.strokeStyle = tint('grid');
+    pen.textAlign = 'right';
+    for (const part of [-1, 0, 1]) {
+        pen.fillText(part ? `${in_digits(part * size * factor)} ${prefix}${unit}` : '0', left - 6, y(part * size) + (part > 0 ? 8 : part < 0 ? 0 : 4));
+        pen.beginPath();
+        pen.moveTo(left, y(part * size));
+        pen.lineTo(w, y(part * size));
+        pen.stroke();
+    }
+    pen.fillText(`${in_digits(seconds)} s`, w, h - 4);
+    pen.textAlign = 'left';
+    pen.fillText('0 s', left, h - 4);
+    for (const [[low, high], name] of [[before, 'before'], [after, 'after']]) {
+        pen.strokeStyle = tint(name);
+        pen.lineWidth = Math.max(1, (w - left) / low.length);
+        pen.beginPath();
+        low.forEach((v, k) => {
+            const x = left + (k + 0.5) / low.length * (w - left);
+            pen.moveTo(x, y(v) + 0.5);
+            pen.lineTo(x, y(high[k]) - 0.5);
+        });
+        pen.stroke();
+    }
+}
+
+function draw_what_if() {
+    if (!shown) return;
+    const canvases = the('curves').querySelectorAll('canvas');
+    let next = 0;
+    found.before.forEach((axis, k) => axis.charts.forEach((chart, c) =>
+        draw_curve(canvases[next++], chart.unit, axis.seconds, chart.lines, shown.after[k].charts[c].lines)));
+}
+
+async function compute_what_if() {
+    if (at_work) { again = true; return; }
+    at_work = true;
+    for (const knob of the('knobs').querySelectorAll('.knob')) knob.classList.toggle('off', !knob.querySelector('input').checked);
+    const began = performance.now(), answer = await call({do: 'what_if', ...wanted()});
+    at_work = false;
+    if (answer.cancelled) return;
+    the('what-if').querySelector('.fault').textContent = answer.error || '';
+    if (!answer.error) {
+        shown = answer;
+        the('gaps').replaceChildren(...gap_table('On the log', found.before, answer.after),
+            ...(answer.after_holdout ? gap_table('Forecast of the hold-out log', found.before_holdout, answer.after_holdout) : []));
+        draw_what_if();
+        the('took').textContent = `Computed in ${Math.round(performance.now() - began)} ms.`;
+    }
+    if (again) { again = false; compute_what_if(); }
+}
+
+function show_what_if(answer) {
+    found = answer;
+    shown = null;
+    the('what-if').hidden = !answer.causes.length;
+    if (!answer.causes.length) return;
+    lay_out_knobs(answer);
+    the('curves').replaceChildren(...answer.before.flatMap(axis => axis.charts.flatMap(chart => {
+        const title = answer.before.length > 1 ? `Axis ${axis.axis}: ${chart.title}` : chart.title;
+        const canvas = make('canvas');
+        canvas.setAttribute('role', 'img');
+        canvas.setAttribute('aria-label', `${title}, of the machine file and with these values; the table above has the numbers`);
+        return [make('h3', {textContent: title}), canvas];
+    })));
+    return compute_what_if();
+}
+
+the('knobs').addEventListener('input', compute_what_if);
+the('as-found').addEventListener('click', () => { lay_out_knobs(found); compute_what_if(); });
+the('save-machine').addEventListener('click', () => save('machine.json', shown.machine_text, 'application/json'));
+addEventListener('resize', draw_what_if);
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw_what_if);

@@ -1,0 +1,272 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSL-1.0
+"""Opens the built page from disk in headless Chromium and uses it as a person would.
+
+page_test.py QUADRANT.html quadrant-gap SOURCE_DIR --shots DIR [--shared DIR]
+With QUADRANT_TESTS=all also every practice log of SHARED/gap/practice: verdict and claims equal the program's.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "report"))
+from browser_test import OVERFLOWING, check, shoot, show  # noqa: E402
+from selenium import webdriver  # noqa: E402
+from selenium.webdriver.chrome.options import Options  # noqa: E402
+from selenium.webdriver.chrome.service import Service  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+from browser_test import FLAGS  # noqa: E402
+
+FIRST_VERDICT_S, SLIDER_MS = 10, 100
+DROP = """
+const data = new DataTransfer();
+data.items.add(new File([arguments[1]], arguments[0]));
+document.getElementById('drop').dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));
+"""
+
+
+def start(profile):
+    options = Options()
+    options.binary_location = "/usr/bin/chromium"
+    for flag in FLAGS + [f"--user-data-dir={profile}"]:
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def wait(condition, seconds, what):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if condition():
+            return
+        time.sleep(0.05)
+    check(False, f"{what} within {seconds} s")
+
+
+def element(driver, selector):
+    return driver.find_element("css selector", selector)
+
+
+def give(driver, *files):
+    element(driver, "#files").send_keys("\n".join(str(f) for f in files))
+
+
+def verdict_or_fault(driver):
+    faults = [e.text for e in driver.find_elements("css selector", "#start .fault") if e.text]
+    return faults or element(driver, "#verdict").is_displayed()
+
+
+def open_page(driver, page, width=1200, scheme="light"):
+    show(driver, page.resolve().as_uri(), width, scheme)
+
+
+def requests_of(driver):
+    """Whatever went out, or would have, by the browser's own log: but for the page itself and what it holds."""
+    urls = []
+    for entry in driver.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            urls.append(message["params"]["request"]["url"])
+    return urls
+
+
+def diagnosis_of(driver):
+    return json.loads(driver.execute_script("return result.diagnosis"))
+
+
+def claims(diagnosis):
+    return diagnosis["verdict"], [(c["axis"], c["effect"]) for c in diagnosis["causes"]
+                                  if max(c["probability"], c["group_probability"]) >= 0.5]
+
+
+def native(program, folder, files, work):
+    out = work / "native.json"
+    command = [program, "diagnose", "--machine", folder / "machine.json", "--log", folder / "log.csv",
+               "--json", out, "--quiet"]
+    if "holdout.csv" in files:
+        command += ["--holdout", folder / "holdout.csv"]
+    subprocess.run([str(c) for c in command], check=True)
+    return json.loads(out.read_text())
+
+
+def fits(driver, where):
+    wide = driver.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    check(wide <= 0, f"{where}: the page is {wide} px wider than the screen")
+    over = [t for t in driver.execute_script(OVERFLOWING) if "Which column" not in t]
+    check(not over, f"{where}: text runs over: {over}")
+
+
+def errors_of(driver):
+    return [e["message"] for e in driver.get_log("browser") if e["level"] == "SEVERE"]
+
+
+def shipped_log(driver, page, program, data, shots, work):
+    open_page(driver, page)
+    driver.get_log("performance")
+    open_page(driver, page)
+    began = time.monotonic()
+    give(driver, data / "machine.json", data / "log.csv", data / "holdout.csv")
+    wait(lambda: verdict_or_fault(driver), 60, "a verdict")
+    took = time.monotonic() - began
+    check(took < FIRST_VERDICT_S, f"first verdict after {took:.1f} s")
+    found = diagnosis_of(driver)
+    files = ["machine.json", "log.csv", "holdout.csv"]
+    expected = native(program, data, files, work)
+    check(claims(found) == claims(expected), f"the page says {claims(found)}, the program {claims(expected)}")
+    check(element(driver, "#sentence").text.startswith("Stribeck friction is missing"), element(driver, "#sentence").text)
+    check([f["sha256"] for f in found["files"].values()] == [f["sha256"] for f in expected["files"].values()],
+          "the digests of the files differ")
+    print(f"shipped log: verdict after {took:.1f} s, as the program's")
+    wait(lambda: element(driver, "#took").text, 10, "what-if")
+    report = element(driver, "#report")
+    driver.switch_to.frame(report)
+    check("Stribeck friction is missing" in element(driver, "h1").text, "the report is in the page")
+    wait(lambda: driver.execute_script("return document.querySelectorAll('figure .plot canvas').length") > 5, 5, "charts")
+    driver.switch_to.default_content()
+    check(report.size["height"] > 1500, "the report is shown whole")
+    what_if(driver, expected)
+    shoot(driver, shots / "web_1200.png")
+    went = [u for u in requests_of(driver) if not u.startswith(("data:", "blob:", "about:")) and u != page.resolve().as_uri()]
+    check(not went, f"requests: {went}")
+    check(not errors_of(driver), f"errors in the page: {errors_of(driver)}")
+
+
+def what_if(driver, expected):
+    def gap(column):
+        return driver.execute_script(f"return [...document.querySelectorAll('#gaps td.{column}')].map(e => e.textContent)")
+    before, with_cause = gap("was"), gap("now")
+    check(before != with_cause, "the cause changes the gap")
+    sliders = driver.find_elements("css selector", "#knobs input[type=range]")
+    check(len(sliders) == sum(len(p) for c in expected["causes"] for p in [c["parameters"]]), "a slider for every value")
+    times = []
+    for step in range(12):
+        said = element(driver, "#took").text
+        driver.execute_script("document.getElementById('took').textContent = ''")
+        sliders[0].send_keys(Keys.ARROW_LEFT if step % 2 else Keys.ARROW_RIGHT)
+        wait(lambda: element(driver, "#took").text, 5, "an answer to the slider")
+        times.append(int(element(driver, "#took").text.split()[2]))
+    median = sorted(times)[len(times) // 2]
+    print(f"sliders: {median} ms (of {times})")
+    check(median <= SLIDER_MS, f"a slider takes {median} ms")
+    for tick in driver.find_elements("css selector", "#knobs input[type=checkbox]"):
+        tick.click()
+    wait(lambda: gap("now") == before, 5, "without cause and calibration the gap of the machine file")
+    element(driver, "#as-found").click()
+    wait(lambda: gap("now") == with_cause, 5, "the values found again")
+    saved = json.loads(driver.execute_script("return shown.machine_text"))
+    value = expected["causes"][0]["parameters"]["static_N"]["value"]
+    check(abs(saved["axes"]["x"]["plant"]["static_N"] / value - 1) < 1e-6, "the machine file holds the cause")
+
+
+def narrow_and_dark(driver, page, data, shots):
+    open_page(driver, page, 390, "dark")
+    shoot(driver, shots / "web_390_empty.png")
+    give(driver, data / "machine.json", data / "log.csv")
+    wait(lambda: verdict_or_fault(driver) and element(driver, "#took").text, 60, "a verdict at 390 px")
+    fits(driver, "390 px, dark")
+    time.sleep(0.5)
+    shoot(driver, shots / "web_390_dark.png")
+    check(driver.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(17, 22, 28)", "dark")
+
+
+def without_a_machine(driver, page, data, shots):
+    open_page(driver, page)
+    give(driver, data / "log.csv")
+    wait(lambda: driver.find_elements("css selector", "#machine input"), 10, "the form")
+    check("missing" in element(driver, "#machine .fault").text, "the form says what is missing")
+    check(not element(driver, "#go").is_enabled(), "nothing can be diagnosed yet")
+    plant = json.loads((data / "machine.json").read_text())["axes"]["x"]["plant"]
+    for option, key in (("mass", "mass_kg"), ("force-constant", "force_constant_N_per_V")):
+        element(driver, f"input[data-option={option}]").send_keys(str(plant[key]) + Keys.TAB)
+    wait(lambda: element(driver, "#go").is_enabled(), 5, "enough for a diagnosis")
+    resolution = element(driver, "input[data-option=resolution]").get_attribute("placeholder")
+    check(float(resolution) > 0, "the log's resolution stands in the form")
+    shoot(driver, shots / "web_form.png")
+    element(driver, "#go").click()
+    wait(lambda: element(driver, "#cancel").is_displayed(), 5, "cancel")
+    wait(lambda: " s: " in element(driver, "#progress").text and "reading" not in element(driver, "#progress").text, 20, "progress")
+    element(driver, "#cancel").click()
+    wait(lambda: element(driver, "#progress").text == "Cancelled.", 5, "cancelled")
+    element(driver, "#go").click()
+    wait(lambda: verdict_or_fault(driver), 60, "a verdict after a cancelled one")
+    check(element(driver, "#verdict").is_displayed(), element(driver, "#start .fault").text)
+
+
+def other_columns(driver, page, root, shots):
+    open_page(driver, page)
+    give(driver, root / "examples/import/odrive.csv", root / "examples/import/odrive.map.json")
+    wait(lambda: "rows, one every" in element(driver, "#dropped").text, 10, "a log through a map")
+    open_page(driver, page)
+    driver.execute_script(DROP, "odrive.csv", (root / "examples/import/odrive.csv").read_text())
+    wait(lambda: element(driver, "#columns").is_displayed(), 10, "the table of columns")
+    rows = driver.find_elements("css selector", "#columns tbody tr")
+    uses = {"time": ("time", "s"), "axis0.controller.pos_setpoint": ("reference", "turn"), "axis0.pos_estimate": ("position", "turn"),
+            "axis0.controller.effective_torque_setpoint": ("command", "Nm")}
+    for row in rows:
+        role, unit = uses.get(element(row, "th").text, ("", ""))
+        for select, value in zip(row.find_elements("css selector", "select"), (role, unit)):
+            driver.execute_script("arguments[0].value = arguments[1]", select, value)
+    shoot(driver, shots / "web_columns.png")
+    element(driver, "#columns-use").click()
+    wait(lambda: "rows, one every" in element(driver, "#dropped").text, 10,
+         f"a log through columns by hand ({element(driver, '#columns .fault').text})")
+    open_page(driver, page)
+    driver.execute_script(DROP, "bad.json", '{"schema": "quadrant.machine/1"}')
+    wait(lambda: "sample_period_s" in element(driver, "#dropped").text, 10, "why a file cannot be read")
+    driver.execute_script(DROP, "ms.csv", "t_ms;x_ref_mm;x_pos_mm;x_cmd_V\n" + "\n".join(
+        f"{k};{str(0.1 * (k % 40))};{str(0.1 * (k % 40))};{k % 3}" for k in range(400)).replace(".", ","))
+    wait(lambda: "400 rows, one every 1 ms" in element(driver, "#dropped").text, 10, "units by the columns' names")
+
+
+def practice(driver, page, program, shared, work):
+    folder = shared / "gap/practice"
+    if os.environ.get("QUADRANT_TESTS") != "all":
+        print("SKIPPED: the practice logs in the page (QUADRANT_TESTS=all)")
+        return
+    if not folder.is_dir():
+        print(f"SKIPPED: the practice logs in the page: no {folder}")
+        return
+    cases = sorted(p for p in folder.iterdir() if (p / "machine.json").exists())
+    differ = []
+    for case in cases:
+        open_page(driver, page)
+        files = [f for f in ("machine.json", "log.csv", "holdout.csv") if (case / f).exists()]
+        give(driver, *(case / f for f in files))
+        wait(lambda: verdict_or_fault(driver), 300, f"a verdict on {case.name}")
+        check(element(driver, "#verdict").is_displayed(), f"{case.name}: {element(driver, '#start .fault').text}")
+        page_says, program_says = claims(diagnosis_of(driver)), claims(native(program, case, files, work))
+        if page_says != program_says:
+            differ.append(f"{case.name}: the page {page_says}, the program {program_says}")
+    print(f"practice logs: {len(cases) - len(differ)} of {len(cases)} as the program's")
+    check(not differ, "; ".join(differ))
+
+
+def main():
+    parse = argparse.ArgumentParser()
+    parse.add_argument("page", type=pathlib.Path)
+    parse.add_argument("program")
+    parse.add_argument("source", type=pathlib.Path)
+    parse.add_argument("--shots", type=pathlib.Path, required=True)
+    parse.add_argument("--shared", type=pathlib.Path, default=pathlib.Path("no shared folder"))
+    given = parse.parse_args()
+    given.shots.mkdir(parents=True, exist_ok=True)
+    data = given.source.resolve() / "examples/data"
+    with tempfile.TemporaryDirectory() as profile, tempfile.TemporaryDirectory() as work:
+        driver = start(profile)
+        try:
+            shipped_log(driver, given.page, given.program, data, given.shots, pathlib.Path(work))
+            narrow_and_dark(driver, given.page, data, given.shots)
+            without_a_machine(driver, given.page, data, given.shots)
+            other_columns(driver, given.page, given.source.resolve(), given.shots)
+            practice(driver, given.page, given.program, given.shared, pathlib.Path(work))
+        finally:
+            driver.quit()
+    print("passed")
+
+
+main()
