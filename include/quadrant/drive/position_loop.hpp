@@ -19,12 +19,13 @@ template <class Real = double> class position_loop {
 public:
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains of both loops.
     struct parameters {
         number gain{0};                 ///< [1/s]; >= 0
         number velocity_feedforward{0}; ///< share of the set-points' velocity
         typename velocity_loop<Real>::parameters velocity{};
     };
-    using state = typename velocity_loop<Real>::state;
+    using state = typename velocity_loop<Real>::state; ///< of the velocity loop
 
     position_loop(const parameters& p, Real h) : position_loop(checked(p), h, already_checked()) {
         (void)velocity_loop<Real>(p.velocity, h);

@@ -24,12 +24,14 @@ template <class Real = double> class position_servo {
 public:
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Law of the servo and its bounds.
     struct parameters {
         number gain{1};    ///< duty a [rad] or [m]; > 0
         number minimum{0}; ///< duty added in the direction of the error; >= 0
         number maximum{1}; ///< of the duty; > 0
         number rate{std::numeric_limits<double>::infinity()}; ///< at most, of the set-point that is followed
     };
+    /// The set-point that is followed.
     struct state {
         Real followed{0};
 

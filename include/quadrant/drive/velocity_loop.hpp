@@ -28,12 +28,14 @@ template <class Real = double> class velocity_loop {
 public:
     using number = parameter_real<Real>; ///< of parameters
 
+    /// Gains, filter and limit of the loop.
     struct parameters {
-        number gain{0};     ///< [N s/m]; >= 0
-        number integral{0}; ///< [N/m]; >= 0; 0: a P loop
-        number filter_Hz{std::numeric_limits<double>::infinity()};
-        number limit{std::numeric_limits<double>::infinity()}; ///< of the force [N]
+        number gain{0};                                            ///< [N s/m]; >= 0
+        number integral{0};                                        ///< [N/m]; >= 0; 0: a P loop
+        number filter_Hz{std::numeric_limits<double>::infinity()}; ///< corner of the filter of the velocity
+        number limit{std::numeric_limits<double>::infinity()};     ///< of the force [N]
     };
+    /// What the loop remembers.
     struct state {
         Real integral{0}, filtered{0};
 
