@@ -240,6 +240,9 @@ public:
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const {
+        // A position drive's integral adds up the noise of the position: what it leaves wanders, and looks like slow structure.
+        const drive_model& d = given_.fit.plant.drive;
+        if (!record_.reaction.empty() && d.has_integral() && d.position_gain > 0) return near_floor(c);
         return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
