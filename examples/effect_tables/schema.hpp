@@ -27,15 +27,32 @@ inline ordered_json one_key(const machine_key& k) {
     return out;
 }
 
+/// Keys of a drive that belong to no effect. Which kind has which of all keys is the reader's to say.
+inline void add_drive(axis_kind kind, ordered_json& properties) {
+    const auto number = [&](std::string_view key, const char* shape, const char* meaning) {
+        auto& out = properties[key_of(key, kind)] = {{"description", meaning}};
+        out.update(reference(shape));
+    };
+    properties["kind"] = {{"description", "what the drive takes: its command column"}, {"enum", drive_kinds}};
+    properties["interpolation"] = {
+        {"description", "how the drive goes from one set-point to the next; absent: hold"},
+        {"enum", interpolations}};
+    number("velocity_filter_Hz", "positive", "corner of the first-order filter of the velocity; absent: none");
+    number("velocity_feedforward", "number", "share of the set-points' velocity; absent: 0");
+    number("set_point_period_s", "positive", "from one set-point to the next; absent: sample_period_s");
+}
+
 /// Keys of the box that belong to no effect.
-inline void add_others(std::string_view box, ordered_json& properties, ordered_json& together) {
+inline void add_others(std::string_view box, axis_kind kind, ordered_json& properties, ordered_json& together) {
+    if (box == "drive") return add_drive(kind, properties);
     if (box != "actuator") return;
     properties["limit_V"] = {{"description", "the controller's own limit"}};
     properties["limit_V"].update(reference("positive"));
     properties["dac_bits"] = {{"type", "integer"}, {"minimum", 1}, {"maximum", 32}};
     properties["command_is"] = {
-        {"description", "where the log's command column was taken; measured: behind the amplifier, so that limit, "
-                        "dead zone, lag, delay and lost samples before it cannot be causes"},
+        {"description",
+         "where the log's command column was taken; measured: behind the amplifier, so that limit, "
+         "dead zone, lag, delay and lost samples before it cannot be causes"},
         {"enum", {"asked", "measured"}}};
     properties["dac_range_V"] = {{"description", "whole range of the DAC: 20 for +-10 V"}};
     properties["dac_range_V"].update(reference("positive"));
@@ -62,8 +79,9 @@ inline ordered_json box(std::string_view name, axis_kind kind) {
             if (!other.empty()) together[key].push_back(key_in_box(name, other, kind));
         if (!k.entries_of.empty() && !together.contains(key)) together[key] = {key_of(k.entries_of, kind)};
     });
-    add_others(name, properties, together);
+    add_others(name, kind, properties, together);
     ordered_json out{{"type", "object"}, {"additionalProperties", false}};
+    if (name == "drive") needed.push_back("kind");
     if (!needed.empty()) out["required"] = needed;
     if (!either.empty()) out["not"] = {{"required", either}};
     if (!together.empty()) out["dependentRequired"] = together;

@@ -38,24 +38,30 @@ inline std::string loop(const axis_result& a) {
                 x + 104, y, y + 5);
         return svg + "</g>";
     };
-    const std::string boxes = box("controller", 72, 34, 56) + box("actuator", 246, 34, 56) +
-                              box("mechanics", 246, 138, 56) + box("sensor", 72, 138, 56) +
-                              box("process", 246, 236, 54);
+    // A drive with loops of its own stands between controller and actuator, and what follows one row lower.
+    const int down = a.driven ? 104 : 0;
+    const std::string boxes = box("controller", 72, 34, 56) + (a.driven ? box("drive", 246, 34, 56) : "") +
+                              box("actuator", 246, 34 + down, 56) + box("mechanics", 246, 138 + down, 56) +
+                              box("sensor", 72, 138 + down, 56) + box("process", 246, 236 + down, 54);
+    const std::string wires = fmt::format(
+        R"(<path d="M2 62H22"/><path d="M45 62H71"/><path d="M176 62H245"/><path d="M350 62H368V166H351"/>
+{}<path d="M246 {}H177"/><path d="M72 {}H34V74"/><path d="M298 {}V{}"/>)",
+        a.driven ? "<path d=\"M298 194V241\"/>" : "", 166 + down, 166 + down, 236 + down, 195 + down);
     const std::string text =
         guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty));
     return fmt::format(
-        R"svg(<svg class="loop" viewBox="0 0 378 294" role="img" aria-label="Servo loop of axis {0}: {1}">
+        R"svg(<svg class="loop" viewBox="0 0 378 {5}" role="img" aria-label="Servo loop of axis {0}: {1}">
 <title>Servo loop of axis {0}: {1}</title>
-<g class="wire"><path d="M2 62H22"/><path d="M45 62H71"/><path d="M176 62H245"/><path d="M350 62H368V166H351"/>
-<path d="M246 166H177"/><path d="M72 166H34V74"/><path d="M298 236V195"/></g>
+<g class="wire">{6}</g>
 <circle class="sum" cx="34" cy="62" r="11"/><path class="sign" d="M29 62h10M34 57v10M41 84h9"/>
 <g class="signal"><text class="left" x="2" y="42">reference</text><text x="210" y="54">command</text>
-<text class="right" x="362" y="119">{3}</text><text x="210" y="158">position</text><text class="left" x="2" y="186">feedback</text>
-<text class="left" x="305" y="220">{3}</text></g>
+<text class="right" x="362" y="119">{7}</text><text x="210" y="{8}">position</text><text class="left" x="2" y="{9}">feedback</text>
+<text class="left" x="305" y="{10}">{3}</text></g>
 {2}</svg>
 <p class="hint loop-says">{4}.</p>
 )svg",
-        escape(a.name), text, boxes, voice_of(a)("force"), capital(text));
+        escape(a.name), text, boxes, voice_of(a)("force"), capital(text), 294 + down, wires,
+        a.driven ? "" : voice_of(a)("force"), 158 + down, 186 + down, 220 + down);
 }
 
 inline std::string paragraph(const std::string& text) {

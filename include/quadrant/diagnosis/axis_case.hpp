@@ -27,7 +27,8 @@ public:
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
-        if (axis.controller && log.has_reference && log.as_sampled)
+        // A velocity drive's controller commands set-points; how far a difference there moves the axis no force tells.
+        if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes())
             controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                           coarse() ? count : axis.encoder.resolution_m);
         if (controller && is_excluded("added_command")) controller->added.reset();
@@ -106,14 +107,14 @@ public:
         std::vector<double> e, a;
         second->observer.run(there.plant, e, &a);
         return {-there.objective, models.settled(there.ms, second->score, noise),
-                rms(residual_force(there.plant, second->position, a, second->period, second->bandwidth_Hz,
-                                   second->left_out))};
+                rms(residual_of(*second, there.plant, a))};
     }
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
     double floor_force() const {
-        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz);
+        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz,
+                                    record.reaction);
     }
     /// The described controller with the found key mended.
     controller_description mended() const {

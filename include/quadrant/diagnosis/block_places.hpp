@@ -57,7 +57,9 @@ inline std::vector<place> block_places(const axis_case& c) {
         out.push_back(
             {"block", "",
              c.at_floor() ? "behind the command: calibration and noise"
-                          : "behind the command (actuator, mechanics, process or sensor): no cause tells which",
+             : c.axis.drive.closes()
+                 ? "behind the set-points (drive, actuator, mechanics, process or sensor): no cause tells which"
+                 : "behind the command (actuator, mechanics, process or sensor): no cause tells which",
              rest, "replay"});
     return out;
 }

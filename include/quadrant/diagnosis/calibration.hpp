@@ -5,6 +5,30 @@
 
 namespace quadrant::diagnosis {
 
+/// The force that the velocity loop inside a drive holds at the first row: no file can know it.
+inline parameter start_of_drive(const record_scales& scale) {
+    return {.key = "start_force",
+            .of = [](plant_model& p) -> double& { return p.drive.start_force; },
+            .start = 0,
+            .low = -scale.command,
+            .high = scale.command,
+            .step = 1e-3 * scale.command,
+            .expected = 0,
+            .spread = scale.command};
+}
+
+/// The age of the position's reading beside what was measured behind the drive: up to a row.
+inline parameter age_of_reading(double period) {
+    return {.key = "reading_age",
+            .of = [](plant_model& p) -> double& { return p.drive.reading_age; },
+            .start = 0,
+            .low = -period,
+            .high = period,
+            .step = 0.05 * period,
+            .expected = 0,
+            .spread = period / std::numbers::sqrt3};
+}
+
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
 /// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which also
 /// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis alike.

@@ -12,7 +12,10 @@
 #include "effect/controller_mismatch.hpp"
 #include "effect/coulomb_friction.hpp"
 #include "effect/cross_coupling.hpp"
+#include "effect/command_delay.hpp"
 #include "effect/cutting_force.hpp"
+#include "effect/drive_gain.hpp"
+#include "effect/drive_limit.hpp"
 #include "effect/encoder_cyclic_error.hpp"
 #include "effect/encoder_quantization.hpp"
 #include "effect/force_constant.hpp"
@@ -21,14 +24,18 @@
 #include "effect/gravity.hpp"
 #include "effect/load_friction.hpp"
 #include "effect/mass.hpp"
+#include "effect/minimum_duty.hpp"
 #include "effect/payload_mass.hpp"
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
 #include "effect/presliding_friction.hpp"
 #include "effect/quadratic_drag.hpp"
 #include "effect/sample_loss.hpp"
+#include "effect/set_point_loss.hpp"
+#include "effect/setpoint_rate_limit.hpp"
 #include "effect/stribeck_friction.hpp"
 #include "effect/structural_resonance.hpp"
+#include "effect/supply_voltage.hpp"
 #include "effect/time_delay.hpp"
 #include "effect/unlisted.hpp"
 #include "effect/viscous_friction.hpp"
@@ -65,6 +72,13 @@ inline constexpr std::array listed_effects{
     &suspect::actuator_saturation,
     &suspect::actuator_dead_zone,
     &suspect::sample_loss,
+    &suspect::drive_gain,
+    &suspect::drive_limit,
+    &suspect::supply_voltage,
+    &suspect::minimum_duty,
+    &suspect::command_delay,
+    &suspect::setpoint_rate_limit,
+    &suspect::set_point_loss,
     &suspect::encoder_quantization,
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "causes.hpp"
-#include "closed_loop.hpp"
+#include "driven_loop.hpp"
 #include "places.hpp"
 
 namespace quadrant::diagnosis {
@@ -75,12 +75,13 @@ private:
             plant = restarted(plant, judged_);
             std::vector<double> e, a;
             judged_.observer.run(plant, e, &a);
-            s.force = residual_force(plant, judged_.position, a, judged_.period, judged_.bandwidth_Hz,
-                                     judged_.left_out);
+            s.force = residual_of(judged_, plant, a);
         } else {
             s.force = case_.models.held_out_residual(model);
         }
-        if (controller && log_.has_reference)
+        if (case_.axis.drive.closes()) {
+            if (can_close(case_.axis, log_)) s.loop = simulate_driven(case_.axis, plant, judged_.period, log_);
+        } else if (controller && log_.has_reference)
             s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
         return s;
     }
@@ -153,8 +154,10 @@ private:
         s.residual_after = after.force;
         if (after.loop) {
             s.simulated_position_after = after.loop->position;
-            s.command_replayed = replay_controller(*case_.axis.controller, case_.axis.actuator, judged_.period,
-                                                   log_.reference, log_.position, log_.command);
+            if (case_.axis.controller && !case_.axis.drive.closes())
+                s.command_replayed =
+                    replay_controller(*case_.axis.controller, case_.axis.actuator, judged_.period,
+                                      log_.reference, log_.position, log_.command);
         }
         spectrum(s.residual_before, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_before);
         spectrum(s.residual_after, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_after);

@@ -3,6 +3,7 @@
 #include "axis_words.hpp"
 #include "command_origin.hpp"
 #include "controller/description.hpp"
+#include "drive_description.hpp"
 #include "own_law.hpp"
 
 #include <map>
@@ -98,6 +99,7 @@ struct axis_description {
     actuator_description actuator;
     process_description process;
     payload_description payload{};
+    drive_description drive{}; ///< loops of its own between the command and the motor
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
     axis_kind kind = axis_kind::linear;

@@ -15,6 +15,48 @@ inline bool has_period_of(const machine_description& machine, const machine_log&
     return std::abs(log.sample_period_s / machine.sample_period_s - 1) <= allowed;
 }
 
+namespace detail {
+
+/// Refuses a log whose command a drive of this kind does not take.
+inline void check_drive(const axis_description& axis, const axis_log& log, const std::string& machine,
+                        const std::string& file) {
+    const std::string m = key_of("m", axis.kind), unit = log.command_unit;
+    const bool measured = log.command_is == command_origin::measured;
+    const auto refuse = [&](const std::string& what) {
+        throw bad_input(file, fmt::format("axis {}: its drive is of kind {} in {}: {}", axis.name,
+                                          name_of(axis.drive.kind), machine, what));
+    };
+    if (axis.drive.kind == drive_kind::velocity) {
+        if (unit != "V" && unit != m + "_per_s")
+            refuse(fmt::format("column {0}_cmd_V or {0}_cmd_{1}_per_s is missing", axis.name, m));
+        if (unit == "V" && !axis.drive.velocity_per_V)
+            throw bad_input(machine,
+                            fmt::format("axes.{0}.drive.velocity_per_V: is missing; the command column of "
+                                        "{1} is {0}_cmd_V",
+                                        axis.name, file));
+        return;
+    }
+    const bool servo = axis.drive.kind == drive_kind::position_servo;
+    if (!unit.empty() && !measured && unit != m && !(servo && (unit == "V" || unit == "duty")))
+        refuse(fmt::format("it takes positions, column {0}_cmd_{1} or {0}_ref_{1}, not {0}_cmd_{2}", axis.name,
+                           m, unit));
+    if (unit != m && !log.has_reference)
+        refuse(fmt::format("column {0}_cmd_{1} or {0}_ref_{1}, what the drive received, is missing", axis.name,
+                           m));
+}
+
+} // namespace detail
+
+/// Refuses a machine with a drive that closes loops of its own, for which `what` is not computed yet: bad_input.
+inline void refuse_driven(const machine_description& machine, std::string_view what) {
+    for (const axis_description& axis : machine.axes)
+        if (axis.drive.closes())
+            throw bad_input(machine.file,
+                            fmt::format("axes.{}.drive.kind: is {}; {} is computed for drives of kind "
+                                        "current only (apply the diagnosis and simulate instead)",
+                                        axis.name, name_of(axis.drive.kind), what));
+}
+
 /// Refuses a log that cannot be of the machine described: bad_input.
 inline void check_match(const machine_description& machine, const machine_log& log) {
     if (!has_period_of(machine, log))
@@ -33,7 +75,27 @@ inline void check_match(const machine_description& machine, const machine_log& l
         if (logged->kind != axis.kind)
             throw bad_input(log.file, fmt::format("axis {} is {} in the log, {} in {}", axis.name,
                                                   name_of(logged->kind), name_of(axis.kind), machine.file));
+        if (axis.drive.closes()) {
+            detail::check_drive(axis, *logged, machine.file, log.file);
+            continue;
+        }
+        if (logged->command_unit.empty())
+            throw bad_input(
+                log.file,
+                fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: "
+                            "{0}_current_A, {0}_torque_Nm): without a command only an axis whose drive "
+                            "takes positions is diagnosed (axes.{0}.drive.kind)",
+                            axis.name, key_of("N", axis.kind)));
         if (logged->command_unit == axis.command_unit) continue;
+        if (logged->command_unit.starts_with(key_of("m", axis.kind)) || logged->command_unit == "duty")
+            throw bad_input(
+                machine.file,
+                fmt::format("axes.{0}.drive.kind: is current (the default); the command column of {1} "
+                            "is {0}_cmd_{2}, of a drive of kind {3}",
+                            axis.name, log.file, logged->command_unit,
+                            logged->command_unit == "duty"         ? "position_servo"
+                            : logged->command_unit.ends_with("_s") ? "velocity"
+                                                                   : "position"));
         const std::string column =
             fmt::format("the command column of {} is {}_cmd_{}", log.file, axis.name, logged->command_unit);
         const std::string constant = key_of("force_constant_N_per_", axis.kind);

@@ -18,6 +18,7 @@ struct pass_input {
     std::size_t substeps = 1; ///< of each part of a period with one command
     std::size_t rows = 0;
     const double *position = nullptr, *command = nullptr;
+    const double* const* command_of = nullptr;  ///< one command a plant instead of one for all; null: none
     const double* other_acceleration = nullptr; ///< null: none
     double to_position = 0, to_velocity = 0;    ///< gains of the correction by the innovation
     std::size_t plants = 0;
@@ -30,6 +31,7 @@ struct pass_input {
         pass_input out = *this;
         out.plants = plants - first < most ? plants - first : most;
         out.plant_of += first;
+        if (command_of) out.command_of += first;
         out.innovation += first;
         if (acceleration) out.acceleration += first;
         return out;
@@ -132,10 +134,19 @@ private:
         }
     }
     Real command(const pass_input& in, std::size_t k, std::size_t more) const {
+        if (in.command_of) return command_of_each(in, k, more);
         const auto row = [&](std::size_t back) { return in.command[k >= back ? k - back : 0]; };
         if (delay_.same) return Real(row(delay_.whole[0] + more));
         Real u(0);
         for (std::size_t i = 0; i < width; ++i) set_lane(u, i, row(delay_.whole[i] + more));
+        return u;
+    }
+    Real command_of_each(const pass_input& in, std::size_t k, std::size_t more) const {
+        Real u(0);
+        for (std::size_t i = 0; i < width; ++i) {
+            const std::size_t back = delay_.whole[i] + more;
+            set_lane(u, i, in.command_of[i < in.plants ? i : in.plants - 1][k >= back ? k - back : 0]);
+        }
         return u;
     }
     static void keep(const pass_input& in, double* const* out, std::size_t k, const Real& value) {

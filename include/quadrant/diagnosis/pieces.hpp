@@ -20,7 +20,7 @@ inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     }
     for (channel& c : r.score.channels)
         for (std::size_t b = 0; b < c.segment_of_block.size(); ++b)
-            c.segment_of_block[b] = r.segment[c.first_of_block[b] + c.block / 2];
+            c.segment_of_block[b] = r.segment[(c.first_of_block[b] + c.block / 2) % r.segment.size()];
     r.segments = r.score.segments = pieces;
     return r;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "drive_model.hpp"
 #include "friction_contact.hpp"
 #include "harmonics.hpp"
 #include "machine.hpp"
@@ -22,6 +23,7 @@ struct arm_load {
 struct plant_model {
     static constexpr std::size_t max_harmonics = harmonics::most;
 
+    drive_model drive, drive_as_described; ///< what closes loops of its own between command and actuator
     // actuator
     double delay = 0;     ///< [s]
     double loss = 0;      ///< probability that a period keeps the previous command
@@ -98,6 +100,7 @@ struct plant_model {
     }
     plant_model(const axis_description& a, double give) {
         const plant_description& d = a.plant;
+        drive = drive_as_described = drive_model(a.drive);
         delay = d.delay_s;
         loss = a.actuator.loss_probability.value_or(0);
         dead_zone = a.actuator.dead_zone_V.value_or(0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "driven_motion.hpp"
 #include "pass.hpp"
 #include "sample_loss.hpp"
 
@@ -30,6 +31,8 @@ struct predictor {
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
     double resolution = 0;                        ///< step of the position [m]
     std::size_t substeps = 1;                     ///< of a period, see substeps_of()
+    const driven_motion* drive =
+        nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
 
     /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from
     /// the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the second difference of the
@@ -63,6 +66,10 @@ struct predictor {
             i += std::max<std::size_t>(1, n);
         }
     }
+
+    /// Rows of the innovations: those of the position, and behind them, where something was measured behind the drive, what the
+    /// drive gives otherwise.
+    std::size_t rows() const { return position.size() * (drive && drive->tapped() ? 2 : 1); }
 
     /// Both poles of the observer.
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
@@ -104,6 +111,26 @@ private:
         return out;
     }
 
+    /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share its replay.
+    void drive_each(std::span<const plant_model> plants, std::array<std::vector<double>, abreast>& own,
+                    std::array<const double*, abreast>& command_of,
+                    std::span<std::vector<double>> innovation) const {
+        const auto n = static_cast<std::ptrdiff_t>(position.size());
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            std::size_t same = 0;
+            while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
+            if (same == i) {
+                auto replay = drive->run(plants[i].drive);
+                own[i] = std::move(replay.command);
+                for (std::size_t k = 0; k < replay.beside.size(); ++k)
+                    innovation[i][position.size() + k] = drive->to_position * replay.beside[k];
+            } else if (drive->tapped()) {
+                std::copy(innovation[same].begin() + n, innovation[same].end(), innovation[i].begin() + n);
+            }
+            command_of[i] = own[same].data();
+        }
+    }
+
     /// Several plants side by side in the lanes of one number.
     void pass(std::span<const plant_model> plants, std::span<const double> u,
               std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
@@ -111,17 +138,21 @@ private:
         std::array<pass_input::plant, abreast> each;
         for (std::size_t i = 0; i < plants.size(); ++i) {
             each[i] = {axis_parameters(plants[i]), plants[i].delay};
-            innovation[i].resize(position.size());
+            innovation[i].resize(rows());
             e[i] = innovation[i].data();
             if (!acceleration) continue;
             acceleration[i].resize(position.size());
             a[i] = acceleration[i].data();
         }
+        std::array<std::vector<double>, abreast> own;
+        std::array<const double*, abreast> command_of{};
+        if (drive) drive_each(plants, own, command_of, innovation);
         pass_all({.period = period,
                   .substeps = substeps,
                   .rows = position.size(),
                   .position = position.data(),
                   .command = u.data(),
+                  .command_of = drive ? command_of.data() : nullptr,
                   .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
                   .to_position = l1(),
                   .to_velocity = l2(),

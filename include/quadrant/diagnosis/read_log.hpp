@@ -147,7 +147,8 @@ private:
     /// What one axis did.
     axis_log recorded(machine_log& out, const std::string& name, const log_header::axis_columns& at,
                       const log_rows& rows) {
-        auto &position = header_.columns[*at.position], &command = header_.columns[*at.command];
+        auto& position = header_.columns[*at.position];
+        log_column* command = at.command ? &header_.columns[*at.command] : nullptr;
         log_column* reference = at.reference ? &header_.columns[*at.reference] : nullptr;
         const bool still = is_constant(position.values) && (!reference || is_constant(reference->values));
         if (still && header_.axes.size() == 1)
@@ -170,18 +171,33 @@ private:
                       .command_unit = at.command_unit,
                       .reference = reference ? rows.smooth(reference->values) : std::vector<double>{},
                       .position = rows.smooth(position.values, found.bad),
-                      .command = at.command_measured ? rows.smooth(command.values) : rows.held(command.values),
+                      .command = !command              ? std::vector<double>(rows.samples(), 0.0)
+                                 : at.command_measured ? rows.smooth(command->values)
+                                                       : rows.held(command->values),
                       .reference_step = reference ? reference->step.step() : 0,
                       .position_step = step,
-                      .command_step = command.step.step(),
+                      .command_step = command ? command->step.step() : 0,
                       .kind = *at.kind};
         axis.left_out = rows.left_out(found.bad);
         if (at.enabled) leave_out_disabled(axis, rows.held(header_.columns[*at.enabled].values), tell);
         if (std::none_of(axis.left_out.begin(), axis.left_out.end(), [](auto x) { return x != 0; }))
             axis.left_out.clear();
         if (at.command_measured) axis.command_is = command_origin::measured;
+        add_taps(axis, at, rows);
         axis.as_sampled = rows.clock().even;
         return axis;
+    }
+
+    /// What was measured behind the drive.
+    void add_taps(axis_log& axis, const log_header::axis_columns& at, const log_rows& rows) {
+        if (at.duty) {
+            axis.duty = rows.smooth(header_.columns[*at.duty].values);
+            axis.duty_step = header_.columns[*at.duty].step.step();
+        }
+        if (!at.effort) return;
+        axis.effort = rows.smooth(header_.columns[*at.effort].values);
+        axis.effort_unit = at.effort_unit;
+        axis.effort_step = header_.columns[*at.effort].step.step();
     }
 
     /// Rows in which the drive is off say nothing of how it acts on the axis.
@@ -193,6 +209,8 @@ private:
             stretches += k == 0 || enabled[k - 1] >= 0.5;
             ++off;
             axis.left_out[k] = 1;
+            axis.drive_off.resize(enabled.size(), 0);
+            axis.drive_off[k] = 1;
         }
         if (off > 0)
             tell(fmt::format(": the drive is off in {} samples ({} stretches): left out", off, stretches));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "drive_noise.hpp"
 #include "fit.hpp"
 #include "log.hpp"
 #include "scales.hpp"
@@ -19,6 +20,8 @@ struct axis_record {
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
     record_scales scale{};   ///< what is long, fast and strong here
+    /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the command is logged.
+    std::vector<double> reaction{};
     predictor observer;
     scoring score{};
 };
@@ -66,10 +69,14 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
 }
 
 /// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
-inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz) {
-    std::vector<double> impulse(4001, 0.0);
-    impulse[1999] = impulse[2001] = mass / (period * period);
-    impulse[2000] = -2 * impulse[2001];
+/// `reaction`: of a drive whose replay is fed the position.
+inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz,
+                                   std::span<const double> reaction = {}) {
+    std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
+    const std::size_t at = impulse.size() / 2;
+    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
+    impulse[at] = -2 * impulse[at + 1];
+    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
     double sum = 0;
     for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
     return sigma * std::sqrt(sum);
@@ -85,7 +92,6 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
-/// `scale`: of this log, or of the one that it is compared with.
 /// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in a sub-step, in ten
 /// at most. A contact of one spring, which stands for what no record shows, needs none.
 inline std::size_t substeps_of(const plant_model& described, double period) {
@@ -153,6 +159,22 @@ inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows)
     return out;
 }
 
+/// residual_force() of a model on a record. Where something was measured behind the drive, what this drive would have made otherwise is
+/// part of it, unless only what lies behind the drive is asked for.
+inline std::vector<double> residual_of(const axis_record& r, const plant_model& plant,
+                                       std::span<const double> model_acceleration, bool behind_drive = false) {
+    auto out = residual_force(plant, r.position, model_acceleration, r.period, r.bandwidth_Hz, r.left_out);
+    const driven_motion* drive = r.observer.drive;
+    if (!drive || !drive->tapped() || behind_drive) return out;
+    auto beside = drive->force_beside_tap(plant.drive, plant.force_constant);
+    for (std::size_t k = 0; k < r.left_out.size(); ++k)
+        if (r.left_out[k]) beside[k] = 0;
+    beside = zero_phase(beside, r.bandwidth_Hz, r.period);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += beside[k];
+    return out;
+}
+
+/// `scale`: of this log, or of the one that it is compared with.
 inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
     axis_record r{.period = period,
                   .reference = log.reference,
@@ -164,7 +186,8 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
                                .position = log.position,
                                .command = log.command,
                                .other_acceleration = log.other_acceleration,
-                               .resolution = std::max({resolution, log.position_step, scale.count})}};
+                               .resolution = std::max({resolution, log.position_step, scale.count}),
+                               .drive = log.drive.get()}};
     const auto smooth = zero_phase(log.position, scale.corner_Hz, period);
     r.velocity = derivative(smooth, period);
     r.acceleration = derivative(r.velocity, period);
@@ -180,6 +203,8 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
         return lay_blocks(block, s.skip, gaps.settling, log.position.size());
     });
+    if (log.drive && log.drive->tapped())
+        s.channels = detail::and_tap(std::move(s.channels), log.position.size());
     r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;
@@ -187,7 +212,18 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
 
 /// The record with its observer stepping as finely as the described machine needs.
 inline axis_record for_machine(axis_record r, const axis_description& a) {
-    r.observer.substeps = substeps_of(plant_model(a, r.scale.give()), r.period);
+    const plant_model described(a, r.scale.give());
+    r.observer.substeps = substeps_of(described, r.period);
+    if (r.observer.drive && !r.observer.drive->tapped()) {
+        r.reaction = reaction_to_reading(described, *r.observer.drive);
+        const auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
+        for (channel& c : r.score.channels) {
+            const bool slow = 5 * c.mean > r.score.block;
+            detail::set_gains(c, e);
+            if (!slow) c.rounding = std::max(1.0, c.noise_gain);
+            c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
+        }
+    }
     return r;
 }
 

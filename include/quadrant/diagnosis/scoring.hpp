@@ -108,6 +108,21 @@ std::vector<channel> channels_of(std::size_t mean, double resolution, double pol
     return out;
 }
 
+/// The channels of a record and the same again for the rows behind it, in which a signal with white noise of the same size stands that
+/// no observer follows.
+inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t rows) {
+    const std::size_t own = channels.size();
+    for (std::size_t i = 0; i < own; ++i) {
+        channel c = channels[i];
+        for (std::size_t& first : c.first_of_block) first += rows;
+        c.floor /= c.rounding;
+        c.rounding = 1;
+        c.noise_gain = 1 / std::sqrt(static_cast<double>(c.mean));
+        channels.push_back(std::move(c));
+    }
+    return channels;
+}
+
 } // namespace detail
 
 } // namespace quadrant::diagnosis

@@ -28,6 +28,9 @@ public:
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
+        if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
+        if (record.observer.drive && record.observer.drive->tapped())
+            start.fit.parameters.push_back(age_of_reading(record.period));
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -160,7 +163,8 @@ public:
         const auto allowed = [&](const effect* e) {
             return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
                    !(e->rotary_only && axis_.kind == axis_kind::linear) &&
-                   !(measured && e->joins == joint::command);
+                   !(measured && e->joins == joint::command) &&
+                   (axis_.drive.closes() ? beside_drive(*e) : e->box != "drive");
         };
         std::copy_if(plant_effects.begin(), plant_effects.end(), std::back_inserter(out), allowed);
         std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
@@ -228,11 +232,15 @@ public:
 
     /// The residual force that noise and rounding alone leave [N].
     double floor_force(const candidate& c) const {
-        return residual_force_floor(axis_.plant.mass_kg, noise(c), record_.period, record_.bandwidth_Hz);
+        return residual_force_floor(axis_.plant.mass_kg, noise(c), record_.period, record_.bandwidth_Hz,
+                                    record_.reaction);
     }
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const {
+        // A position drive's integral adds up the noise of the position: what it leaves wanders, and looks like slow structure.
+        const drive_model& d = given_.fit.plant.drive;
+        if (!record_.reaction.empty() && d.has_integral() && d.position_gain > 0) return near_floor(c);
         return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
     }
 
@@ -260,7 +268,8 @@ public:
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m") p.of(plants[j]) = p.from_fit(low + share * (high - low));
+                if (p.key != "presliding_length_m" && p.key != "start_force" && p.key != "reading_age")
+                    p.of(plants[j]) = p.from_fit(low + share * (high - low));
             }
         std::vector<std::vector<double>> e(plants.size());
         record_.observer.run(plants, e);
@@ -410,6 +419,13 @@ public:
     }
 
 private:
+    /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command is its own, and
+    /// box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
+    bool beside_drive(const effect& e) const {
+        if (e.name == "force_constant" && is_force(axis_.command_unit)) return false; // the drive's gain
+        if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
+        return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
+    }
     /// Moves the numbers of a model to those of another plant, where the fit goes on.
     static void begin_at(candidate& c, plant_model known) {
         for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
@@ -439,15 +455,22 @@ private:
         return true;
     }
     /// use(i, residual force of plant i), one after the other.
-    template <class Use> void residuals(const std::vector<plant_model>& plants, const Use& use) const {
+    template <class Use>
+    void residuals(const std::vector<plant_model>& plants, const Use& use, bool behind_drive = false) const {
         std::array<std::vector<double>, predictor::abreast> e, a;
         for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
             const std::size_t n = std::min(plants.size() - first, predictor::abreast);
             record_.observer.run(std::span(plants).subspan(first, n), e, a);
             for (std::size_t i = 0; i < n; ++i)
-                use(first + i, residual_force(plants[first + i], record_.position, a[i], record_.period,
-                                              record_.bandwidth_Hz, record_.left_out));
+                use(first + i, residual_of(record_, plants[first + i], a[i], behind_drive));
         }
+    }
+    /// Residual force without what a drive made otherwise than measured: what effects of the mechanics look at.
+    std::vector<double> residual_behind_drive(const candidate& c) const {
+        std::vector<double> out;
+        residuals(
+            {c.fit.plant}, [&](std::size_t, std::vector<double> r) { out = std::move(r); }, true);
+        return out;
     }
     static double square(double x) { return x * x; }
     static double mean_of(const std::vector<double>& x) {
@@ -489,7 +512,7 @@ private:
     void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
                      std::vector<candidate>& models) const {
         if (which.empty()) return;
-        const auto left = residual(from);
+        const auto left = residual_behind_drive(from);
         const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
         const fitter fit(record_.observer, record_.score);
         fit_result here = from.fit;

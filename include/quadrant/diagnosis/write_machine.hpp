@@ -33,6 +33,14 @@ inline nlohmann::ordered_json effects_json(std::string_view box, const axis_desc
     return out;
 }
 
+/// What a drive is, beside the numbers that effects have.
+inline nlohmann::ordered_json drive_json(const drive_description& d) {
+    auto out = numbers_json(drive_number_keys, d);
+    out["kind"] = name_of(d.kind);
+    if (d.between) out["interpolation"] = name_of(*d.between);
+    return out;
+}
+
 /// The keys of a box as an axis of this kind has them.
 inline nlohmann::ordered_json in_words_of(axis_kind kind, std::string_view box,
                                           const nlohmann::ordered_json& content) {
@@ -56,6 +64,7 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
         if (name == "actuator" && a.actuator.dac_bits) content["dac_bits"] = *a.actuator.dac_bits;
         if (name == "actuator" && a.actuator.command_is != command_origin::asked)
             content["command_is"] = name_of(a.actuator.command_is);
+        if (name == "drive" && a.drive.closes()) content.update(drive_json(a.drive));
         box(name, content);
     }
     for (const auto& [key, value] : a.tolerance.given)

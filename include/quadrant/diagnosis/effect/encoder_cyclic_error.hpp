@@ -54,6 +54,7 @@ inline constexpr effect encoder_cyclic_error{
         const double travel = detail::travel(s);
         std::vector<double> innovation;
         s.record.observer.run(s.leader, innovation);
+        innovation.resize(s.record.position.size()); // those of the position
         std::vector<std::vector<parameter>> out;
         // Coarse and fine periods apart: at constant speed the rows themselves are a grating, and alias one into the other.
         const double shortest = std::max(8 * s.record.resolution, travel / 1e5);

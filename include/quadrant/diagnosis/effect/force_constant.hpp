@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "effect.hpp"
+#include "drive_suspect.hpp"
 
 namespace quadrant::diagnosis::suspect {
 
@@ -30,6 +30,9 @@ inline constexpr effect force_constant{
                       m.set("force_constant_N_per_V", m.changed(m.now("force_constant_N_per_V"), 0.3));
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        if (s.leader.drive.closes())
+            return {{detail::freed_from_the_best(s, "force_constant_N_per_V",
+                                                 [](plant_model& p) -> double& { return p.force_constant; })}};
         return {{detail::freed(
             "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },
             s.leader.force_constant)}};

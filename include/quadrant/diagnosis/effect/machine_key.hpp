@@ -20,6 +20,7 @@ inline plant_description& box_with(axis_description& a, const plant_description*
 inline actuator_description& box_with(axis_description& a, const actuator_description*) { return a.actuator; }
 inline encoder_description& box_with(axis_description& a, const encoder_description*) { return a.encoder; }
 inline process_description& box_with(axis_description& a, const process_description*) { return a.process; }
+inline drive_description& box_with(axis_description& a, const drive_description*) { return a.drive; }
 inline payload_description& box_with(axis_description& a, const payload_description*) { return a.payload; }
 
 template <class Box, class Value> const Box* box_type(Value Box::*) { return nullptr; }

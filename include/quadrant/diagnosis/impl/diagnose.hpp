@@ -11,6 +11,7 @@
 #include "../how_far.hpp"
 #include "../neighbour.hpp"
 #include "../next_experiment.hpp"
+#include "../with_drives.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -132,6 +133,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     result.name = c.axis.name;
     result.kind = c.axis.kind;
     result.command_unit = c.axis.command_unit;
+    result.driven = c.axis.drive.closes();
     auto rivals = rivals_by_weight(c);
     auto causes = plant_causes(c, rivals);
     const bool guess = untested(c);
@@ -178,7 +180,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
-        propose(out, c, causes, rivals);
+        if (!c.axis.drive.closes()) propose(out, c, causes, rivals);
         if (!proposed) {
             out.next.motion = text_of(out.next.motion, c.axis.kind);
             out.next.finding = text_of(out.next.finding, c.axis.kind);
@@ -218,10 +220,14 @@ inline void add_own_effects(std::vector<std::string>& names, const axis_descript
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine, const machine_log& log,
-                                                  const machine_log* holdout, const progress& tell,
-                                                  const rules& r) {
+QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine,
+                                                  const machine_log& as_read, const machine_log* as_read_too,
+                                                  const progress& tell, const rules& r) {
     diagnosis_result out;
+    const machine_log log = with_drives(machine, as_read);
+    std::optional<machine_log> second;
+    if (as_read_too) second = with_drives(machine, *as_read_too);
+    const machine_log* const holdout = second ? &*second : nullptr;
     out.machine_file = machine.file;
     out.log_file = log.file;
     if (holdout) out.holdout_file = holdout->file;

@@ -51,11 +51,14 @@ private:
             const auto content = box == "plant" ? node.need("plant") : node.find(std::string(box));
             if (content) read_box(*content, box, axis);
         }
+        if (axis.drive.closes()) settle_drive(node, axis);
         if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
         if (const auto controller = node.find("controller"))
             read_controller(*controller, axis);
         else
-            note(axis, "no controller is described: diagnosed from the command onwards");
+            note(axis, axis.drive.takes_position()
+                           ? "no controller is described: diagnosed from the drive's set-points onwards"
+                           : "no controller is described: diagnosed from the command onwards");
         note_what_is_assumed(axis);
         return axis;
     }
@@ -103,9 +106,37 @@ private:
 
     void read_box(const json_node& node, std::string_view box, axis_description& axis) {
         effect_keys_reader reader(node, box, axis, [&](const std::string& text) { note(axis, text); });
-        reader.read(box == "actuator" ? key_names(actuator_other_keys) : key_names());
+        reader.read(box == "actuator" ? key_names(actuator_other_keys)
+                    : box == "drive"  ? key_names(drive_other_keys)
+                                      : key_names());
+        if (box == "drive") {
+            read_drive_kind(node, axis.drive);
+            read_drive_others(node, out_.sample_period_s, axis.drive);
+        }
         if (box == "plant") read_force_constant(node, axis);
         if (box == "actuator") read_own_limits(node, axis.actuator);
+    }
+
+    /// Such a drive makes the force itself: what a file says of the command's way to the force must be its own.
+    static void settle_drive(const json_node& node, const axis_description& axis) {
+        const auto plant = node.need("plant");
+        if (axis.plant.delay_s > 0)
+            plant.find("delay_s")->refuse("must be 0 beside a drive with loops of its own: its delay is "
+                                          "drive.command_delay_s");
+        if (axis.actuator.loss_probability)
+            node.find("actuator")
+                ->find("loss_probability")
+                ->refuse("is of a command that is a force; a drive loses set-points: drive.set_point_loss");
+        const bool servo = axis.drive.kind == drive_kind::position_servo;
+        if (servo && axis.command_unit != "V")
+            plant.at(plant.name("force_constant_N_per_V"), *plant.value)
+                .refuse("is missing: the torque of a position_servo is duty times supply_V times it");
+        if (!servo && axis.command_unit == "V")
+            plant.find("force_constant_N_per_V")
+                ->refuse(
+                    fmt::format("a drive of kind {} makes a force by itself: leave the constant out, or give "
+                                "it per ampere where a current was recorded",
+                                name_of(axis.drive.kind)));
     }
 
     /// Its key names the unit of the command column; without one the command is the force itself.
@@ -167,7 +198,7 @@ private:
         if (!missing.empty())
             note(axis, fmt::format("no tolerance is given for {}: {} is assumed", missing,
                                    tolerance_description::unstated));
-        if (is_force(axis.command_unit))
+        if (is_force(axis.command_unit) && !axis.drive.closes())
             note(axis, text_of("no force constant is given: the command is taken for newtons", axis.kind));
     }
 

@@ -4,6 +4,7 @@
 #include "../how_far.hpp"
 #include "../neighbour.hpp"
 #include "../simulate.hpp"
+#include "../with_drives.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -25,18 +26,21 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.kind = axis.kind;
     std::vector<double> innovation, acceleration;
     record.observer.run(plant, innovation, &acceleration);
-    out.force = residual_force(plant, log.position, acceleration, period, record.bandwidth_Hz, record.left_out);
+    out.force = residual_of(record, plant, acceleration);
     out.gap.force_rms_N = scored_rms(out.force);
-    out.gap.noise_floor_force_rms_N = residual_force_floor(
-        plant.mass, position_noise(innovation, record.score, resolution), period, record.bandwidth_Hz);
+    out.gap.noise_floor_force_rms_N =
+        residual_force_floor(plant.mass, position_noise(innovation, record.score, resolution), period,
+                             record.bandwidth_Hz, record.reaction);
     out.gap.bandwidth_Hz = record.bandwidth_Hz;
     out.where = regimes(out.force, record);
     for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);
     for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);
-    if (!axis.controller || !log.has_reference) return out;
+    const bool driven = axis.drive.closes();
+    if (driven ? !can_close(axis, log) : !axis.controller || !log.has_reference) return out;
 
     out.closed_loop = true;
-    auto loop = simulate_closed_loop(*axis.controller, axis, plant, period, log);
+    auto loop = driven ? simulate_driven(axis, plant, period, log)
+                       : simulate_closed_loop(*axis.controller, axis, plant, period, log);
     std::vector<double> of_position(log.position.size()), of_command(log.position.size());
     for (std::size_t k = 0; k < log.position.size(); ++k) {
         of_position[k] = loop.position[k] - log.position[k];
@@ -53,7 +57,9 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log) {
+QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine,
+                                                   const machine_log& as_read) {
+    const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
     const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;
     if (seconds < shortest_s)

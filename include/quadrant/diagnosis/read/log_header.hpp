@@ -25,7 +25,10 @@ struct log_header {
     struct axis_columns {
         std::optional<std::size_t> reference, position, command;
         std::optional<std::size_t> enabled; ///< 0 where the drive is off
-        bool command_measured = false;      ///< it was taken behind the amplifier
+        std::optional<std::size_t> duty,
+            effort; ///< of the drive's bridge; measured behind it, beside a command
+        std::string effort_unit;
+        bool command_measured = false; ///< it was taken behind the amplifier
         std::optional<std::size_t> reference_velocity, reference_acceleration, velocity; ///< need not be there
         std::string command_unit;
         std::size_t command_at = 0; ///< in the header line
@@ -46,6 +49,7 @@ enum class column_role {
     velocity,
     current,
     torque,
+    duty,
     enabled,
     not_used_yet
 };
@@ -66,6 +70,11 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_cmd_A", column_role::command, "A"},
     column_suffix{"_cmd_N", column_role::command, "N"},
     column_suffix{"_cmd_Nm", column_role::command, "Nm"},
+    column_suffix{"_cmd_m_per_s", column_role::command, "m_per_s"},
+    column_suffix{"_cmd_rad_per_s", column_role::command, "rad_per_s"},
+    column_suffix{"_cmd_m", column_role::command, "m"},
+    column_suffix{"_cmd_rad", column_role::command, "rad"},
+    column_suffix{"_cmd_duty", column_role::command, "duty"},
     column_suffix{"_ref_m_per_s", column_role::reference_velocity, "m"},
     column_suffix{"_ref_m_per_s2", column_role::reference_acceleration, "m"},
     column_suffix{"_vel_m_per_s", column_role::velocity, "m"},
@@ -78,9 +87,16 @@ inline constexpr std::array column_suffixes{
     column_suffix{"_current_A", column_role::current, "A"},
     column_suffix{"_torque_Nm", column_role::torque, "Nm"},
     column_suffix{"_enabled", column_role::enabled},
-    column_suffix{"_duty", column_role::not_used_yet},
+    column_suffix{"_duty", column_role::duty},
     column_suffix{"_supply_V", column_role::not_used_yet},
 };
+
+/// The units of a command that only a drive with loops of its own takes, those of one kind of axis among them.
+constexpr std::optional<axis_kind> kind_of_unit(std::string_view unit) {
+    if (unit == "m" || unit == "m_per_s") return axis_kind::linear;
+    if (unit == "rad" || unit == "rad_per_s") return axis_kind::rotary;
+    return {};
+}
 
 /// Columns that say more of an axis that others make: they come behind those.
 constexpr bool is_beside(column_role r) {
@@ -117,11 +133,12 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
         (!motion || c.suffix->role == column_role::velocity)) // what a machine did, not what it is to do
         return;
     const bool measured = c.suffix->role == column_role::current || c.suffix->role == column_role::torque;
+    column.used = true;
     if (measured && axis.command) {
-        out.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(column.name)));
+        axis.effort = c.index;
+        axis.effort_unit = c.suffix->unit;
         return;
     }
-    column.used = true;
     if (measured) {
         axis.command = c.index;
         axis.command_unit = c.suffix->unit;
@@ -132,6 +149,7 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
     (c.suffix->role == column_role::velocity             ? axis.velocity
      : c.suffix->role == column_role::reference_velocity ? axis.reference_velocity
      : c.suffix->role == column_role::enabled            ? axis.enabled
+     : c.suffix->role == column_role::duty               ? axis.duty
                                                          : axis.reference_acceleration) = c.index;
 }
 
@@ -221,12 +239,15 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
             continue;
         }
         if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_{} is missing", name, m));
-        if (!axis.command)
+        if (!axis.command && !axis.reference)
             refuse(
                 line.size(),
                 fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A, "
                             "{0}_torque_Nm)",
                             name, force));
+        if (const auto kind = kind_of_unit(axis.command_unit); kind && *kind != *axis.kind)
+            refuse(axis.command_at, fmt::format("column {}_cmd_{} is of a {} axis; axis {} is {}", name,
+                                                axis.command_unit, name_of(*kind), name, name_of(*axis.kind)));
         if (is_force(axis.command_unit) && axis.command_unit != force)
             refuse(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "
                                                 "{0}_cmd_{2}",

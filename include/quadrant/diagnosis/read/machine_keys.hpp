@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "drive_keys.hpp"
 #include "effect_keys.hpp"
 
 /// The keys of a machine file that belong to no effect; those of effects follow from their records
@@ -27,6 +28,7 @@ inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind
         for (const std::string_view name : names) out.push_back(key_of(name, kind));
     };
     if (box == "actuator") add(actuator_other_keys);
+    if (box == "drive") add(drive_other_keys);
     if (box == "tolerance")
         for (const tolerance_name& t : tolerance_names(all ? axis_kind::rotary : kind))
             out.push_back(key_of(t.name, kind));

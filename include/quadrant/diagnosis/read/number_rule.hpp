@@ -25,6 +25,10 @@ inline constexpr number_rule above_minus_one{"must be a number above -1 (relativ
                                              [](double x) { return x > -1; }, "above_minus_one"};
 inline constexpr number_rule relative{"must be a number from 0 to below 1 (relative: 0.05 is 5 %)",
                                       [](double x) { return x >= 0 && x < 1; }, "relative"};
+inline constexpr number_rule duty{"must be a number above 0 and at most 1 (a share of the supply)",
+                                  [](double x) { return x > 0 && x <= 1; }, "duty"};
+inline constexpr number_rule duty_or_none{"must be a number from 0 to 1 (a share of the supply)",
+                                          [](double x) { return x >= 0 && x <= 1; }, "duty_or_none"};
 inline constexpr number_rule bits{"must be a whole number from 1 to 32",
                                   [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }, "bits"};
 } // namespace rule

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "drive_suspect.hpp"
+
+namespace quadrant::diagnosis::suspect {
+
+/// The drive gives less force, or less duty, than described at most. Joins the drive. Shows only while its error is large.
+inline constexpr effect drive_limit{
+    .name = "drive_limit",
+    .label = "limit inside the drive",
+    .box = "drive",
+    .joins = joint::command,
+    .exciting_motion = "the strongest acceleration that the program uses, and half of it",
+    .equivalent = {"actuator_saturation"},
+    .shows = "only while the error inside the drive is large",
+    .keys = {machine_key{.name = "drive.force_limit_N",
+                         .rule = detail::rule::positive,
+                         .meaning = "most that the velocity loop gives; absent: no limit",
+                         .at = member<&drive_description::force_limit_N>},
+             machine_key{.name = "drive.maximum_duty",
+                         .rule = detail::rule::duty,
+                         .meaning = "largest duty of a position servo; absent: 1",
+                         .at = member<&drive_description::maximum_duty>}},
+    .prior = {0.2, "limits are set by hand and forgotten"},
+    .remedy = "Raise the limit in the drive, or ask for less acceleration.",
+    .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
+        const double most = detail::most_given(s);
+        if (!(most > 0)) return {};
+        const bool servo = s.leader.drive.kind == drive_kind::position_servo;
+        double& (*const of)(plant_model&) =
+            servo ? [](plant_model& p) -> double& { return p.drive.maximum_duty; }
+                  : [](plant_model& p) -> double& { return p.drive.force_limit; };
+        return {{{.key = servo ? "drive.maximum_duty" : "drive.force_limit_N",
+                  .of = of,
+                  .start = detail::best_start(
+                      s, of,
+                      {0.97 * most, 0.9 * most, 0.8 * most, 0.65 * most, 0.5 * most, 0.35 * most, 0.2 * most}),
+                  .low = 0.05 * most,
+                  .high = most,
+                  .logarithmic = true,
+                  .step = 1e-2}}};
+    },
+    .read = [](const plant_model& p) -> std::vector<key_value> {
+        if (p.drive.kind == drive_kind::position_servo) return {{"drive.maximum_duty", {p.drive.maximum_duty}}};
+        return {{"drive.force_limit_N", {p.drive.force_limit}}};
+    }};
+
+} // namespace quadrant::diagnosis::suspect

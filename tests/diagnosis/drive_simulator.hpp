@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// Machines whose drive closes loops of its own, stepped 400 times a row by an integrator that shares nothing with the library.
+namespace drive_simulator {
+
+struct machine {
+    double mass = 100, coulomb = 0, viscous = 0;                    ///< what the drive moves
+    double velocity_per_V = 0.02, gain = 0, integral = 0;           ///< velocity loop
+    double position_gain = 0, duty_gain = 0, supply = 12, kt = 0.1; ///< position loop; position servo
+    double minimum_duty = 0, rate_limit = 1e9, delay = 0, count = 1e-6;
+};
+enum class takes { volts, set_points, servo };
+
+/// Strokes of three sizes with rests, one sample a period.
+inline std::vector<double> strokes(double period, double seconds, double pace) {
+    std::vector<double> out;
+    double clock = 0;
+    for (double t = 0; t < seconds; t += period) {
+        const double into = std::fmod(t, 3.0);
+        clock += period * std::clamp((into < 2.6 ? std::min(into, 2.6 - into) : 0.0) / 0.1, 0.0, 1.0);
+        const double grown = std::clamp(t, 0.0, 1.0), turn = 2 * std::numbers::pi * pace * clock;
+        out.push_back(
+            grown * grown * (3 - 2 * grown) *
+            (0.05 * std::sin(0.3 * turn) + 0.02 * std::sin(1.1 * turn) + 0.004 * std::sin(4.3 * turn)));
+    }
+    return out;
+}
+
+/// The log of such a machine as CSV. `unit`: of its lengths. `tap`: the column of the duty, too.
+inline std::string log(takes kind, const machine& m, double period, double pace, unsigned seed,
+                       const std::string& unit, bool tap = false) {
+    constexpr int steps = 400;
+    const double h = period / steps;
+    const auto reference = strokes(period, 10, pace);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, 0.3 * m.count);
+    std::vector<double> command;
+    double x = 0, v = 0, integral = 0, followed = 0;
+    std::ostringstream out;
+    out.precision(10);
+    out << "t_s,q_ref_" << unit << ",q_pos_" << unit << (kind == takes::volts ? ",q_cmd_V" : "")
+        << (tap ? ",q_duty" : "") << "\n";
+    for (std::size_t k = 0; k < reference.size(); ++k) {
+        const double read = std::round((x + noise(random)) / m.count) * m.count;
+        const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
+        const double volts = std::clamp((20 * (reference[k] - read) + speed) / m.velocity_per_V, -10.0, 10.0);
+        command.push_back(kind == takes::volts ? volts : reference[k]);
+        out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
+        if (kind == takes::volts) out << ',' << volts;
+        for (int i = 0; i < steps; ++i) {
+            const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
+            const auto row = static_cast<std::size_t>(std::max(0.0, at));
+            double force = 0;
+            if (kind == takes::servo) {
+                followed += std::clamp(command[row] - followed, -m.rate_limit * h, m.rate_limit * h);
+                const double e = followed - x;
+                const double duty = std::clamp(m.duty_gain * e + (e > 0 ? 1 : -1) * m.minimum_duty, -1.0, 1.0);
+                if (tap && i == 0) out << ',' << duty;
+                force = duty * m.supply * m.kt;
+            } else {
+                const double part = at - static_cast<double>(row), before = command[row > 0 ? row - 1 : 0];
+                const double asked = kind == takes::volts
+                                         ? m.velocity_per_V * command[row]
+                                         : m.position_gain * (before + part * (command[row] - before) - x);
+                force = m.gain * (asked - v) + integral;
+                integral += h * m.integral * (asked - v);
+            }
+            v += h * (force - m.viscous * v) / m.mass;
+            const double stop = h * m.coulomb / m.mass;
+            v -= std::clamp(v, -stop, stop);
+            x += h * v;
+        }
+        out << "\n";
+    }
+    return out.str();
+}
+
+} // namespace drive_simulator

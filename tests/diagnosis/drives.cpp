@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSL-1.0
+// Machines whose drive closes loops of its own, from a simulator that shares nothing with the library (drive_simulator.hpp), through
+// the diagnosis.
+#include "drive_simulator.hpp"
+
+#include <doctest/doctest.h>
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/simulate.hpp>
+#include <quadrant/diagnosis/write_machine.hpp>
+
+using namespace quadrant::diagnosis;
+using drive_simulator::takes;
+
+namespace {
+
+constexpr double bandwidth = 2 * std::numbers::pi * 40; // of the velocity loop [rad/s]
+const drive_simulator::machine p_drive{.coulomb = 30, .viscous = 60, .gain = 100 * bandwidth, .delay = 1e-3};
+const drive_simulator::machine pi_drive = [] {
+    auto m = p_drive;
+    m.integral = m.gain * 2 * std::numbers::pi * 8;
+    return m;
+}();
+const drive_simulator::machine servo{
+    .mass = 0.004, .coulomb = 0.03, .viscous = 0.01, .duty_gain = 20, .delay = 2e-3, .count = 1e-4};
+
+std::string linear(const std::string& plant, const std::string& drive) {
+    return R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"q": {
+        "plant": {"mass_kg": 100, "viscous_N_s_per_m": 60)" +
+           plant + R"(},
+        "tolerance": {"mass": 0.05, "viscous": 0.2, "coulomb": 0.1, "velocity_gain": 0.03, "velocity_integral": 0.05,
+                      "velocity": 0.005, "position_gain": 0.03, "command_delay": 0.1},
+        "encoder": {"resolution_m": 1e-6}, "drive": {"command_delay_s": 0.001, )" +
+           drive + "}}}}";
+}
+const std::string coulomb = R"(, "coulomb_N": 30)";
+const std::string of_p = R"("kind": "velocity", "velocity_gain_N_s_per_m": 25132.741, "velocity_per_V": 0.02)";
+const std::string of_pi = of_p + R"(, "velocity_integral_N_per_m": 1263309.4)";
+const std::string of_position = R"("kind": "position", "velocity_gain_N_s_per_m": 25132.741,
+    "velocity_integral_N_per_m": 1263309.4, "position_gain_per_s": 40, "interpolation": "linear")";
+const std::string of_servo = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.002, "axes": {"q": {
+    "plant": {"inertia_kg_m2": 0.004, "viscous_Nm_s_per_rad": 0.01, "coulomb_Nm": 0.03,
+              "torque_constant_Nm_per_V": 0.1},
+    "tolerance": {"inertia": 0.05, "viscous": 0.2, "coulomb": 0.1, "torque_constant": 0.05, "position_gain": 0.03,
+                  "supply": 0.02, "command_delay": 0.2},
+    "encoder": {"resolution_rad": 1e-4},
+    "drive": {"kind": "position_servo", "position_gain_per_rad": 20, "supply_V": 12, "command_delay_s": 0.002}}}})";
+
+struct records {
+    machine_log log, holdout;
+};
+records recorded(takes kind, const drive_simulator::machine& m, bool tap = false) {
+    const double period = kind == takes::servo ? 0.002 : 0.001;
+    const std::string unit = kind == takes::servo ? "rad" : "m";
+    const auto read = [&](double pace, unsigned seed) {
+        std::istringstream text(drive_simulator::log(kind, m, period, pace, seed, unit, tap));
+        return read_log(text, "log.csv");
+    };
+    return {read(1, 1), read(0.8, 2)};
+}
+diagnosis_result diagnosed(const std::string& file, const records& r) {
+    const auto machine = read_machine(file, "machine.json");
+    check_match(machine, r.log);
+    rules one;
+    one.threads = 1;
+    return diagnose(
+        machine, r.log, &r.holdout, [](const std::string&) {}, one);
+}
+bool blames_nobody(const diagnosis_result& d) {
+    return d.verdict <= verdict::within_tolerance &&
+           std::none_of(d.causes.begin(), d.causes.end(),
+                        [](const cause& c) { return c.group_probability >= 0.5; });
+}
+/// The first cause, alone and claimed; null: not so.
+const cause* only_claim(const diagnosis_result& d, const std::string& effect) {
+    const auto claims = std::count_if(d.causes.begin(), d.causes.end(),
+                                      [](const cause& c) { return c.group_probability >= 0.5; });
+    if (claims != 1 || d.causes[0].effect != effect || d.causes[0].probability < 0.5) return nullptr;
+    return &d.causes[0];
+}
+double value_of(const cause& c, const std::string& key) {
+    for (const auto& p : c.parameters)
+        if (p.key == key) return p.values[0].value;
+    return 0;
+}
+
+} // namespace
+
+TEST_CASE("velocity drive, P: nobody is blamed on a healthy machine") {
+    CHECK(blames_nobody(diagnosed(linear(coulomb, of_p), recorded(takes::volts, p_drive))));
+}
+TEST_CASE("velocity drive, PI: nobody is blamed on a healthy machine") {
+    CHECK(blames_nobody(diagnosed(linear(coulomb, of_pi), recorded(takes::volts, pi_drive))));
+}
+TEST_CASE("velocity drive, PI: the friction that its integral hides is found within 10 %, and the mass is not "
+          "blamed") {
+    const auto d = diagnosed(linear("", of_pi), recorded(takes::volts, pi_drive));
+    const cause* friction = only_claim(d, "coulomb_friction");
+    REQUIRE(friction);
+    CHECK(value_of(*friction, "coulomb_N") == doctest::Approx(30).epsilon(0.1));
+}
+TEST_CASE("velocity drive: another gain of the drive is the drive's") {
+    auto m = p_drive;
+    m.gain *= 0.6;
+    const auto d = diagnosed(linear(coulomb, of_p), recorded(takes::volts, m));
+    const cause* gain = only_claim(d, "drive_gain");
+    REQUIRE(gain);
+    CHECK(value_of(*gain, "drive.velocity_gain_N_s_per_m") == doctest::Approx(m.gain).epsilon(0.05));
+    CHECK(d.axes[0].where[0].block == "drive");
+}
+TEST_CASE("velocity drive: set-points that come late are the drive's delay") {
+    auto m = pi_drive;
+    m.delay = 4e-3;
+    const cause* delay = nullptr;
+    const auto d = diagnosed(linear(coulomb, of_pi), recorded(takes::volts, m));
+    REQUIRE((delay = only_claim(d, "command_delay")));
+    CHECK(value_of(*delay, "drive.command_delay_s") == doctest::Approx(4e-3).epsilon(0.1));
+}
+TEST_CASE("position drive: the friction that its loops hide is found, from the reference alone") {
+    auto m = p_drive;
+    m.position_gain = 40;
+    const std::string of_p_position =
+        R"("kind": "position", "velocity_gain_N_s_per_m": 25132.741, "position_gain_per_s": 40, "interpolation": "linear")";
+    const auto d = diagnosed(linear("", of_p_position), recorded(takes::set_points, m));
+    const cause* friction = only_claim(d, "coulomb_friction");
+    REQUIRE(friction);
+    CHECK(value_of(*friction, "coulomb_N") == doctest::Approx(30).epsilon(0.1));
+}
+TEST_CASE("position drive with an integral: the friction is the first cause, within 10 %") {
+    auto m = pi_drive;
+    m.position_gain = 40;
+    const auto d = diagnosed(linear("", of_position), recorded(takes::set_points, m));
+    REQUIRE(!d.causes.empty());
+    CHECK(d.causes[0].effect == "coulomb_friction");
+    CHECK(d.causes[0].probability >= 0.5);
+    CHECK(value_of(d.causes[0], "coulomb_N") == doctest::Approx(30).epsilon(0.1));
+}
+TEST_CASE("position drive: nobody is blamed on a healthy machine") {
+    auto m = pi_drive;
+    m.position_gain = 40;
+    CHECK(blames_nobody(diagnosed(linear(coulomb, of_position), recorded(takes::set_points, m))));
+}
+TEST_CASE("position servo: nobody is blamed on a healthy machine, with a measured duty or without") {
+    CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo))));
+    CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo, true))));
+}
+TEST_CASE(
+    "position servo: a measured duty tells the servo's gain from its torque; without it they are one group") {
+    auto m = servo;
+    m.duty_gain = 12;
+    const auto tapped = diagnosed(of_servo, recorded(takes::servo, m, true));
+    const cause* gain = only_claim(tapped, "drive_gain");
+    REQUIRE(gain);
+    CHECK(value_of(*gain, "drive.position_gain_per_rad") == doctest::Approx(12).epsilon(0.05));
+    const auto bare = diagnosed(of_servo, recorded(takes::servo, m));
+    REQUIRE(!bare.causes.empty());
+    CHECK(bare.causes[0].group_probability >= 0.5);
+    std::vector<std::string> names = bare.causes[0].confusable_with;
+    names.push_back(bare.causes[0].effect);
+    std::sort(names.begin(), names.end());
+    CHECK(names == std::vector<std::string>{"drive_gain", "force_constant", "supply_voltage"});
+}
+TEST_CASE("position servo: a profile velocity in its registers is found") {
+    auto m = servo;
+    m.rate_limit = 0.1;
+    const cause* limit = nullptr;
+    const auto d = diagnosed(of_servo, recorded(takes::servo, m));
+    REQUIRE((limit = only_claim(d, "setpoint_rate_limit")));
+    CHECK(value_of(*limit, "drive.setpoint_rate_limit_rad_per_s") == doctest::Approx(0.1).epsilon(0.05));
+}
+TEST_CASE("position servo: the closed loop of simulate follows the machine to a few counts") {
+    const auto r = recorded(takes::servo, servo);
+    const auto s = simulate(read_machine(of_servo, "machine.json"), r.log);
+    REQUIRE(s.axes[0].closed_loop);
+    CHECK(s.axes[0].gap.position_rms_m < 5e-4);
+}
+TEST_CASE("a drive's description survives writing and reading") {
+    for (const std::string& file : {linear(coulomb, of_pi), linear("", of_position), of_servo}) {
+        const auto once = to_json(read_machine(file, "machine.json")).dump();
+        CHECK(to_json(read_machine(once, "machine.json")).dump() == once);
+        CHECK(once.find("\"drive\"") != once.npos);
+    }
+}
+TEST_CASE("what no drive has is refused by key, value and rule") {
+    const auto refused = [](const std::string& drive) {
+        try {
+            read_machine(linear("", drive), "m.json");
+        } catch (const bad_input& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    CHECK(refused(R"("kind": "velocty")") ==
+          "m.json: axes.q.drive.kind: must be one of \"current\", \"velocity\", "
+          "\"position\", \"position_servo\"; did you mean velocity?");
+    CHECK(refused(R"("kind": "velocity")") == "m.json: axes.q.drive.velocity_gain_N_s_per_m: is missing");
+    CHECK(refused(of_p + R"(, "supply_V": 12)") ==
+          "m.json: axes.q.drive.supply_V: is of a drive of kind position_servo; this one is velocity");
+    CHECK(refused(of_p + R"(, "velocity_gian": 1)").find("unknown key") != std::string::npos);
+    CHECK(refused(of_position + R"(, "set_point_period_s": 0.0001)").find("must be at least sample_period_s") !=
+          std::string::npos);
+}
+TEST_CASE("a log whose command the drive does not take is refused with the column to record") {
+    const auto r = recorded(takes::set_points, p_drive);
+    CHECK_THROWS_WITH(
+        check_match(read_machine(linear("", of_p), "m.json"), r.log),
+        "log.csv: axis q: its drive is of kind velocity in m.json: column q_cmd_V or q_cmd_m_per_s is "
+        "missing");
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSL-1.0
+#include <doctest/doctest.h>
+#include <quadrant/drive/position_loop.hpp>
+#include <quadrant/drive/position_servo.hpp>
+#include <quadrant/drive/set_point_line.hpp>
+
+using namespace quadrant;
+
+TEST_CASE("set_point_line: held set-points are steps, linear ones come one period late, cubic ones two") {
+    for (const auto kind : {interpolation::hold, interpolation::linear, interpolation::cubic}) {
+        const set_point_line<> line(kind);
+        auto s = set_point_line<>::state::at(0);
+        for (int k = 0; k < 8; ++k) line.arrive(s, 3.0 * k); // a ramp of 3 a period
+        const double late = kind == interpolation::hold ? 0 : kind == interpolation::linear ? 1 : 2;
+        for (double p : {0.0, 0.25, 0.9}) {
+            const double along = kind == interpolation::hold ? 0 : p;
+            CHECK(line(s, p) == doctest::Approx(3 * (7 - late + along)));
+            CHECK(line.slope(s, p) == doctest::Approx(kind == interpolation::hold ? 0 : 3));
+        }
+    }
+}
+TEST_CASE("set_point_line: the cubic has no step of position or velocity where a set-point arrives") {
+    const set_point_line<> line(interpolation::cubic);
+    auto s = set_point_line<>::state::at(1);
+    for (double x : {1.0, 4.0, -2.0, 0.5}) line.arrive(s, x);
+    const double end = line(s, 1), slope = line.slope(s, 1);
+    line.arrive(s, 7);
+    CHECK(line(s, 0) == doctest::Approx(end));
+    CHECK(line.slope(s, 0) == doctest::Approx(slope));
+}
+TEST_CASE("velocity_loop: P and I act on the velocity error, and both stop at the limit") {
+    const double h = 1e-4;
+    const velocity_loop<> p({.gain = 50}, h);
+    velocity_loop<>::state s;
+    CHECK(p(s, 0.3, 0.1) == doctest::Approx(10));
+    const velocity_loop<> pi({.gain = 50, .integral = 1000, .limit = 40}, h);
+    auto t = velocity_loop<>::state::at(0);
+    for (int k = 0; k < 100; ++k) pi(t, 0.3, 0.1); // 10 ms of 0.2 m/s
+    CHECK(t.integral == doctest::Approx(1000 * 0.2 * 0.01));
+    double force = 0;
+    for (int k = 0; k < 10000; ++k) force = pi(t, 0.3, 0.1);
+    CHECK(force == 40);
+    CHECK(t.integral == 40);
+}
+TEST_CASE("velocity_loop: its filter passes 1 - 1/e after its time constant") {
+    const double h = 1e-5, corner = 100, tau = 1 / (2 * std::numbers::pi * corner);
+    const velocity_loop<> loop({.gain = 1, .filter_Hz = corner}, h);
+    velocity_loop<>::state s;
+    for (int k = 0; k < static_cast<int>(tau / h); ++k) loop(s, 0, 1);
+    CHECK(s.filtered == doctest::Approx(1 - std::exp(-1)).epsilon(0.01));
+}
+TEST_CASE("position_loop: asks for the velocity of its position error and of the set-points") {
+    const position_loop<> loop({.gain = 20, .velocity_feedforward = 0.5, .velocity = {.gain = 10}}, 1e-3);
+    position_loop<>::state s;
+    CHECK(loop(s, 1.0, 0.4, 0.9, 0.3) == doctest::Approx(10 * (20 * 0.1 + 0.5 * 0.4 - 0.3)));
+}
+TEST_CASE(
+    "position_servo: duty of its error, least and largest duty, and a set-point that is followed at a rate") {
+    const double h = 1e-3;
+    const position_servo<> servo({.gain = 2, .minimum = 0.05, .maximum = 0.8}, h);
+    auto s = position_servo<>::state::at(0);
+    CHECK(servo(s, 0.1, 0) == doctest::Approx(0.25));
+    CHECK(servo(s, -0.1, 0) == doctest::Approx(-0.25));
+    CHECK(servo(s, 0.1, 0.1) == 0);
+    CHECK(servo(s, 3, 0) == 0.8);
+    const position_servo<> slow({.gain = 1, .rate = 0.5}, h);
+    auto t = position_servo<>::state::at(0);
+    for (int k = 0; k < 100; ++k) slow(t, 1, 0);
+    CHECK(t.followed == doctest::Approx(0.05));
+}
+TEST_CASE("drives: what no drive has is refused by name") {
+    CHECK_THROWS_WITH(position_servo<>({.gain = 0}, 1e-3),
+                      "position_servo.gain = 0: must be finite and above 0");
+    CHECK_THROWS_WITH(velocity_loop<>({.gain = -1}, 1e-3),
+                      "velocity_loop.gain = -1: must be finite and not below 0");
+    CHECK_THROWS_WITH(position_loop<>({.gain = 1, .velocity = {.limit = 0}}, 1e-3),
+                      "velocity_loop.limit = 0: must be above 0 (infinite: no limit)");
+}
