@@ -3,9 +3,10 @@
 const dropped = new Map(); // name -> what look or import answered, with the request that read it
 let on_files = () => {};
 
+const axes_of = names => `${names.length > 1 ? 'axes' : 'axis'} ${names.join(', ')}`;
 const known_as = {
-    log: f => `log: ${f.rows} rows, one every ${+(f.period_s * 1e3).toPrecision(4)} ms, ${f.axes.length > 1 ? 'axes' : 'axis'} ${f.axes.map(a => a.name).join(', ')}`,
-    machine: f => `machine file: ${f.axes.length > 1 ? 'axes' : 'axis'} ${f.axes.join(', ')}`,
+    log: f => `log: ${f.rows} rows, one every ${+(f.period_s * 1e3).toPrecision(4)} ms, ${axes_of(f.axes.map(a => a.name))}`,
+    machine: f => `machine file: ${axes_of(f.axes)}`,
     map: () => 'import map',
     table: () => 'a table whose columns have to be named below',
     unreadable: () => 'cannot be read',

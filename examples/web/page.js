@@ -4,7 +4,8 @@ let result = null, running = false;
 
 function choose(select, names, none, preferred) {
     const before = select.value;
-    select.replaceChildren(...(none === undefined ? [] : [make('option', {value: '', textContent: none})]), ...names.map(name => make('option', {value: name, textContent: name})));
+    const first = none === undefined ? [] : [make('option', {value: '', textContent: none})];
+    select.replaceChildren(...first, ...names.map(name => make('option', {value: name, textContent: name})));
     select.value = names.includes(before) ? before : preferred ?? '';
 }
 

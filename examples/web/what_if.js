@@ -41,7 +41,9 @@ function gap_table(title, before, after) {
     const rows = before.flatMap((axis, k) => axis.gap.map(([name, was], r) => make('tr', {},
         make('th', {scope: 'row', textContent: before.length > 1 ? `${axis.axis}: ${name}` : name}),
         make('td', {className: 'was', textContent: was}), make('td', {className: 'now', textContent: after[k].gap[r]?.[1] ?? ''}))));
-    return [make('h3', {textContent: title}), make('table', {}, make('thead', {}, make('tr', {}, ...['Gap', 'machine file', 'with these'].map(textContent => make('th', {scope: 'col', textContent})))), make('tbody', {}, ...rows))];
+    const titles = ['Gap', 'machine file', 'with these'].map(textContent => make('th', {scope: 'col', textContent}));
+    return [make('h3', {textContent: title}),
+        make('table', {}, make('thead', {}, make('tr', {}, ...titles)), make('tbody', {}, ...rows))];
 }
 
 const tint = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
