@@ -148,7 +148,7 @@ inline double by_chance(double left) {
 }
 
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or there; on the
-/// hold-out log, where a gap stays open there, beside what it explains there. A name that makes that one worse was not
+/// hold-out log, where a gap stays open there, beside what it explains here and there. A name that makes that one worse was not
 /// the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
     if (!c.second) return by_chance(doubtful_beside(c, explained_by(c, which)));
@@ -156,9 +156,10 @@ inline double unknown(const axis_case& c, std::size_t which) {
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
-    const double there = between(std::min(before.force, machine), after.force);
-    double out = by_chance(doubtful_beside(c, std::max(explained_by(c, which), there)));
-    if (!c.settled_on_second) out = std::max(out, by_chance(between(after.force, c.floor_force()) / there));
+    const double here = explained_by(c, which), there = between(std::min(before.force, machine), after.force);
+    double out = by_chance(doubtful_beside(c, std::max(here, there)));
+    if (!c.settled_on_second) // the motion there may show it less, but not nothing of it beside an open gap
+        out = std::max(out, by_chance(between(after.force, c.floor_force()) / std::sqrt(here * there)));
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }
