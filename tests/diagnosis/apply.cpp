@@ -230,9 +230,9 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     };
     for (const effect* e : every_effect())
         for (const machine_key& key : e->keys) {
-            if (e->rotary_only) continue;
+            if (e->rotary_only || key.unit_of_command) continue;
+            if (key.box() == "drive") continue; // a kind has some of them: below
             auto& box = x[std::string(key.box())];
-            if (key.unit_of_command) continue;
             if (key.shape == key_shape::number)
                 fill(box, std::string(key.key()), next += 0.001);
             else

@@ -110,6 +110,17 @@ TEST_CASE("velocity drive: another gain of the drive is the drive's") {
     CHECK(value_of(*gain, "drive.velocity_gain_N_s_per_m") == doctest::Approx(m.gain).epsilon(0.05));
     CHECK(d.axes[0].where[0].block == "drive");
 }
+TEST_CASE("write_machine: a drive of each kind is written as it was read") {
+    const std::string all = R"(, "velocity_filter_Hz": 300, "force_limit_N": 900)";
+    const std::string of_steps =
+        R"(, "set_point_period_s": 0.002, "velocity_feedforward": 0.9, "set_point_loss": 0.01)";
+    for (const std::string& text :
+         {linear("", of_pi + all), linear("", of_position + all + of_steps), of_servo}) {
+        const auto asked = nlohmann::json::parse(text)["axes"]["q"]["drive"];
+        const auto written = to_json(read_machine(text, "m.json"))["axes"]["q"]["drive"];
+        CHECK(nlohmann::json::parse(written.dump()) == asked);
+    }
+}
 TEST_CASE("velocity drive: set-points that come late are the drive's delay") {
     auto m = pi_drive;
     m.delay = 4e-3;

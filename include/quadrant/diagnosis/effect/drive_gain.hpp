@@ -61,6 +61,11 @@ inline constexpr effect drive_gain{
                          .tolerance = true}},
     .prior = {0.6, "gains are turned at the drive and the file is not"},
     .remedy = "Read the gains out of the drive, or set them to the values found.",
+    .advice =
+        [](const plant_model&, double, std::string_view) {
+            return std::string("set the drive's gains to the values found: a command cannot make up for a loop "
+                               "that is softer");
+        },
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         std::vector<std::vector<parameter>> out;
         const auto& d = s.leader.drive;

@@ -23,6 +23,11 @@ inline constexpr effect drive_limit{
                          .at = member<&drive_description::maximum_duty>}},
     .prior = {0.2, "limits are set by hand and forgotten"},
     .remedy = "Raise the limit in the drive, or ask for less acceleration.",
+    .advice =
+        [](const plant_model&, double, std::string_view) {
+            return std::string(
+                "a lower acceleration, or a higher limit in the drive: what is cut off cannot be fed forward");
+        },
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double most = detail::most_given(s);
         if (!(most > 0)) return {};
