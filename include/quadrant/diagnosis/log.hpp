@@ -15,13 +15,13 @@ struct driven_motion;
 /// One axis of a servo log: one entry a sample, SI (a rotary axis: rad for m, N m for N).
 struct axis_log {
     std::string name;
-    bool still = false;             ///< neither reference nor position ever changes: a parked axis
+    bool still = false; ///< neither reference nor position ever changes: a parked axis
     /// "V", "A" or "N" ("Nm" of a rotary axis); of a drive with loops of its own also "m_per_s", "rad_per_s", "m", "rad" or "duty";
     /// empty: no command was recorded.
     std::string command_unit = "V";
-    std::vector<double> reference;  ///< position reference [m]
-    std::vector<double> position;   ///< position as the controller read it [m]
-    std::vector<double> command;    ///< controller output of that row, after limit and DAC
+    std::vector<double> reference; ///< position reference [m]
+    std::vector<double> position;  ///< position as the controller read it [m]
+    std::vector<double> command;   ///< controller output of that row, after limit and DAC
     std::vector<double> reference_velocity{}, reference_acceleration{}; ///< empty: differences of the reference
     std::vector<double> velocity{}; ///< as the controller read it [m/s]; empty: differences of the position
     std::vector<double>
@@ -40,9 +40,9 @@ struct axis_log {
     /// controller cannot be replayed then.
     bool as_sampled = true;
     command_origin command_is = command_origin::asked; ///< what the column's name says of it
-    std::vector<double> duty{};    ///< of the drive's bridge, -1 to 1; empty: not recorded
-    std::vector<double> effort{};  ///< measured current, force or torque beside a command; empty: not recorded
-    std::string effort_unit{};     ///< "A", "N" or "Nm"
+    std::vector<double> duty{};                        ///< of the drive's bridge, -1 to 1; empty: not recorded
+    std::vector<double> effort{}; ///< measured current, force or torque beside a command; empty: not recorded
+    std::string effort_unit{};    ///< "A", "N" or "Nm"
     double duty_step = 0, effort_step = 0;
     std::vector<unsigned char> drive_off{}; ///< of each row: 1 where the drive is switched off; empty: never
     /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got, as measured or as the
