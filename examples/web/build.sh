@@ -30,12 +30,12 @@ flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_
 part() { # NAME HEADER...
     name=$1
     shift
-    for header; do printf '#include <quadrant/diagnosis/impl/%s.hpp>\n' "$header"; done >"$build/$name.cpp"
+    for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
 }
 part diagnose diagnose
-part apply apply read_diagnosis read_machine effect_list
-part passes simulate passes
-part controllers controllers
+part apply apply read_diagnosis read_machine effect/effect_list
+part passes simulate fit/predictor
+part controllers controller/kinds
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
 set -- diagnose apply passes controllers binding

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../machine.hpp"
-#include "../read/json_keys.hpp"
+#include "../machine/machine.hpp"
+#include "../text/json_keys.hpp"
 #include "running.hpp"
 
 #include <array>
@@ -48,7 +48,7 @@ class given_values;
 
 /// A kind of controller: all that is known of it, once. Reader and writer of machine files, their schema, the
 /// replay, the search of the key that differs, the simulation of the closed loop, what `compensate` may set and
-/// quadrant-cnc follow from it. A new kind is a file beside this one and a line in impl/controllers.hpp:
+/// quadrant-cnc follow from it. A new kind is a file beside this one and a line in kinds.ipp:
 /// docs/howto/add_a_controller_kind.md.
 struct controller_kind {
     std::string_view name, label; ///< in files; in words

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""usage: rooms.py ROOT: no header includes itself by a detour, and the rooms of the diagnosis stand in order.
+
+The order is the table under "Rooms of the diagnosis" in docs/CONTRIBUTING.md: a room includes itself and rooms above it
+in the table. The calls in the folder itself include any room, and no room includes a call.
+"""
+import os
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1])
+include = root / "include"
+headers = sorted(p for p in (include / "quadrant").rglob("*") if p.suffix in (".hpp", ".ipp"))
+faults = []
+
+
+def included_by(header):
+    text = header.read_text()
+    for name in re.findall(r'^\s*#\s*include "([^"]+)"', text, re.M):
+        yield pathlib.Path(os.path.normpath(header.parent / name))
+    for name in re.findall(r"^\s*#\s*include <(quadrant/[^>]+)>", text, re.M):
+        yield include / name
+
+
+graph = {header: list(included_by(header)) for header in headers}
+for header, targets in graph.items():
+    faults += [f"{header}: includes {t}, which is not there" for t in targets if t not in graph]
+
+done, path = set(), []
+
+
+def visit(header):
+    if header in path:
+        faults.append("cycle: " + " -> ".join(p.name for p in path[path.index(header):] + [header]))
+    elif header not in done:
+        path.append(header)
+        for target in graph.get(header, []):
+            visit(target)
+        path.pop()
+        done.add(header)
+
+
+sys.setrecursionlimit(10 * len(headers) + 1000)
+for header in headers:
+    visit(header)
+
+page = (root / "docs/CONTRIBUTING.md").read_text()
+section = page.split("## Rooms of the diagnosis")[1].split("\n## ")[0]
+order = re.findall(r"^\| `([a-z_]+)/` \|", section, re.M)
+top = include / "quadrant/diagnosis"
+rooms = {p.name for p in top.iterdir() if p.is_dir()}
+if rooms != set(order):
+    faults.append(f"docs/CONTRIBUTING.md lists {sorted(order)}, the folder holds {sorted(rooms)}")
+
+
+def room(header):
+    inside = header.relative_to(top).parts
+    return inside[0] if len(inside) > 1 else None
+
+
+for header, targets in graph.items():
+    if not header.is_relative_to(top) or room(header) not in order:
+        continue
+    for target in targets:
+        if not target.is_relative_to(top):
+            continue
+        if room(target) is None:
+            faults.append(f"{header.relative_to(top)} includes the call {target.name}")
+        elif order.index(room(target)) > order.index(room(header)):
+            faults.append(f"{header.relative_to(top)} includes {target.relative_to(top)}, a room further down")
+
+for fault in faults:
+    print(fault)
+if not headers or not order:
+    sys.exit("nothing was looked at")
+print(f"{len(headers)} headers, {len(order)} rooms, {len(faults)} faults")
+sys.exit(1 if faults else 0)
