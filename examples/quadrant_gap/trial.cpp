@@ -25,7 +25,7 @@ using quadrant_programs::for_each_index;
 struct trial_options {
     std::size_t machines = 200;
     std::uint64_t seed = 1;
-    std::string json, report, keep, program;
+    std::string json, report, keep, program, how = "plain";
     std::vector<std::size_t> only;
     unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
     double limit_s = 300;
@@ -102,7 +102,7 @@ void run_trial(trial_options o) {
     outputs files;
     check_folders(o, files);
     if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
-    const auto planned_machines = plan(o.seed, o.machines);
+    const auto planned_machines = plan(o.seed, o.machines, *logs_named(o.how));
     std::vector<std::size_t> chosen(o.machines);
     for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
     if (!o.only.empty()) chosen = o.only;
@@ -148,6 +148,7 @@ void run_trial(trial_options o) {
     ordered_json result{{"schema", "quadrant.trial/1"},
                         {"seed", o.seed},
                         {"machines", chosen.size()},
+                        {"logs", o.how},
                         {"truth_sha256", digest}};
     result.update(tally(judged));
     const std::string text = summary_text(result);
@@ -166,6 +167,10 @@ void add_trial(CLI::App& app) {
     command->add_option("--machines", o->machines, "how many")->check(CLI::Range(1, 100000));
     command->add_option("--seed", o->seed, "another seed, another population; the same seed, the same result")
         ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--logs", o->how,
+                     "how the machines are logged: plain, coarse, measured, gaps, jitter, no_reference")
+        ->check(CLI::IsMember(std::vector<std::string>(names_of_logs.begin(), names_of_logs.end())));
     command->add_option("--only", o->only, "of that population, these machines alone")
         ->delimiter(',')
         ->check(CLI::NonNegativeNumber);

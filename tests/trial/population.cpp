@@ -48,7 +48,7 @@ TEST_CASE("population: the same seed gives the same files, byte for byte; anothe
     const planned p{kind::single, {"cogging"}, false, false};
     const drawn_machine a = draw(3, 4, p), b = draw(3, 4, p), c = draw(4, 4, p);
     const auto log = [](const drawn_machine& m) {
-        return log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed));
+        return log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed);
     };
     CHECK(machine_file(a).dump() == machine_file(b).dump());
     CHECK(truth_of(a).dump() == truth_of(b).dump());
@@ -66,7 +66,7 @@ TEST_CASE("population: the files are read without complaint, and say nothing of 
         CHECK(file.find("cogging_N") == std::string::npos);
         CHECK(file.find("cyclic") == std::string::npos);
         const auto machine = quadrant::diagnosis::read_machine(file, "machine.json");
-        const auto text = log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed));
+        const auto text = log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed);
         std::istringstream stream(text);
         const auto log = quadrant::diagnosis::read_log(stream, "log.csv");
         CHECK_NOTHROW(quadrant::diagnosis::check_match(machine, log));
@@ -100,4 +100,40 @@ TEST_CASE(
         ++tried;
     }
     CHECK(tried > 0);
+}
+
+TEST_CASE("population: logs of every kind are read without complaint, and are of their kind") {
+    for (std::size_t n = 0; n < names_of_logs.size(); ++n) {
+        const auto how = static_cast<logs>(n);
+        CAPTURE(names_of_logs[n]);
+        const drawn_machine m = draw(17, 3, {kind::none, {}, false, false, how});
+        const auto text = log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed);
+        const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(2), "machine.json");
+        std::istringstream stream(text);
+        const auto log = quadrant::diagnosis::read_log(stream, "log.csv");
+        CHECK_NOTHROW(quadrant::diagnosis::check_match(machine, log));
+        const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) - 1;
+        CHECK((rows < m.log_reference[0].size()) == (how == logs::gaps));
+        CHECK((machine.axes[0].encoder.resolution_m > 0.99e-6) == (how == logs::coarse));
+        CHECK((machine.axes[0].actuator.command_is == quadrant::diagnosis::command_origin::measured) ==
+              (how == logs::measured));
+        CHECK(log.axes[0].has_reference == (how != logs::no_reference));
+        std::set<std::string> steps; // of the first rows' stamps
+        std::istringstream again(text);
+        std::string line;
+        std::getline(again, line);
+        for (double before = -1; steps.size() < 3 && std::getline(again, line);) {
+            const double t = std::stod(line);
+            if (before >= 0 && how != logs::gaps) steps.insert(fmt::format("{:.6f}", t - before));
+            before = t;
+        }
+        CHECK((steps.size() == 3) == (how == logs::jitter));
+    }
+}
+
+TEST_CASE("plan: logs that cannot show an effect do not hold it") {
+    for (const planned& p : plan(3, 100, logs::measured))
+        for (const std::string& e : p.effects) CHECK(shows(logs::measured, *effect_named(e)));
+    for (const planned& p : plan(3, 100, logs::no_reference))
+        for (const std::string& e : p.effects) CHECK(e != "controller_mismatch");
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../page/progress.hpp"
 #include "page.hpp"
 #include "pool.hpp"
 
@@ -9,13 +10,6 @@
 
 /// What is done, what is to do, and how long it takes.
 namespace quadrant_gap::fleet {
-
-/// "45 s", "12 min", "3.2 h".
-inline std::string duration(double s) {
-    return s < 90     ? fmt::format("{:.0f} s", s)
-           : s < 5400 ? fmt::format("{:.0f} min", s / 60)
-                      : fmt::format("{:.1f} h", s / 3600);
-}
 
 class work_list {
 public:
@@ -61,7 +55,8 @@ public:
         std::string text = fmt::format("{:.0f} %: {} done, {} failed, {} left",
                                        left_ == 0 ? 100 : 100 * bytes_done_ / (bytes_done_ + bytes_left_),
                                        done_before_ + done_, failed_before_ + failed_, left_);
-        if (bytes_done_ > 0 && left_ > 0) text += ", about " + duration(seconds * bytes_left_ / bytes_done_);
+        if (bytes_done_ > 0 && left_ > 0)
+            text += ", about " + quadrant_page::about(seconds * bytes_left_ / bytes_done_);
         return text;
     }
 

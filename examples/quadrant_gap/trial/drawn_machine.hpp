@@ -20,6 +20,7 @@ struct drawn_effect {
 struct drawn_machine {
     std::size_t index = 0;
     kind what = kind::none;
+    logs how = logs::plain;
     double period = 0.0005;
     std::vector<axis_truth> truth, described; ///< axis by axis; effects are on the first
     tolerances tolerance;

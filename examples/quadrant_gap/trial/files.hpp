@@ -20,7 +20,7 @@ inline ordered_json machine_file(const drawn_machine& m) {
         ordered_json plant{{"mass_kg", a.mechanics.mass},
                            {"force_constant_N_per_V", a.actuator.force_constant},
                            {"viscous_N_s_per_m", a.friction.viscous},
-                           {"delay_s", a.actuator.delay}};
+                           {"delay_s", m.how == logs::measured ? 0 : a.actuator.delay}};
         if (a.friction.coulomb > 0) plant["coulomb_N"] = a.friction.coulomb;
         if (a.friction.level_at_rest > 0) {
             plant["static_N"] = a.friction.level_at_rest;
@@ -32,6 +32,7 @@ inline ordered_json machine_file(const drawn_machine& m) {
             drive["dac_bits"] = a.controller.dac_bits;
             drive["dac_range_V"] = a.controller.dac_range;
         }
+        if (m.how == logs::measured) drive["command_is"] = "measured";
         const controller_truth& c = a.controller;
         ordered_json control{{"kind", "cascade_p_pi"},
                              {"position_gain_per_s", c.position_gain},
@@ -64,18 +65,30 @@ inline ordered_json machine_file(const drawn_machine& m) {
 }
 
 /// Columns of all axes, rounded as servo loggers round.
-inline std::string log_file(const drawn_machine& m, const std::vector<axis_record>& axes) {
+inline std::string log_file(const drawn_machine& m, const std::vector<axis_record>& axes, std::uint64_t seed) {
     const int time_digits = m.period < 2e-4 ? 6 : 5;
+    dice random(seed, 11);
+    const auto kept = rows_kept(m.how, axes[0].position.size(), m.period, dice(seed, 12));
+    const bool with_reference = m.how != logs::no_reference;
     std::string out = "t_s";
-    for (const axis_truth& a : m.described) out += fmt::format(",{0}_ref_m,{0}_pos_m,{0}_cmd_V", a.name);
+    for (const axis_truth& a : m.described)
+        out += fmt::format("{1}{0}_pos_m,{0}_cmd_V", a.name,
+                           with_reference ? fmt::format(",{}_ref_m,", a.name) : ",");
     out += '\n';
     char text[128];
     for (std::size_t k = 0; k < axes[0].position.size(); ++k) {
-        std::snprintf(text, sizeof text, "%.*f", time_digits, static_cast<double>(k) * m.period);
+        if (!kept[k]) continue;
+        const double off = m.how == logs::jitter && k > 0 ? m.period * random.uniform(-0.2, 0.2) : 0;
+        std::snprintf(text, sizeof text, "%.*f", off == 0 ? time_digits : 7,
+                      static_cast<double>(k) * m.period + off);
         out += text;
         for (const axis_record& a : axes) {
-            std::snprintf(text, sizeof text, ",%.12f,%.9f,%.6f", a.reference[k], a.position[k], a.command[k]);
-            out += text;
+            if (with_reference) out += fmt::format(",{:.12f}", a.reference[k]);
+            const double command =
+                m.how != logs::measured
+                    ? a.command[k]
+                    : a.acting[k] + 0.002 * m.described[0].controller.limit * random.normal();
+            out += fmt::format(",{:.9f},{:.6f}", a.position[k], command);
         }
         out += '\n';
     }
@@ -104,9 +117,10 @@ inline std::string motion_file(const drawn_machine& m, const std::vector<std::ve
 /// machine.json, log.csv, holdout.csv and the motion of the latter, planned.csv, into a folder.
 inline void write_files(const drawn_machine& m, const std::filesystem::path& folder) {
     write_file(folder / "machine.json", machine_file(m).dump(2) + "\n");
-    write_file(folder / "log.csv", log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed)));
+    write_file(folder / "log.csv",
+               log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed));
     write_file(folder / "holdout.csv",
-               log_file(m, run(m.truth, m.holdout_reference, m.period, m.noise_seed + 1)));
+               log_file(m, run(m.truth, m.holdout_reference, m.period, m.noise_seed + 1), m.noise_seed + 1));
     write_file(folder / "planned.csv", motion_file(m, m.holdout_reference));
 }
 
@@ -121,6 +135,7 @@ inline ordered_json truth_of(const drawn_machine& m) {
             {"cloud_N", m.cloud},
             {"sample_period_s", m.period},
             {"rows", m.log_reference[0].size()},
+            {"logs", names_of_logs[static_cast<std::size_t>(m.how)]},
             {"axes", m.described.size()},
             {"law", static_cast<int>(m.truth[0].friction.law)}};
 }

@@ -94,6 +94,7 @@ private:
 
 struct axis_record {
     std::vector<double> reference, position, command;
+    std::vector<double> acting{}; ///< mean command behind the amplifier, over the period that follows the row
 };
 
 /// Log without rounding and noise: what the equations alone make of a motion.
@@ -137,6 +138,7 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
             all[i].drive.command(u);
             out[i].position.push_back(y);
             out[i].command.push_back(u);
+            out[i].acting.push_back(0);
             if (!(std::abs(y) < farthest)) {
                 out[i].position.back() = std::nan("");
                 return out;
@@ -148,6 +150,7 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                 const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
                 one& a = all[i];
                 double acting = a.drive.acting(t, h);
+                out[i].acting.back() += acting / static_cast<double>(fine);
                 const auto law = [&](joint where) { return a.laws(where, a.body, acting, t, h); };
                 acting += law(joint::command);
                 const double motor =

@@ -133,15 +133,16 @@ inline std::string page(const ordered_json& t) {
         pictures += detail::figure(p, number++, can_draw);
     return quadrant_page::document(
         "Trial of the diagnosis", style,
-        fmt::format("<header><p class=\"kind\">quadrant-gap trial</p><h1>{} machines drawn with seed {}</h1>"
-                    "<p class=\"kind\">SHA-256 of the truth, printed before the first diagnosis: "
-                    "{}</p></header>\n<main>\n"
-                    "<section><h2>Figures</h2>{}</section>\n<section class=\"pair\">{}</section>\n"
-                    "<section><h2>Confusion</h2>{}</section>\n<section><h2>Not "
-                    "right</h2>{}</section>\n</main>\n",
-                    t.at("machines").get<int>(), t.at("seed").get<std::uint64_t>(),
-                    t.at("truth_sha256").get<std::string>(), detail::figures(t), pictures, detail::confusion(t),
-                    detail::cases(t)));
+        fmt::format(
+            "<header><p class=\"kind\">quadrant-gap trial</p><h1>{} machines drawn with seed {}, {} logs</h1>"
+            "<p class=\"kind\">SHA-256 of the truth, printed before the first diagnosis: "
+            "{}</p></header>\n<main>\n"
+            "<section><h2>Figures</h2>{}</section>\n<section class=\"pair\">{}</section>\n"
+            "<section><h2>Confusion</h2>{}</section>\n<section><h2>Not "
+            "right</h2>{}</section>\n</main>\n",
+            t.at("machines").get<int>(), t.at("seed").get<std::uint64_t>(), t.at("logs").get<std::string>(),
+            t.at("truth_sha256").get<std::string>(), detail::figures(t), pictures, detail::confusion(t),
+            detail::cases(t)));
 }
 
 } // namespace quadrant_gap::trial

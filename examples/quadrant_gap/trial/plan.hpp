@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "effects.hpp"
+#include "logs.hpp"
 
 #include <string>
 
@@ -29,6 +30,7 @@ struct planned {
     kind what = kind::none;
     std::vector<std::string> effects{};
     bool two_axes = false, slow_only = false;
+    logs how = logs::plain;
 };
 
 /// Names that one log can hardly tell apart: never both in one machine.
@@ -55,14 +57,14 @@ inline bool has_a_twin(std::string_view effect) {
 /// Of every 20 machines: 6 without an effect (one with slow strokes only), 6 with one, 3 with two, 2 with something that is in no
 /// list, 2 with an effect that the machine file excludes from the candidates, 1 with slow strokes only. One in ten has two axes, and
 /// all with cross-coupling.
-inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
+inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, logs how = logs::plain) {
     using enum kind;
     dice random(seed, 1);
     std::vector<std::string> turn, slow_turn, removed_turn;
     const auto next = [&](std::vector<std::string>& bag, auto&& may) {
         if (bag.empty()) {
             for (const auto* e : withheld_effects())
-                if (may(*e)) bag.emplace_back(e->name);
+                if (shows(how, *e) && may(*e)) bag.emplace_back(e->name);
             random.shuffle(bag);
         }
         std::string out = bag.back();
@@ -76,7 +78,7 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
         random.shuffle(twenty);
         bool slow_none = true;
         for (const kind k : twenty) {
-            planned p{k, {}, random.chance(0.1), k == poor};
+            planned p{k, {}, random.chance(0.1), k == poor, how};
             if (k == none && slow_none) slow_none = false, p.slow_only = true;
             if (k == single) p.effects = {next(turn, [](const auto&) { return true; })};
             if (k == poor) p.effects = {next(slow_turn, [](const auto& e) { return e.trial.slow_shows_it; })};
@@ -84,7 +86,8 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines) {
                 p.effects = {next(removed_turn, [](const auto& e) { return !has_a_twin(e.name); })};
             if (k == pair) {
                 std::vector<std::string> all;
-                for (const auto* e : withheld_effects()) all.emplace_back(e->name);
+                for (const auto* e : withheld_effects())
+                    if (shows(how, *e)) all.emplace_back(e->name);
                 p.effects = {random.one_of(all)};
                 while (p.effects.size() < 2)
                     if (const std::string& other = random.one_of(all); !near_relatives(other, p.effects[0]))

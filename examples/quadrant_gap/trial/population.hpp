@@ -53,6 +53,7 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         drawn_machine m;
         m.index = index;
         m.what = p.what;
+        m.how = p.how;
         m.noise_seed = own;
         m.period = random.one_of(
             std::vector<double>{0.000125, 0.00025, 0.00025, 0.0004, 0.0005, 0.0005, 0.0005, 0.001, 0.002});
@@ -63,6 +64,8 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
             *t = std::round(*t * 1000) / 1000;
         for (int n = 0; n < (p.two_axes ? 2 : 1); ++n)
             m.described.push_back(detail::drawn_axis(m.period, n == 0 ? "x" : "y", random));
+        if (m.how == logs::coarse)
+            for (axis_truth& a : m.described) make_coarse(a, m.period, random);
         bool needs_coulomb = false;
         for (const std::string& e : p.effects)
             needs_coulomb = needs_coulomb || effect_named(e)->trial.needs_coulomb;
@@ -102,6 +105,7 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         if (p.what == kind::unknown)
             detail::put_in(
                 m, "unknown", 1e-3, 1, [](insertion& i) { put_stranger(i); }, random.log_uniform(4, 15), own);
+        if (m.how == logs::measured && m.truth[0].actuator.slew > 0) continue; // it is in the column already
         std::uint64_t stream = own;
         for (const std::string& e : p.effects) {
             const auto& w = effect_named(e)->trial;

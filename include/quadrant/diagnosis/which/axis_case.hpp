@@ -112,10 +112,7 @@ public:
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
-    double floor_force() const {
-        return residual_force_floor(axis.plant.mass_kg, noise, record.period, record.bandwidth_Hz,
-                                    record.reaction);
-    }
+    double floor_force() const { return models.floor_force(noise); }
     /// The described controller with the found key mended.
     controller_description mended() const {
         controller_description c = *axis.controller;

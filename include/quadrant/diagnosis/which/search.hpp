@@ -231,8 +231,9 @@ public:
     }
 
     /// The residual force that noise and rounding alone leave [N].
-    double floor_force(const candidate& c) const {
-        return residual_force_floor(axis_.plant.mass_kg, noise(c), record_.period, record_.bandwidth_Hz,
+    double floor_force(const candidate& c) const { return floor_force(noise(c)); }
+    double floor_force(double noise) const {
+        return residual_force_floor(axis_.plant.mass_kg, noise, record_.period, record_.bandwidth_Hz,
                                     record_.reaction);
     }
 
