@@ -20,6 +20,7 @@ namespace {
 struct diagnose_options {
     std::string machine, log, holdout, json, report, next_motion;
     std::size_t threads = 0;
+    double seconds = 0; ///< 0: as long as it takes
     bool fast = false;
     terminal say;
 };
@@ -27,6 +28,10 @@ struct diagnose_options {
 rules chosen(const diagnose_options& o) {
     rules r = o.fast ? fast_rules() : rules{};
     r.threads = o.threads;
+    if (o.seconds > 0) {
+        const auto left = std::chrono::duration<double>(o.seconds);
+        r.until = rules::clock::now() + std::chrono::duration_cast<rules::clock::duration>(left);
+    }
     return r;
 }
 
@@ -80,6 +85,10 @@ void add_diagnose(CLI::App& app) {
         ->add_option("--threads", o->threads, "at most; 0: as many as there are cores. The answer is the same")
         ->check(CLI::Range(0, 4096));
     command->add_flag("--fast", o->fast, "fewer models tried: half of the time, the same judgement at the end");
+    command
+        ->add_option("--seconds", o->seconds,
+                     "end the search after this time with what it has, and say what was not tried")
+        ->check(CLI::Range(1e-3, 1e6));
     add_terminal_options(*command, o->say, "every model tried, with its gain; and what this log cannot see");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }

@@ -259,9 +259,9 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
                                           : fmt::format("; the nearest suspect is {} (probability {})",
                                                         claim(*suspect), probability(suspect->probability));
         return fmt::format(
-            "No known effect explains the gap of axis {}: {} of force remain where sensor noise and "
-            "rounding leave {}{}.",
-            a.name, before, floor, hint);
+            "{} the gap of axis {}: {} of force remain where sensor noise and rounding leave {}{}.",
+            a.cut ? "The time was up before a known effect explained" : "No known effect explains", a.name,
+            before, floor, hint);
     }
     const auto are = [](const auto& names) { return names.size() > 1 ? "are" : "is"; };
     std::string what;

@@ -54,6 +54,38 @@ TEST_CASE("diagnose: another controller, by replay, with its key") {
     abstains(diagnosed(excluding, real));
 }
 
+TEST_CASE("diagnose: a command measured behind the amplifier is not held against the controller") {
+    machine real;
+    auto file = described(real);
+    file.axes[0].actuator.command_is = quadrant::diagnosis::command_origin::measured;
+    real.control.position_gain = 88;
+    const auto d = diagnosed(file, real);
+    CHECK(d.causes.empty());
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("nothing is said of the controller") != std::string::npos;
+    }));
+}
+TEST_CASE("diagnose: when the time is up it says what it did not try, and is less sure") {
+    machine real;
+    auto file = described(real);
+    file.axes[0].plant.coulomb_N.reset();
+    quadrant::diagnosis::rules at_once;
+    at_once.until = quadrant::diagnosis::rules::clock::now();
+    const auto log = as_log(run(real));
+    const auto d = diagnose(
+        file, log, nullptr, [](const std::string&) {}, at_once);
+    CHECK(d.axes[0].cut);
+    CHECK(d.axes[0].gap.force_rms_N > 1);
+    for (const cause& c : d.causes) CHECK(c.probability < 0.6);
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("not tried beside what was found") != std::string::npos &&
+               note.find("Coulomb friction") != std::string::npos;
+    }));
+    const auto whole = diagnose(file, log);
+    CHECK_FALSE(whole.axes[0].cut);
+    CHECK(whole.causes.at(0).effect == "coulomb_friction");
+}
+
 TEST_CASE("diagnose: two effects, one found on top of the other") {
     machine real;
     auto file = described(real);

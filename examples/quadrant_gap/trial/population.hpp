@@ -43,6 +43,11 @@ void put_in(drawn_machine& m, const std::string& name, double low, double high, 
     m.effects.push_back({name, found, i.parameters});
 }
 
+inline double travel(const std::vector<double>& position) {
+    const auto [low, high] = std::minmax_element(position.begin(), position.end());
+    return *high - *low;
+}
+
 } // namespace detail
 
 /// Machine `index` of the trial with this seed: the same whatever else is drawn.
@@ -130,6 +135,7 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         for (const auto* references : {&m.log_reference, &m.holdout_reference})
             for (const axis_record& r : trial::run(m.truth, *references, m.period, own))
                 stays = stays && !std::isnan(r.position.back()) &&
+                        detail::travel(r.position) > 20 * m.described[0].encoder.resolution &&
                         std::abs(r.position.back() - r.reference.back()) < 0.02;
         if (stays) return m;
     }

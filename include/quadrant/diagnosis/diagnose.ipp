@@ -70,8 +70,10 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
                          [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
-        const auto with_form =
-            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+        std::vector<candidate> with_form;
+        if (!c.models.over())
+            with_form = c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()},
+                                            c.limits.forms);
         for (std::size_t i = 0; i < with_form.size(); ++i)
             if (const double share = c.takes_off(with_form[i], c.best());
                 share > 0.5 && c.models.pays(with_form[i], c.best()))
@@ -127,6 +129,18 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
                        result.name.c_str(), p.key.c_str()));
 }
 
+/// What the search did not come to before its time was up.
+inline void note_missed(diagnosis_result& out, const axis_case& c) {
+    if (!c.models.over()) return;
+    std::string names;
+    for (const effect* e : c.models.suspects())
+        if (c.models.missed().contains(e)) names += (names.empty() ? "" : ", ") + std::string(e->label);
+    const std::string what = !names.empty()   ? "not tried beside what was found: " + names
+                             : c.models.cut() ? "a further cause may be missing"
+                                              : "no motion was searched for that would tell more";
+    out.notes.push_back(worded("axis %s: the time was up: %s.", c.axis.name.c_str(), what.c_str()));
+}
+
 inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     axis_result result;
     result.name = c.axis.name;
@@ -161,6 +175,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
     result.verdict = judge(c, causes);
+    result.cut = c.models.cut() || !c.models.missed().empty();
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
     result.where.insert(result.where.end(), views.begin(), views.end());
@@ -174,12 +189,13 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     put_in_words(result.kind, result.calibrated_with_suspects);
     put_in_words(result.kind, causes);
     note_bounds(out, result);
+    note_missed(out, c);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
-        if (!c.axis.drive.closes()) propose(out, c, causes, rivals);
+        if (!c.axis.drive.closes() && !c.models.over()) propose(out, c, causes, rivals);
         if (!proposed) {
             out.next.motion = text_of(out.next.motion, c.axis.kind);
             out.next.finding = text_of(out.next.finding, c.axis.kind);
@@ -188,6 +204,15 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     const auto unseen = unseen_by(result, causes);
     out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
     out.axes.push_back(std::move(result));
+}
+
+/// The rules with this axis' share of the time that is left for `axes`.
+inline rules for_one_of(rules r, std::ptrdiff_t axes) {
+    if (r.until != rules::clock::time_point::max()) {
+        const auto now = rules::clock::now();
+        r.until = now + (r.until - now) / axes;
+    }
+    return r;
 }
 
 /// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
@@ -233,9 +258,19 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
     out.notes = machine.notes;
     out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     if (holdout) out.notes.insert(out.notes.end(), holdout->notes.begin(), holdout->notes.end());
-    for (const axis_description& axis : machine.axes) {
+    auto axes_left = std::count_if(machine.axes.begin(), machine.axes.end(), [&](const axis_description& axis) {
+        const axis_log* logged = detail::named(log.axes, axis.name);
+        return logged && !logged->still;
+    });
+    for (axis_description axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
+        if (logged->command_is == command_origin::measured) axis.actuator.command_is = command_origin::measured;
+        if (axis.controller && !axis.drive.closes() && axis.actuator.command_is == command_origin::measured)
+            out.notes.push_back(
+                detail::worded("axis %s: the command was measured behind the amplifier; what the controller "
+                               "asked for is not in the log, and nothing is said of the controller.",
+                               axis.name.c_str()));
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
         const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
@@ -248,7 +283,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
         axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s, machine.excluded_effects,
-                    r, tell);
+                    detail::for_one_of(r, axes_left--), tell);
         detail::diagnose_axis(out, detail::need_blocks(c, log.file));
     }
     return out;

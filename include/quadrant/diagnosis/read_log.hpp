@@ -150,11 +150,15 @@ private:
         auto& position = header_.columns[*at.position];
         log_column* command = at.command ? &header_.columns[*at.command] : nullptr;
         log_column* reference = at.reference ? &header_.columns[*at.reference] : nullptr;
-        const bool still = is_constant(position.values) && (!reference || is_constant(reference->values));
-        if (still && header_.axes.size() == 1)
-            throw bad_input(file_, fmt::format("axis {} does not move: {}{} never change{}", name,
-                                               reference ? reference->name + " and " : "", position.name,
-                                               reference ? "" : "s"));
+        const bool still = is_constant(position.values);
+        if (still && header_.axes.size() == 1) {
+            const bool asked = reference && !is_constant(reference->values);
+            throw bad_input(file_,
+                            fmt::format("axis {} does not move: {} never changes{}", name, position.name,
+                                        asked ? " although " + reference->name +
+                                                    " does: is the drive on, the brake open, the encoder read?"
+                                              : ""));
+        }
         const auto tell = [&](const std::string& text) {
             out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
         };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -25,6 +26,10 @@ struct rules {
     int first_look = 2;       ///< steps from each start
     bool near_rivals = false; ///< a cause's rivals are only those that gained something where it was found
     std::size_t forms = 4;    ///< of the forms without a name that are fitted to the end
+    /// When the search ends with what it has; the names that it did not come to are told, and count against what it has.
+    /// With such an end the result depends on how fast the computer is.
+    using clock = std::chrono::steady_clock;
+    clock::time_point until = clock::time_point::max();
 };
 
 /// Some half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to the end, fewer

@@ -118,6 +118,7 @@ struct axis_result {
     axis_signals signals;
     axis_kind kind = axis_kind::linear;
     std::string command_unit = "V"; ///< of the command gaps
+    bool cut = false;               ///< the time was up before the search had ended (rules::until)
     bool driven = false; ///< its drive closes loops of its own: a box between controller and actuator
 };
 

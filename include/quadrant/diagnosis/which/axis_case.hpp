@@ -28,7 +28,9 @@ public:
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
         // A velocity drive's controller commands set-points; how far a difference there moves the axis no force tells.
-        if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes())
+        // What was measured behind an amplifier is not what the controller asked for.
+        if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
+            axis.actuator.command_is == command_origin::asked)
             controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                           coarse() ? count : axis.encoder.resolution_m);
         if (controller && is_excluded("added_command")) controller->added.reset();

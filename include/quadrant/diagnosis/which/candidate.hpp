@@ -24,6 +24,7 @@ struct candidate {
     std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();
     /// White noise of the position as it sees it [m], likewise.
     std::shared_ptr<std::optional<double>> noise = std::make_shared<std::optional<double>>();
+    bool missed = false; ///< the time was up before it was looked at
 };
 
 inline constexpr std::size_t folds = 5;

@@ -82,13 +82,13 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met.
-                if (!may_be_one(*e, *own)) continue;
+                if (!may_be_one(*e, *own) || c.models.over()) continue;
                 if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
                     out.back().model = std::move(again);
             }
     // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and beside it the name is no
     // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
-    if (!c.settled) {
+    if (!c.settled && !c.models.over()) {
         const auto models =
             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
@@ -118,6 +118,13 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
         sum += r.weight;
     }
+    // A name that the search did not come to may be as good as the cause itself, as often as it is as common.
+    double all = 0, missed = 0;
+    for (const effect* e : c.models.suspects()) {
+        all += e->prior.odds;
+        if (c.models.missed().contains(e)) missed += e->prior.odds;
+    }
+    if (missed > 0) sum += out.front().weight * missed / all;
     for (auto& r : out) r.weight /= sum;
     return out;
 }

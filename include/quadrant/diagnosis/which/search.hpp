@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 #include <random>
+#include <set>
 
 namespace quadrant::diagnosis {
 
@@ -75,6 +76,7 @@ public:
     std::vector<candidate> with_each(const candidate& from, const std::vector<const effect*>& among) const {
         std::vector<candidate> out;
         std::vector<std::size_t> rank; // of those that were not met before
+        const may_stop here(*this);
         for (const effect* e : among) {
             if (has(from, e)) continue;
             const candidate* known = tried(from, e);
@@ -84,12 +86,22 @@ public:
         sketch_each(from, rank, out);
         finish_best(rank, rules_.finalists, out);
         for (std::size_t i : rank) {
+            if (out[i].missed) {
+                missed_.insert(out[i].effects.back());
+                continue;
+            }
             tell_(describe(out[i]));
             tried_.push_back(out[i]);
         }
         std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
         return out;
     }
+    /// Whether the time is up (rules.until).
+    bool over() const { return rules::clock::now() >= rules_.until; }
+    /// Whether run() ended because the time was up.
+    bool cut() const { return cut_; }
+    /// Suspects that the search did not come to before the time was up.
+    const std::set<const effect*>& missed() const { return missed_; }
     candidate with(const candidate& from, const effect* added) const {
         return with_these(from, {added}).front();
     }
@@ -290,7 +302,7 @@ public:
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
-        while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
+        while (best.effects.size() < rules_.most_causes && !at_noise(best) && !over() &&
                (best.effects.empty() || !near_floor(best) || !settled(best))) {
             std::vector<candidate> next;
             const auto add = [&](std::vector<candidate> some) {
@@ -304,7 +316,7 @@ public:
                 continue;
             }
             const candidate* step = paying(next, best);
-            if (best.effects.empty() && !(step && (at_noise(*step) || near_floor(*step)))) {
+            if (best.effects.empty() && !over() && !(step && (at_noise(*step) || near_floor(*step)))) {
                 add(everyday());
                 step = paying(next, best);
             }
@@ -319,13 +331,13 @@ public:
                 best = chosen;
                 continue;
             }
-            if (!best.effects.empty() || immaterial(best)) break;
+            if (!best.effects.empty() || immaterial(best) || over()) break;
             // What two effects do to the force may cancel: then neither pays alone.
             const std::vector<candidate> single(
                 next.begin(),
                 next.begin() + static_cast<std::ptrdiff_t>(std::min(rules_.in_pairs, next.size())));
             next.clear();
-            for (std::size_t i = 0; i < single.size(); ++i) {
+            for (std::size_t i = 0; i < single.size() && !over(); ++i) {
                 std::vector<const effect*> others;
                 for (std::size_t j = i + 1; j < single.size(); ++j)
                     if (!has(single[i], single[j].effects.back())) others.push_back(single[j].effects.back());
@@ -336,6 +348,7 @@ public:
             best = *step;
             beam.assign(1, best);
         }
+        cut_ = over();
         // What does not take the gap of the machine file as it stands down explains nothing, however well it scores.
         if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
         return path_to(best);
@@ -427,6 +440,17 @@ private:
         if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
         return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
     }
+    /// As long as it lives, what is computed may be left out.
+    class may_stop {
+    public:
+        explicit may_stop(const search& s) : search_(s) { search_.stoppable_ = true; }
+        ~may_stop() { search_.stoppable_ = false; }
+        may_stop(const may_stop&) = delete;
+        may_stop& operator=(const may_stop&) = delete;
+
+    private:
+        const search& search_;
+    };
     /// Moves the numbers of a model to those of another plant, where the fit goes on.
     static void begin_at(candidate& c, plant_model known) {
         for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
@@ -520,6 +544,12 @@ private:
         fit.evaluate(here);
         const auto slopes = fit.slopes(here);
         in_groups(which, 4, [&](std::span<const std::size_t> some) {
+            const bool late = stoppable_ && over();
+            for (const std::size_t i : some) {
+                models[i].total = -std::numeric_limits<double>::infinity();
+                models[i].missed = late;
+            }
+            if (late) return;
             std::vector<first_look> looks;
             std::vector<fit_course> courses;
             for (const std::size_t i : some) {
@@ -532,7 +562,6 @@ private:
             for (std::size_t j = 0; j < some.size(); ++j) {
                 for (fit_course& c : looks[j].courses()) c = std::move(*next++);
                 models[some[j]].fit = looks[j].best();
-                models[some[j]].total = -std::numeric_limits<double>::infinity();
             }
         });
     }
@@ -544,7 +573,10 @@ private:
         in_groups(std::span(which).first(fitted), 2, [&](std::span<const std::size_t> some) {
             std::vector<candidate*> pair;
             for (const std::size_t i : some) pair.push_back(&models[i]);
-            finish(record_, pair);
+            if (stoppable_ && over())
+                for (candidate* c : pair) judge(record_, *c);
+            else
+                finish(record_, pair);
         });
         in_groups(std::span(which).subspan(fitted), 1,
                   [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
@@ -579,7 +611,9 @@ private:
     progress tell_;
     candidate given_, calibrated_;
     mutable std::deque<candidate> tried_;
-    mutable std::vector<double> cloud_{}; ///< found when it is asked for
+    mutable std::set<const effect*> missed_{};
+    mutable bool cut_ = false, stoppable_ = false; ///< what is computed now may be left out when the time is up
+    mutable std::vector<double> cloud_{};          ///< found when it is asked for
 };
 
 } // namespace quadrant::diagnosis
