@@ -11,6 +11,12 @@
 
 namespace vcnc {
 
+/// Where the three tunings of [Yeung2006] Table 9 start: Ks [V s/mm], rho [V/mm].
+struct fuzzy_start {
+    double gain, adaptation;
+};
+inline constexpr std::array fuzzy_starts{fuzzy_start{1, 100}, fuzzy_start{0.01, 1}, fuzzy_start{10, 10000}};
+
 /// The trial of [Yeung2006] section 3 on the x axis: 100 mm forth and back at 200 mm/s, lambda 200 /s.
 struct fuzzy_trial {
     static constexpr feed_profile way{0.1};

@@ -9,7 +9,7 @@ using namespace thesis;
 
 TEST_CASE("thesis.identify: Fc, Fs and the virgin curve at 1, 5, 15 and 30 um lie in their own intervals") {
     for (const axis* a : {&x, &y}) {
-        const auto rows = identification::identify(*a);
+        const auto rows = identification::identify(*a).rows;
         CHECK(rows.size() == 6);
         for (const auto& row : rows) {
             CAPTURE(a->name);

@@ -20,20 +20,26 @@ inline std::vector<row> margin_rows(const std::string& id, const thesis::loop_fi
                                     const given_loop& measured, const given_loop& reference,
                                     const std::string& note) {
     const auto known = [](double v) { return std::isfinite(v) ? std::optional(v) : std::nullopt; };
-    const auto figure = [&](const char* quantity, const char* unit, double v, given_loop::number m,
-                            given_loop::number r) { return row{id, quantity, unit, known(v), {}, m, r, note}; };
+    const auto figure = [&](const char* quantity, const char* unit, double v, given_loop::number m = {},
+                            given_loop::number r = {}) { return row{id, quantity, unit, known(v), {}, m, r, note}; };
     return {figure("velocity_gain_margin", "dB", f.velocity_gain_margin, measured.velocity_gain,
                    reference.velocity_gain),
+            figure("velocity_gain_margin_at", "Hz", f.velocity_gain_margin_at),
             figure("velocity_phase_margin", "deg", f.velocity_phase_margin, measured.velocity_phase,
                    reference.velocity_phase),
+            figure("velocity_phase_margin_at", "Hz", f.velocity_phase_margin_at),
             figure("velocity_bandwidth", "Hz", f.velocity_bandwidth, measured.velocity_bandwidth,
                    reference.velocity_bandwidth),
+            figure("velocity_closed_bandwidth", "Hz", f.velocity_closed_bandwidth),
             figure("position_gain_margin", "dB", f.position_gain_margin, measured.position_gain,
                    reference.position_gain),
+            figure("position_gain_margin_at", "Hz", f.position_gain_margin_at),
             figure("position_phase_margin", "deg", f.position_phase_margin, measured.position_phase,
                    reference.position_phase),
+            figure("position_phase_margin_at", "Hz", f.position_phase_margin_at),
             figure("position_bandwidth", "Hz", f.position_bandwidth, measured.position_bandwidth,
-                   reference.position_bandwidth)};
+                   reference.position_bandwidth),
+            figure("position_closed_bandwidth", "Hz", f.position_closed_bandwidth)};
 }
 
 /// Bode and Nyquist of both open loops, and the sensitivity.
@@ -91,21 +97,19 @@ inline experiment loop() {
                 const thesis::loop_figures f = thesis::figures_of(loop, a.kf);
                 const auto corner = quadrant::analysis::corners(loop.plant, loop.velocity, loop.position_gain);
                 // Reference: shared/reference/thesis.md, "What the model G alone gives".
-                outcome out{margin_rows(id, f, x ? frf_x : frf_y,
+                outcome out{margin_rows(id, f, {},
                                         x ? given_loop{15.6, 69.0, 32.7, 15.6, 69.65, 30.1}
                                           : given_loop{14.7, 66.35, 31.2, 15.0, 68.5, 29.3},
                                         ""),
                             loop_pictures(a, loop)};
                 if (!x)
-                    for (std::size_t i = 0; i < 2; ++i)
+                    for (const std::size_t i : {0, 2})
                         out.rows[i].note = "the thesis contradicts itself: Table 4.6 has 14.62 dB and 71.9 deg";
-                const std::optional<double> printed_ratio =
-                    x ? std::optional(0.441) : std::nullopt; // chapter 2
                 out.rows.push_back({id,
                                     "tracking_ratio_10Hz",
                                     "1",
                                     f.tracking_ratio_10Hz,
-                                    printed_ratio,
+                                    {},
                                     {},
                                     {},
                                     "|Ep/Zref|, no feedforward"});
@@ -114,13 +118,21 @@ inline experiment loop() {
                                     "N/um",
                                     f.min_dynamic_stiffness,
                                     {},
-                                    x ? 15 : 8,
+                                    {},
                                     x ? 13.4 : 6.8,
                                     ""});
                 out.rows.push_back(
                     {id, "velocity_corner", "rad/s", corner.velocity, {}, {}, {}, "eq. (2.38): |kp B|"});
                 out.rows.push_back(
                     {id, "position_corner", "rad/s", corner.position, {}, {}, {}, "eq. (2.40): sqrt(kv w_s)"});
+                out.rows.push_back({id,
+                                    "damping",
+                                    "1",
+                                    0.5 * std::sqrt(corner.velocity / loop.position_gain.value()),
+                                    {},
+                                    {},
+                                    {},
+                                    "eq. (2.39): sqrt(w_s/kv)/2"});
                 out.pictures.push_back(stiffness_picture(a, loop));
                 return out;
             })};
@@ -184,10 +196,9 @@ inline experiment loop_dob() {
                 const auto loop = thesis::loop_with_observer(thesis::model_of(a), a);
                 const auto limits = quadrant::analysis::limits(loop, thesis::servo);
                 const auto f = thesis::figures_of(loop, a.kf);
-                // Measured: chapter 4. Reference: shared/reference/thesis.md, "Disturbance observer".
+                // Reference: shared/reference/thesis.md, "Disturbance observer".
                 outcome out{margin_rows(id, f,
-                                        x ? given_loop{11.02, 67.3, {}, 13.6, 69.6, 29.2}
-                                          : given_loop{12.94, 65.1, {}, 13.8, 70.1, 34},
+                                        {},
                                         x ? given_loop{{}, {}, {}, 13.7, 71.9, 33.7}
                                           : given_loop{{}, {}, {}, 12.9, 71.0, 38.0},
                                         ""),
