@@ -32,7 +32,8 @@ struct gms_beside {
 
 /// The frequency response of a simulated axis under white noise of so many volts rms. The hold is half a period of Td.
 template <class Plant>
-analysis::measured_frf measured_response(const axis& a, frequency pole, double rms, double minutes = frf_minutes) {
+analysis::measured_frf measured_response(const axis& a, frequency pole, double rms,
+                                         double minutes = frf_minutes) {
     linear_motor<typename Plant::friction> motor({.mass = a.kf / a.B,
                                                   .force_constant = a.kf,
                                                   .friction = Plant::of(a, pole),
@@ -62,7 +63,8 @@ inline analysis::plant_fit<> fitted(const analysis::measured_frf& frf) {
 /// secant from A and from zero; friction makes the response depend on how large the noise is.
 inline double pole_beside_gms(const axis& a, double rms, double minutes = 1) {
     const auto excess = [&](double pole) {
-        return fitted(measured_response<gms_beside>(a, pole * 1_Hz, rms, minutes)).pole.value.value() - a.A.value();
+        return fitted(measured_response<gms_beside>(a, pole * 1_Hz, rms, minutes)).pole.value.value() -
+               a.A.value();
     };
     double before = 0, off_before = excess(0), now = -off_before, off = 0;
     if (off_before > 0) return -off_before; // friction alone damps more than A: below zero, to first order

@@ -101,10 +101,11 @@ int reproduce(const options& o, bool wants_page) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"The experiments of [Jamaludin2008], [Yeung2006] and [LowKeck2003] computed again, our figures beside "
-                 "the published ones.\n"
-                 "Without options it runs all of them and writes one HTML page with pictures.",
-                 "quadrant-reproduce"};
+    CLI::App app{
+        "The experiments of [Jamaludin2008], [Yeung2006] and [LowKeck2003] computed again, our figures beside "
+        "the published ones.\n"
+        "Without options it runs all of them and writes one HTML page with pictures.",
+        "quadrant-reproduce"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     options o;
     app.add_flag("--list", o.list, "the experiments' ids, and stop");

@@ -14,9 +14,9 @@ inline std::string cell(const std::string& text) {
 }
 
 /// The sources by the name that stands in the list.
-inline constexpr std::array source_titles{
-    std::pair{thesis_source, "the thesis: the milling table"}, std::pair{vcnc_source, "the Virtual CNC"},
-    std::pair{low_source, "the precision stage"}};
+inline constexpr std::array source_titles{std::pair{thesis_source, "the thesis: the milling table"},
+                                          std::pair{vcnc_source, "the Virtual CNC"},
+                                          std::pair{low_source, "the precision stage"}};
 
 /// "15.56", and "-" where there is none; short numbers as they are.
 inline std::string own(const std::optional<double>& v) { return v ? fmt::format("{:.4g}", *v) : "-"; }
@@ -55,10 +55,12 @@ inline std::string printed_markdown(const printed_list& list, const row_index& r
 }
 
 /// Tables from the printed numbers, everything else from the list of parts.
-inline std::string parts_markdown(const std::vector<part>& all, const printed_list& list, const row_index& rows) {
+inline std::string parts_markdown(const std::vector<part>& all, const printed_list& list,
+                                  const row_index& rows) {
     std::string out;
     for (const auto& [source, title] : source_titles) {
-        out += fmt::format("\n### {} {}: parts\n\n| part | what | state | ours |\n|---|---|---|---|\n", source, title);
+        out += fmt::format("\n### {} {}: parts\n\n| part | what | state | ours |\n|---|---|---|---|\n", source,
+                           title);
         for (const part& p : all)
             if (p.source == source)
                 out += fmt::format("| {} | {} | {} | {}{}{} |\n", p.name, cell(p.what), words_of(p.is),
@@ -80,9 +82,9 @@ inline std::string parts_markdown(const std::vector<part>& all, const printed_li
                 have += ours.has_value();
                 if (const auto distance = off(p, ours)) furthest = std::max(furthest, std::abs(*distance));
             }
-            out += fmt::format("| {} | {} numbers | {} | {} of {} beside ours, the furthest {:.3g} % off{} |\n", place,
-                               numbers,
-                               cannot == numbers        ? "cannot be computed"
+            out += fmt::format("| {} | {} numbers | {} | {} of {} beside ours, the furthest {:.3g} % off{} |\n",
+                               place, numbers,
+                               cannot == numbers         ? "cannot be computed"
                                : have + cannot < numbers ? "missing"
                                : furthest <= 0.1         ? "done"
                                                          : "done, differs",
@@ -95,10 +97,13 @@ inline std::string parts_markdown(const std::vector<part>& all, const printed_li
 
 inline std::string agreement_markdown(const publication& p) {
     return fmt::format(
-        "- figures that the sources simulated: {}\n- figures that they measured: {}\n- parameters that we use as "
+        "- figures that the sources simulated: {}\n- figures that they measured: {}\n- what they derive from "
+        "these "
+        "(reductions, differences, deviations): {}\n- parameters that we use as "
         "they are printed: {}, {} of them with ours equal within 2 %\n- printed again in another table: {}\n- "
         "cannot be computed: {}, each with its reason\n",
-        p.simulated.words(), p.measured.words(), p.given.all, p.given.up_to(0) + p.given.zero, p.repeated, p.cannot);
+        p.simulated.words(), p.measured.words(), p.derived.words(), p.given.all,
+        p.given.up_to(0) + p.given.zero, p.repeated, p.cannot);
 }
 
 inline std::string markdown(const std::vector<section>& all) {
@@ -107,12 +112,15 @@ inline std::string markdown(const std::vector<section>& all) {
     std::string out =
         "# Published figures, reproduced\n\n"
         "Written by `quadrant-reproduce --markdown docs/reproduction.md`; do not edit. Every figure under "
-        "\"ours\" is computed in the run (`--html` draws the pictures, `--json` has all digits). In brackets: how "
+        "\"ours\" is computed in the run (`--html` draws the pictures, `--json` has all digits). In brackets: "
+        "how "
         "far ours lies from the figure before the bracket. No parameter was chosen to make a figure agree.\n\n"
         "How near ours comes to what the three sources print, each number once:\n\n";
     out += agreement_markdown(publication(list, rows));
-    out += "\nPublished, simulated: by the source in its own simulation or on its model. Published, measured: on its "
-           "machine, or on the frequency response measured there, which has modes, cogging and friction of its own. "
+    out += "\nPublished, simulated: by the source in its own simulation or on its model. Published, measured: "
+           "on its "
+           "machine, or on the frequency response measured there, which has modes, cogging and friction of its "
+           "own. "
            "Reference: a footnote, our own earlier computation from the source's parameters by another program "
            "(`../shared/reference/`; asked is 2 % for loops and the memory, 10 % for friction).\n\n"
            "| experiment | figures | published, simulated: within 10 % | published, measured: within 25 % | "
@@ -120,12 +128,12 @@ inline std::string markdown(const std::vector<section>& all) {
     std::string outside;
     for (const section& s : all) {
         const tally t = count(s.rows, s.what.tolerance);
-        out += fmt::format("| {} | {} | {} | {} | {} |\n", s.what.title, s.rows.size(),
-                           near_words(s.rows, &row::published_simulated, 0.10),
-                           near_words(s.rows, &row::published_measured, 0.25),
-                           t.compared == 0 ? "-"
-                                           : fmt::format("{} of {} ({:g} %)", t.within, t.compared,
-                                                         100 * s.what.tolerance));
+        out += fmt::format(
+            "| {} | {} | {} | {} | {} |\n", s.what.title, s.rows.size(),
+            near_words(s.rows, &row::published_simulated, 0.10),
+            near_words(s.rows, &row::published_measured, 0.25),
+            t.compared == 0 ? "-"
+                            : fmt::format("{} of {} ({:g} %)", t.within, t.compared, 100 * s.what.tolerance));
         for (const row* r : t.outside)
             outside +=
                 fmt::format("- `{}` {}: {} {} instead of {}. {}\n", r->id, r->quantity, number(r->simulated),

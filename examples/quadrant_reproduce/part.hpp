@@ -20,10 +20,14 @@ struct part {
 
 inline const char* words_of(part::state s) {
     switch (s) {
-    case part::state::done: return "done";
-    case part::state::differs: return "done, differs";
-    case part::state::cannot: return "cannot be computed";
-    default: return "a scheme";
+    case part::state::done:
+        return "done";
+    case part::state::differs:
+        return "done, differs";
+    case part::state::cannot:
+        return "cannot be computed";
+    default:
+        return "a scheme";
     }
 }
 

@@ -91,8 +91,7 @@ public:
 
 private:
     printed& add(origin from, std::string what, std::string text, std::string unit) {
-        into_->push_back(
-            {source_, place_, std::move(what), std::move(text), std::move(unit), from});
+        into_->push_back({source_, place_, std::move(what), std::move(text), std::move(unit), from});
         return into_->back();
     }
     printed_place& row(origin from, std::string what, std::string text, std::string unit, std::string id,

@@ -36,17 +36,37 @@ public:
         const row* base = p.base_id.empty() ? nullptr : find(p.base_id, p.base_quantity);
         if (!p.base_id.empty() && (!base || !base->simulated)) return std::nullopt;
         switch (p.how) {
-        case reading::reduction: return 100 * (1 - *r->simulated / *base->simulated);
-        case reading::rise: return *r->simulated - *base->simulated;
-        case reading::difference: return std::abs(*r->simulated - p.base) / p.scale;
-        case reading::deviation: return 100 * std::abs(*r->simulated / p.base - 1);
-        default: return *r->simulated / p.scale;
+        case reading::reduction:
+            return 100 * (1 - *r->simulated / *base->simulated);
+        case reading::rise:
+            return *r->simulated - *base->simulated;
+        case reading::difference:
+            return std::abs(*r->simulated - p.base) / p.scale;
+        case reading::deviation:
+            return 100 * std::abs(*r->simulated / p.base - 1);
+        default:
+            return *r->simulated / p.scale;
         }
     }
 
 private:
     std::map<std::pair<std::string, std::string>, const row*> rows_;
 };
+
+/// The measured glitches of Tables 4.4 and 4.10 as levels in the pictures of the tracking errors beside their rows.
+inline void draw_glitches(section& s) {
+    for (const row& r : s.rows) {
+        if (r.quantity != "quadrant_glitch_100" || !r.published_measured) continue;
+        const auto dot = r.id.rfind('.'); // thesis.friction.x.gms
+        const std::string title = "Axis " + r.id.substr(dot - 1, 1) + ": tracking error at 100 mm/s";
+        for (picture& p : s.pictures)
+            if (p.title == title)
+                p.panels[0].lines.push_back({.name = "measured, " + r.id.substr(dot + 1),
+                                             .x = {0, p.panels[0].lines[0].x.back()},
+                                             .y = {*r.published_measured, *r.published_measured},
+                                             .drawn = line::style::dashed});
+    }
+}
 
 /// The published columns of the rows, from the list: of several printings the first.
 inline void fill(std::vector<section>& all, const printed_list& list) {
@@ -58,14 +78,17 @@ inline void fill(std::vector<section>& all, const printed_list& list) {
         }
     for (section& s : all)
         for (row& r : s.rows) {
-            const auto at = first.find({r.id, r.quantity});
+            // What was read off the measured response stands beside the model with modes, too.
+            const bool on_modes = r.id.starts_with("thesis.loop_modes.");
+            const auto at = first.find({on_modes ? "thesis.loop." + r.id.substr(18) : r.id, r.quantity});
             if (at == first.end()) continue;
             const auto put = [](std::optional<double>& column, const printed* p) {
                 if (p && !column) column = p->value();
             };
-            put(r.published_simulated, at->second[0]);
+            if (!on_modes) put(r.published_simulated, at->second[0]);
             put(r.published_measured, at->second[1]);
         }
+    for (section& s : all) draw_glitches(s);
 }
 
 /// Ours over what is printed, less one; nothing when that is zero.
@@ -113,6 +136,7 @@ struct agreement {
 /// The whole of it. A number that several tables print counts once, where it stands first.
 struct publication {
     agreement simulated, measured, given;
+    agreement derived; ///< reductions, rises, differences: what follows from the other numbers
     std::size_t cannot = 0, repeated = 0;
 
     publication(const printed_list& list, const row_index& rows) {
@@ -132,7 +156,10 @@ struct publication {
                 ++repeated;
                 continue;
             }
-            (p.from == origin::measured ? measured : simulated).add(p, rows);
+            if (p.how != reading::value)
+                derived.add(p, rows);
+            else
+                (p.from == origin::measured ? measured : simulated).add(p, rows);
         }
     }
 };

@@ -94,12 +94,13 @@ TEST_CASE("fuzzy tuning: the gains that the source tuned are acceptable by its o
         CHECK(1e6 * trial.tracking_error.value() == doctest::Approx(p[2]).epsilon(0.1));
     }
 }
-TEST_CASE("fuzzy tuning: noisy, sluggish and unstable gains of the source end within a quarter of its tuned ones") {
+TEST_CASE(
+    "fuzzy tuning: noisy, sluggish and unstable gains of the source end within a quarter of its tuned ones") {
     struct tuning {
         double gain, adaptation, tuned_gain, tuned_adaptation;
     };
-    for (const tuning& p : {tuning{1, 100, 363, 47.16e3}, tuning{0.01, 1, 315, 39.12e3},
-                            tuning{10, 10000, 269, 37.16e3}}) {
+    for (const tuning& p :
+         {tuning{1, 100, 363, 47.16e3}, tuning{0.01, 1, 315, 39.12e3}, tuning{10, 10000, 269, 37.16e3}}) {
         const auto t = tuned(p.gain, p.adaptation);
         const auto& end = t.steps.back();
         CAPTURE(p.gain);

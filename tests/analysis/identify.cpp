@@ -10,12 +10,14 @@ using namespace thesis;
 TEST_CASE("thesis.identify: Fc, Fs and the virgin curve at 1, 5, 15 and 30 um lie in their own intervals") {
     for (const axis* a : {&x, &y}) {
         const auto rows = identification::identify(*a).rows;
-        CHECK(rows.size() == 6);
+        CHECK(rows.size() == 8);
         for (const auto& row : rows) {
             CAPTURE(a->name);
             CAPTURE(row.quantity);
             CAPTURE(row.simulated);
             CHECK(row.held());
+            if (row.unit != "N")
+                continue; // Vs and the viscous part follow from the fall of the map, less sharply
             CHECK(std::abs(row.simulated / row.reference - 1) < 0.05);
             CHECK(row.high - row.low < 0.18 * row.reference); // and the interval says something
         }

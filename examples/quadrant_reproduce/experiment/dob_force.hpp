@@ -91,14 +91,15 @@ inline outcome dob_force_case(const thesis::axis& a) {
 }
 
 inline experiment dob_force() {
-    return {"A sinusoidal force against the observer",
-            "[Jamaludin2008] eqs. (4.20), (5.1), (5.2), Figs. 5.2 and 5.3",
-            "The resting axis on its linear model is pushed as by 1 V at the motor; simulated sample by sample "
-            "at 2 kHz with the delay and the hold. The thesis prints the amplitudes of the y axis, simulated "
-            "(Fig. 5.2) and by the transfer functions (Fig. 5.3); it takes 1 V for 1450 N, which is the x axis.",
-            0.02,
-            {{"thesis.dob_force.x", [] { return dob_force_case(thesis::x); }},
-             {"thesis.dob_force.y", [] { return dob_force_case(thesis::y); }}}};
+    return {
+        "A sinusoidal force against the observer",
+        "[Jamaludin2008] eqs. (4.20), (5.1), (5.2), Figs. 5.2 and 5.3",
+        "The resting axis on its linear model is pushed as by 1 V at the motor; simulated sample by sample "
+        "at 2 kHz with the delay and the hold. The thesis prints the amplitudes of the y axis, simulated "
+        "(Fig. 5.2) and by the transfer functions (Fig. 5.3); it takes 1 V for 1450 N, which is the x axis.",
+        0.02,
+        {{"thesis.dob_force.x", [] { return dob_force_case(thesis::x); }},
+         {"thesis.dob_force.y", [] { return dob_force_case(thesis::y); }}}};
 }
 
 } // namespace quadrant_reproduce

@@ -60,12 +60,31 @@ inline outcome feedforward_case(const thesis::axis& a, const std::string& id) {
          advanced = follow_sinusoid(a, fed::model_in_advance, "the same, Td in advance");
     const std::string name = a.name;
     outcome out;
-    out.rows = {{id, "error_without", "mm", without.largest, {}, {}, {},
-                 "amplitude; the thesis' axis says um, its transfer function 0.44 of 1 mm"},
-                {id, "error_with", "mm", with.largest, {}, {}, {},
-                 "what the feedforward brings arrives Td late; the thesis shows none at the scale of its figure"},
-                {id, "error_with_in_advance", "mm", advanced.largest, {}, {}, {},
-                 "the reference of the inverse model Td ahead: what is left comes from sampling"}};
+    out.rows = {
+        {id,
+         "error_without",
+         "mm",
+         without.largest,
+         {},
+         {},
+         {},
+         "amplitude; the thesis' axis says um, its transfer function 0.44 of 1 mm"},
+        {id,
+         "error_with",
+         "mm",
+         with.largest,
+         {},
+         {},
+         {},
+         "what the feedforward brings arrives Td late; the thesis shows none at the scale of its figure"},
+        {id,
+         "error_with_in_advance",
+         "mm",
+         advanced.largest,
+         {},
+         {},
+         {},
+         "the reference of the inverse model Td ahead: what is left comes from sampling"}};
     out.pictures = {{"Axis " + name + ": tracking error at 10 Hz",
                      "1 mm and 10 Hz on the linear axis, without and with what section 2.5.4 feeds forward.",
                      {panel{.x_label = "time [s]",
@@ -77,7 +96,8 @@ inline outcome feedforward_case(const thesis::axis& a, const std::string& id) {
 inline experiment feedforward() {
     return {"The inverse model fed forward",
             "[Jamaludin2008] sections 2.5.3 and 2.5.4, Figs. 2.23 to 2.26",
-            "A sinusoid of 1 mm and 10 Hz on the linear axis with its delay, simulated sample by sample at 2 kHz: the "
+            "A sinusoid of 1 mm and 10 Hz on the linear axis with its delay, simulated sample by sample at 2 "
+            "kHz: the "
             "cascade alone, then with the velocity and the inverse of the model fed forward.",
             0.02,
             {{"thesis.feedforward.x", [] { return feedforward_case(thesis::x, "thesis.feedforward.x"); }},

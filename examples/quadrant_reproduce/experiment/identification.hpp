@@ -27,7 +27,9 @@ inline picture friction_map_picture(const thesis::axis& a, const quadrant::analy
     }
     return {fmt::format("Axis {}: friction over speed", a.name),
             "Mean command at the thesis' 17 speeds, each driven both ways, and the curve that was simulated.",
-            {panel{.x_label = "speed [mm/s]", .y_label = "friction [N]", .lines = {std::move(curve), std::move(points)}}}};
+            {panel{.x_label = "speed [mm/s]",
+                   .y_label = "friction [N]",
+                   .lines = {std::move(curve), std::move(points)}}}};
 }
 
 /// What the procedures find, beside what the runs were simulated with.
@@ -70,7 +72,8 @@ inline outcome identification_case(const thesis::axis& a) {
 inline experiment identification() {
     return {"Identification from simulated runs",
             "[Jamaludin2008] eqs. (3.5), (3.9), sections 3.3.2 and 3.4.2, Table 3.1, Figs. 3.4 to 3.11",
-            "Friction map from the thesis' 17 constant speeds of 0.01 to 30 mm/s and virgin curve from sinusoids of 15 and "
+            "Friction map from the thesis' 17 constant speeds of 0.01 to 30 mm/s and virgin curve from "
+            "sinusoids of 15 and "
             "450 um at 0.1 Hz, on an "
             "axis with an encoder that counts and jitters and a controller that is 2 % off. The reference here "
             "is what was "

@@ -72,7 +72,7 @@ private:
 };
 
 /// The speeds of [Jamaludin2008] section 3.3.2 [m/s].
-inline constexpr std::array map_speeds{1e-5, 4e-5, 8e-5, 2e-4, 4e-4, 5e-4, 1e-3,  2e-3, 4e-3,
+inline constexpr std::array map_speeds{1e-5, 4e-5, 8e-5, 2e-4,   4e-4,   5e-4, 1e-3,   2e-3, 4e-3,
                                        5e-3, 8e-3, 1e-2, 1.4e-2, 1.6e-2, 2e-2, 2.5e-2, 3e-2};
 
 /// Runs at constant speeds, both ways: first fast enough for the springs to be bent, then at the speed.
@@ -146,11 +146,11 @@ inline findings identify(const axis& a, unsigned seed = 1) {
     };
     add("Fc", "N", level.coulomb, a.curve.coulomb.value());
     if (level.static_level) add("Fs", "N", *level.static_level, a.curve.static_level.value());
-    if (level.stribeck_velocity)
-        add("Vs", "m/s", *level.stribeck_velocity, a.curve.stribeck_velocity.value());
+    if (level.stribeck_velocity) add("Vs", "m/s", *level.stribeck_velocity, a.curve.stribeck_velocity.value());
     add("viscous", "N s/m", level.viscous, viscous.value());
     for (const int um : {1, 5, 15, 30})
-        add("virgin_" + std::to_string(um) + "um", "N", springs.at(um * 1e-6 * 1_m), virgin_force(a, um * 1e-6));
+        add("virgin_" + std::to_string(um) + "um", "N", springs.at(um * 1e-6 * 1_m),
+            virgin_force(a, um * 1e-6));
     return out;
 }
 

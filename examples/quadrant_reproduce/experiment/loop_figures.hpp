@@ -17,8 +17,8 @@ struct loop_figures {
     double position_gain_margin, position_gain_margin_at;
     double position_phase_margin, position_phase_margin_at;
     double position_bandwidth;
-    double tracking_ratio_10Hz;   ///< |1 - T| at 10 Hz
-    double min_dynamic_stiffness; ///< [N/um]
+    double tracking_ratio_10Hz;                                                  ///< |1 - T| at 10 Hz
+    double min_dynamic_stiffness;                                                ///< [N/um]
     double velocity_closed_bandwidth = std::numeric_limits<double>::quiet_NaN(); ///< [Hz], of eq. (2.26)
     double position_closed_bandwidth = std::numeric_limits<double>::quiet_NaN(); ///< [Hz], of eq. (2.31)
 };

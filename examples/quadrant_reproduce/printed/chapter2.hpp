@@ -101,9 +101,7 @@ inline void loops(printed_list& all) {
 /// The experiments of section 2.5: a sinusoid of 1 mm and 10 Hz.
 inline void feedforward(printed_list& all) {
     const auto at = [&](const char* where) { return printed_place(all, thesis_source, where); };
-    at("Section 2.5.3")
-        .used("amplitude", "1", "mm", 1)
-        .used("frequency", "10", "Hz", 10);
+    at("Section 2.5.3").used("amplitude", "1", "mm", 1).used("frequency", "10", "Hz", 10);
     at("Fig. 2.23")
         .simulated("x, amplitude of the error", "0.44", "mm", "thesis.feedforward.x", "error_without")
         .simulated("y, amplitude of the error", "0.42", "mm", "thesis.feedforward.y", "error_without");

@@ -40,7 +40,8 @@ inline void friction_feedforward(printed_list& all) {
         .measured("y, less with GMS than with none", "71", "%", id + "y.gms", fast)
         .against(reading::reduction, id + "y.none", fast);
     elements(at("Table 4.3a"), y, {"50", "20", "15", "3.4"}, {"99.94", "1.364", "1.081", "0.119"});
-    elements(at("Table 4.3b"), thesis::y_adjusted, {"57", "26.5", "15", "3.4"}, {"110.0", "2.0", "1.5", "0.119"});
+    elements(at("Table 4.3b"), thesis::y_adjusted, {"57", "26.5", "15", "3.4"},
+             {"110.0", "2.0", "1.5", "0.119"});
 }
 
 /// Tables 4.5 to 4.8: the observer in the loop.
@@ -65,9 +66,12 @@ inline void observer_loops(printed_list& all) {
         std::size_t i = 0;
         for (const std::string axis : {"x", "y"})
             for (const std::string kind : {"gain", "phase"}) {
-                const std::string quantity = loop + "_" + kind + "_margin", unit = kind == "gain" ? "dB" : "deg";
-                table.measured(axis + ", " + kind + " margin, no observer", p[i++], unit, none + axis, quantity);
-                table.measured(axis + ", " + kind + " margin, with observer", p[i++], unit, with + axis, quantity);
+                const std::string quantity = loop + "_" + kind + "_margin",
+                                  unit = kind == "gain" ? "dB" : "deg";
+                table.measured(axis + ", " + kind + " margin, no observer", p[i++], unit, none + axis,
+                               quantity);
+                table.measured(axis + ", " + kind + " margin, with observer", p[i++], unit, with + axis,
+                               quantity);
             }
     };
     margins("Table 4.6", "velocity",
@@ -80,13 +84,14 @@ inline void observer_loops(printed_list& all) {
         .measured("y, velocity bandwidth, no observer", "28.9", "Hz", none + "y", "velocity_bandwidth")
         .measured("y, velocity bandwidth, with observer", "32", "Hz", with + "y", "velocity_bandwidth");
     at("Section 4.3.2")
-        .measured("x, position closed loop, with observer", "40.6", "Hz", with + "x", "position_closed_bandwidth")
-        .measured("y, position closed loop, with observer", "43.2", "Hz", with + "y", "position_closed_bandwidth");
+        .measured("x, position closed loop, with observer", "40.6", "Hz", with + "x",
+                  "position_closed_bandwidth")
+        .measured("y, position closed loop, with observer", "43.2", "Hz", with + "y",
+                  "position_closed_bandwidth");
     auto section = at("Section 4.3.2");
     for (const std::string axis : {"x", "y"})
         for (const char* loop : {"velocity_closed_bandwidth", "position_closed_bandwidth"})
-            section
-                .measured(axis + ", " + loop + ", more with observer", "5", "Hz", with + axis, loop)
+            section.measured(axis + ", " + loop + ", more with observer", "5", "Hz", with + axis, loop)
                 .against(reading::rise, none + axis, loop);
     at("Table 4.8")
         .measured("x, bandwidth, no observer", "26.6", "Hz", none + "x", "position_bandwidth")

@@ -119,7 +119,8 @@ inline void real_cut(printed_list& all) {
                 "no table of the thesis has it: Table 4.11 has 25 um (radial) and 35 um (y)")
         .measured("largest glitch after", "3", "um", "thesis.friction_dob.y.gms", "quadrant_glitch_100")
         .cannot(origin::measured, "resonance of the base, x", "40", "Hz", "the measured response is not public")
-        .cannot(origin::measured, "resonance of the base, y", "45", "Hz", "the measured response is not public");
+        .cannot(origin::measured, "resonance of the base, y", "45", "Hz",
+                "the measured response is not public");
 }
 } // namespace printed_detail
 

@@ -23,10 +23,10 @@ inline void fuzzy_sets(printed_list& all) {
             .used(fmt::format("TRE, limit {}", i + 1), tre[i], "mm", 1e3 * limits.tracking_error[i]);
     static constexpr std::array inputs{"1 0.7 0.3 0 0", "0.7 1 0.7 0.3 0", "0.3 0.7 1 0.7 0.3",
                                        "0 0.3 0.7 1 0.7", "0 0 0.3 0.7 1"};
-    static constexpr std::array outputs{
-        "1 0.9 0.8 0.7 0.6 0.5 0.4", "0.9 1 0.9 0.8 0.7 0.6 0.5", "0.8 0.9 1 0.9 0.8 0.7 0.6",
-        "0.7 0.8 0.9 1 0.9 0.8 0.7", "0.6 0.7 0.8 0.9 1 0.9 0.8", "0.5 0.6 0.7 0.8 0.9 1 0.9",
-        "0.4 0.5 0.6 0.7 0.8 0.9 1"};
+    static constexpr std::array outputs{"1 0.9 0.8 0.7 0.6 0.5 0.4", "0.9 1 0.9 0.8 0.7 0.6 0.5",
+                                        "0.8 0.9 1 0.9 0.8 0.7 0.6", "0.7 0.8 0.9 1 0.9 0.8 0.7",
+                                        "0.6 0.7 0.8 0.9 1 0.9 0.8", "0.5 0.6 0.7 0.8 0.9 1 0.9",
+                                        "0.4 0.5 0.6 0.7 0.8 0.9 1"};
     const auto rows = [&](const char* where, const auto& lines, auto&& ours) {
         printed_place table(all, vcnc_source, where);
         for (std::size_t set = 0; set < lines.size(); ++set) {
@@ -50,9 +50,10 @@ inline void fuzzy_results(printed_list& all) {
     static constexpr std::array attributes{"OSC", "PHM", "TRE"};
     static constexpr std::array states{"HIUN", "LIUN", "ACCP", "LIOQ", "HIOQ"},
         errors{"EL", "LA", "ME", "SM", "OK"};
-    static constexpr std::array gain{"-0.2545", "-0.2456", "0", "0.1552", "0.2456", "-0.2456", "-0.1552", "0",
-                                     "0",       "0.1552",  "-0.1552", "0", "0.1552", "0.1552", "0"},
-        adaptation{"-0.1552", "0",      "0",      "0",       "0.1552",  "-0.2456", "-0.2456", "0",
+    static constexpr std::array gain{"-0.2545", "-0.2456", "0",      "0.1552", "0.2456",
+                                     "-0.2456", "-0.1552", "0",      "0",      "0.1552",
+                                     "-0.1552", "0",       "0.1552", "0.1552", "0"},
+        adaptation{"-0.1552", "0",      "0",       "0",       "0.1552", "-0.2456", "-0.2456", "0",
                    "0.1552",  "0.2456", "-0.2545", "-0.2456", "0.2545", "0.1552",  "0"};
     printed_place table(all, vcnc_source, "Table 7");
     for (std::size_t i = 0; i < 15; ++i) {
@@ -94,13 +95,12 @@ inline void drives(printed_list& all) {
         const vcnc::axis& of;
         std::array<const char*, 12> text; ///< Ka, J, B; Tstat, Tcoul, w1, w2, each + and -
     };
-    for (const auto& p :
-         {drive_as_printed{x_axis,
-                           {"6.4898", "0.0077736", "0.019811", "2.6256", "-1.8672", "2.1529", "-1.4730", "3.88",
-                            "-3.51", "4.20", "-3.52", ""}},
-          drive_as_printed{y_axis,
-                           {"7.5768", "0.0098109", "0.028438", "2.7658", "-2.4520", "2.5228", "-2.3887", "2.37",
-                            "-4.41", "3.01", "-4.20", ""}}}) {
+    for (const auto& p : {drive_as_printed{x_axis,
+                                           {"6.4898", "0.0077736", "0.019811", "2.6256", "-1.8672", "2.1529",
+                                            "-1.4730", "3.88", "-3.51", "4.20", "-3.52", ""}},
+                          drive_as_printed{y_axis,
+                                           {"7.5768", "0.0098109", "0.028438", "2.7658", "-2.4520", "2.5228",
+                                            "-2.3887", "2.37", "-4.41", "3.01", "-4.20", ""}}}) {
         const std::string a = std::string(p.of.name) + ", ";
         const auto& t = p.text;
         const auto d = vcnc::drive(p.of, quadrant::in_si(3e-6));
@@ -162,7 +162,8 @@ inline void contours(printed_list& all) {
         for (const auto& l : lines) {
             const std::string id = "vcnc." + path + "." + l.law,
                               name = std::string(l.law) + ", " + std::string(l.quantity).substr(0, 1);
-            const std::string what = l.quantity == std::string("contour_error_max") ? std::string(l.law) + ", contour" : name;
+            const std::string what =
+                l.quantity == std::string("contour_error_max") ? std::string(l.law) + ", contour" : name;
             const double measured = 1e3 * std::strtod(l.measured, nullptr);
             at.simulated(what + ", simulated", l.simulated, "mm", id, l.quantity, 1e3)
                 .measured(what + ", measured", l.measured, "mm", id, l.quantity, 1e3)

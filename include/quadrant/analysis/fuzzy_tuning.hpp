@@ -82,8 +82,9 @@ inline constexpr std::array<std::array<tuning_action, 5>, 3> decision_table = []
 /// Where the sets end: Table 2 of the source. Its index of oscillation takes a threshold frequency and a scale that it does not
 /// print; 50 Hz and 2000 put all three of the gains that it tuned (Table 9) into the acceptable sets.
 struct tuning_limits {
-    std::array<double, 4> oscillation{1, 0.75, 0.5, 0.25};   ///< falling: above the first HIUN, below the last HIOQ
-    std::array<double, 4> phase_margin{30, 40, 45, 60};      ///< [deg], rising: below the first or none HIUN
+    std::array<double, 4> oscillation{1, 0.75, 0.5,
+                                      0.25};            ///< falling: above the first HIUN, below the last HIOQ
+    std::array<double, 4> phase_margin{30, 40, 45, 60}; ///< [deg], rising: below the first or none HIUN
     std::array<double, 4> tracking_error{20e-3, 5e-3, 1e-3, 0.1e-3}; ///< [m], falling: above the first EL
 };
 
