@@ -105,8 +105,8 @@ private:
     std::string source_, place_;
 };
 
-inline const char* const thesis_source = "[Jamaludin2008]";
-inline const char* const vcnc_source = "[Yeung2006]";
-inline const char* const low_source = "[LowKeck2003]";
+inline constexpr const char* thesis_source = "[Jamaludin2008]";
+inline constexpr const char* vcnc_source = "[Yeung2006]";
+inline constexpr const char* low_source = "[LowKeck2003]";
 
 } // namespace quadrant_reproduce

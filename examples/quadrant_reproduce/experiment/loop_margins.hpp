@@ -118,7 +118,7 @@ inline experiment loop() {
                                         ""),
                             loop_pictures(a, loop)};
                 if (!x)
-                    for (const std::size_t i : {0, 2})
+                    for (const std::size_t i : {std::size_t(0), std::size_t(2)})
                         out.rows[i].note = "the thesis contradicts itself: Table 4.6 has 14.62 dB and 71.9 deg";
                 out.rows.push_back({id,
                                     "tracking_ratio_10Hz",

@@ -68,7 +68,7 @@ inline outcome a_prime_case(const thesis::axis& a, const std::string& id) {
     using namespace quadrant::literals;
     // The noise at which the printed A' gives back A: friction damps less the more the axis moves.
     const auto excess = [&](double rms) {
-        return thesis::fitted(thesis::measured_response<thesis::gms_beside>(a, a.A_gms, rms, 1))
+        return thesis::fitted(thesis::measured_response<thesis::gms_beside>(a, a.A_gms, rms, 0.5))
                    .pole.value.value() -
                a.A.value();
     };

@@ -54,7 +54,7 @@ inline double stage_judged(const std::vector<double>& genes) {
 }
 
 /// In simulations: five of them are one trial.
-inline constexpr std::array stage_budgets{1000, 5000, 10000};
+inline constexpr std::array stage_budgets{1000, 4000, 8000};
 inline constexpr int stage_trials(int budget) { return budget / int(stage_searched.size()); }
 inline const char* const stage_tuning_title = "Tuning: the best so far";
 inline picture stage_tuning_picture(line best) {
