@@ -54,17 +54,30 @@ inline std::string printed_markdown(const printed_list& list, const row_index& r
     return out;
 }
 
+/// What a part points at is there: a picture of this run, a case of it, or a file.
+inline bool is_there(const std::string& where, const std::vector<section>& all) {
+    if (where.empty() || where.find('/') != std::string::npos) return true;
+    for (const section& s : all) {
+        for (const picture& p : s.pictures)
+            if (p.title == where) return true;
+        for (const row& r : s.rows)
+            if (r.id.starts_with(where)) return true;
+    }
+    return false;
+}
+
 /// Tables from the printed numbers, everything else from the list of parts.
-inline std::string parts_markdown(const std::vector<part>& all, const printed_list& list,
-                                  const row_index& rows) {
+inline std::string parts_markdown(const std::vector<part>& all, const printed_list& list, const row_index& rows,
+                                  const std::vector<section>& sections) {
     std::string out;
     for (const auto& [source, title] : source_titles) {
         out += fmt::format("\n### {} {}: parts\n\n| part | what | state | ours |\n|---|---|---|---|\n", source,
                            title);
         for (const part& p : all)
             if (p.source == source)
-                out += fmt::format("| {} | {} | {} | {}{}{} |\n", p.name, cell(p.what), words_of(p.is),
-                                   cell(p.where), p.why.empty() || p.where.empty() ? "" : "; ", cell(p.why));
+                out += fmt::format("| {} | {} | {} | {}{}{} |\n", p.name, cell(p.what),
+                                   is_there(p.where, sections) ? words_of(p.is) : "missing", cell(p.where),
+                                   p.why.empty() || p.where.empty() ? "" : "; ", cell(p.why));
         std::vector<std::string> places;
         for (const printed& p : list)
             if (p.source == source && (places.empty() || places.back() != p.place) &&
@@ -114,7 +127,9 @@ inline std::string markdown(const std::vector<section>& all) {
         "Written by `quadrant-reproduce --markdown docs/reproduction.md`; do not edit. Every figure under "
         "\"ours\" is computed in the run (`--html` draws the pictures, `--json` has all digits). In brackets: "
         "how "
-        "far ours lies from the figure before the bracket. No parameter was chosen to make a figure agree.\n\n"
+        "far ours lies from the figure before the bracket. "
+        "Where a source does not print a parameter, the section says what we took; only the modes of the "
+        "milling table are fitted, to its printed margins.\n\n"
         "How near ours comes to what the three sources print, each number once:\n\n";
     out += agreement_markdown(publication(list, rows));
     out += "\nPublished, simulated: by the source in its own simulation or on its model. Published, measured: "
@@ -140,7 +155,7 @@ inline std::string markdown(const std::vector<section>& all) {
                             unit_sign(r->unit), compared(*r, r->reference_computation), r->note);
     }
     if (!outside.empty()) out += "\nOutside of the reference:\n\n" + outside;
-    out += "\n## Every part of the sources\n" + parts_markdown(parts(), list, rows);
+    out += "\n## Every part of the sources\n" + parts_markdown(parts(), list, rows, all);
     for (const section& s : all) {
         out += fmt::format("\n## {}\n\n{}\n\nSource: {}.\n\n", s.what.title, s.what.text, s.what.source);
         out +=

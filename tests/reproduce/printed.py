@@ -98,6 +98,8 @@ def text_faults(listed, folder):
 def main():
     listed = list(rows(sys.argv[1]))
     faults = list(count_faults(listed))
+    missing = [line for line in pathlib.Path(sys.argv[1]).read_text(encoding="utf-8").splitlines() if "| missing |" in line]
+    faults += [f"missing: {line}" for line in missing]
     whole = len(sys.argv) > 2 and pathlib.Path(sys.argv[2]).is_dir()
     if whole:
         faults += text_faults(listed, sys.argv[2])
