@@ -14,7 +14,8 @@ std::vector<experiment> stage_experiments();
 /// In the order of the page.
 inline std::vector<experiment> experiments() {
     std::vector<experiment> all = loop_experiments();
-    for (const auto& part : {friction_experiments(), milling_experiments(), vcnc_experiments(), stage_experiments()})
+    for (const auto& part :
+         {friction_experiments(), milling_experiments(), vcnc_experiments(), stage_experiments()})
         all.insert(all.end(), part.begin(), part.end());
     return all;
 }

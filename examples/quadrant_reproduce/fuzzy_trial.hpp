@@ -11,10 +11,33 @@
 
 namespace vcnc {
 
+/// Where the three tunings of [Yeung2006] Table 9 start: Ks [V s/mm], rho [V/mm].
+struct fuzzy_start {
+    double gain, adaptation;
+};
+inline constexpr std::array fuzzy_starts{fuzzy_start{1, 100}, fuzzy_start{0.01, 1}, fuzzy_start{10, 10000}};
+
 /// The trial of [Yeung2006] section 3 on the x axis: 100 mm forth and back at 200 mm/s, lambda 200 /s.
 struct fuzzy_trial {
     static constexpr feed_profile way{0.1};
     static constexpr int seeds = 3;
+
+    /// One run: reference minus table [um] and the command [V], sample by sample.
+    struct record {
+        std::vector<double> error, command;
+    };
+    static record run(const sliding_mode<>::parameters& law, std::uint64_t seed) {
+        servo<sliding_mode<>> machine(x_axis, law, {}, seed);
+        machine.settle({});
+        record out;
+        for (int k = 0; k < 2 * samples(); ++k) {
+            const auto asked = at(k);
+            out.error.push_back(1e6 * (asked.position.value() - machine.place()));
+            machine.step(asked);
+            out.command.push_back(machine.control().wire.command.value());
+        }
+        return out;
+    }
 
     analysis::tuning_trial operator()(gain_of<signal::voltage, signal::velocity> gain,
                                       gain_of<signal::voltage, signal::position> adaptation) const {
@@ -22,18 +45,11 @@ struct fuzzy_trial {
         law.gain = gain, law.adaptation = adaptation;
         analysis::tuning_trial mean{0, phase_margin(law), {}};
         for (int seed = 1; seed <= seeds; ++seed) {
-            servo<sliding_mode<>> machine(x_axis, law, {}, std::uint64_t(seed));
-            machine.settle({});
-            std::vector<double> command;
+            const record one = run(law, std::uint64_t(seed));
             double most = 0;
-            for (int k = 0; k < 2 * samples(); ++k) {
-                const auto asked = at(k);
-                most = std::max(most, std::abs(asked.position.value() - machine.place()));
-                machine.step(asked);
-                command.push_back(machine.control().wire.command.value());
-            }
-            mean.oscillation += analysis::oscillation_index(command, period, 50_Hz) / seeds;
-            mean.tracking_error += decltype(mean.tracking_error)::from_value(most / seeds);
+            for (const double e : one.error) most = std::max(most, std::abs(e));
+            mean.oscillation += analysis::oscillation_index(one.command, period, 50_Hz) / seeds;
+            mean.tracking_error += decltype(mean.tracking_error)::from_value(1e-6 * most / seeds);
         }
         return mean;
     }

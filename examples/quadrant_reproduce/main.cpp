@@ -47,17 +47,18 @@ nlohmann::ordered_json to_json(const std::vector<qr::section>& all) {
 void print_summary(const std::vector<qr::section>& all, std::FILE* out) {
     for (const qr::section& s : all) {
         const qr::tally t = qr::count(s.rows, s.what.tolerance);
-        fmt::print(out, "{}: {} figures", s.what.title, s.rows.size());
-        if (t.compared > 0)
-            fmt::print(out, ", {} of {} within {:g} % of the reference computation", t.within, t.compared,
-                       100 * s.what.tolerance);
-        fmt::print(out, "\n");
+        fmt::print(out, "{}: {} figures; published, simulated: {} within 10 %; measured: {} within 25 %\n",
+                   s.what.title, s.rows.size(), qr::near_words(s.rows, &qr::row::published_simulated, 0.10),
+                   qr::near_words(s.rows, &qr::row::published_measured, 0.25));
         for (const qr::row* r : t.outside)
-            fmt::print(out, "  outside: {} {}: {} {} instead of {}\n", r->id, r->quantity,
+            fmt::print(out, "  outside of the reference: {} {}: {} {} instead of {}\n", r->id, r->quantity,
                        qr::number(r->simulated), r->unit, qr::compared(*r, r->reference_computation));
         for (const qr::row& r : s.rows)
             if (!r.simulated) fmt::print(out, "  no figure: {} {}: {}\n", r.id, r.quantity, r.note);
     }
+    const qr::publication found(qr::printed_numbers(), qr::row_index(all));
+    fmt::print(out, "Published, simulated: {}\nPublished, measured: {}\n", found.simulated.words(),
+               found.measured.words());
 }
 
 int reproduce(const options& o, bool wants_page) {
@@ -71,8 +72,9 @@ int reproduce(const options& o, bool wants_page) {
             for (const qr::run_case& c : e.cases) fmt::print("{:28} {}\n", c.id, e.title);
         return 0;
     }
-    const auto all = qr::run_all(
+    auto all = qr::run_all(
         chosen, [&](const std::string& id, std::size_t done, std::size_t of) { line(done, of, id); });
+    qr::fill(all, qr::printed_numbers());
     if (!o.json.empty())
         write_output(o.json, to_json(all).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     if (!o.markdown.empty()) write_output(o.markdown, qr::markdown(all));
@@ -99,10 +101,11 @@ int reproduce(const options& o, bool wants_page) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"The milling table of [Jamaludin2008]: its experiments computed again, our figures beside the "
-                 "published ones.\n"
-                 "Without options it runs all of them and writes one HTML page with pictures.",
-                 "quadrant-reproduce"};
+    CLI::App app{
+        "The experiments of [Jamaludin2008], [Yeung2006] and [LowKeck2003] computed again, our figures beside "
+        "the published ones.\n"
+        "Without options it runs all of them and writes one HTML page with pictures.",
+        "quadrant-reproduce"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     options o;
     app.add_flag("--list", o.list, "the experiments' ids, and stop");

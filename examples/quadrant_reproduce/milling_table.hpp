@@ -8,6 +8,7 @@
 #include <quadrant/analysis/repetitive_design.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/memory/repetitive.hpp>
+#include <quadrant/process/milling_force.hpp>
 #include <quadrant/process/milling_harmonics.hpp>
 
 #include <array>
@@ -103,8 +104,8 @@ template <class Friction, class Observer, class Memory> struct configuration {
     }
 };
 using uncompensated = configuration<no_friction_model, no_observer, no_memory>; ///< (i)
-using compensated = configuration<gms_model, observer, no_memory>; ///< (ii)
-using learning = configuration<gms_model, observer, memory>;       ///< (iii)
+using compensated = configuration<gms_model, observer, no_memory>;              ///< (ii)
+using learning = configuration<gms_model, observer, memory>;                    ///< (iii)
 
 /// One axis of the table: loop, motor, the cutter's force on it, an encoder that may be noisy.
 template <class Configuration, class PlantFriction> class axis_in_cut {
@@ -112,10 +113,8 @@ public:
     using loop = milling_axis<typename Configuration::boxes>;
     using motor = linear_motor<typename PlantFriction::box>;
 
-    axis_in_cut(const axis& a, const axis& friction, const harmonic_table<15>& harmonics, const cut& c)
+    axis_in_cut(const axis& a, const axis& friction, const cut& c)
         : loop_{.box = {Configuration::controller(a, c), period}}, motor_(machine(a, friction, c), period),
-          cutter_({c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, harmonics},
-                  period),
           noise_(1e-6 * c.noise), gauss_(std::uint64_t(a.name[0])) {}
 
     void settle(quantity<si::length> at) {
@@ -123,8 +122,8 @@ public:
         loop_.settle(at);
         reading_ = at;
     }
-    void step(const typename loop::motion& r) {
-        reading_ = motor_(loop_(r, reading_), cutter_());
+    void step(const typename loop::motion& r, quantity_of<signal::force> push) {
+        reading_ = motor_(loop_(r, reading_), push);
         if (noise_ > 0) reading_ = 250_nm * std::round((motor_.now().x + noise_ * gauss_() * 1_m) / 250_nm);
     }
     double position() const { return motor_.now().x.value(); } ///< of the axis, not of its encoder [m]
@@ -146,10 +145,23 @@ private:
 
     loop loop_;
     motor motor_;
-    cutting_force<15> cutter_;
     quantity<si::length> reading_{};
     double noise_; ///< m rms
     white_noise gauss_;
+};
+
+/// The cutter by its measured harmonics.
+class synthesized {
+public:
+    explicit synthesized(const cut& c) : x_(of(c, milling_harmonics::x)), y_(of(c, milling_harmonics::y)) {}
+    milling_force<1>::value operator()(double) { return {x_(), y_()}; }
+
+private:
+    static cutting_force<15> of(const cut& c, const harmonic_table<15>& harmonics) {
+        return {{c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, harmonics},
+                period};
+    }
+    cutting_force<15> x_, y_;
 };
 
 struct circle_result {
@@ -160,9 +172,10 @@ struct circle_result {
 };
 
 /// Drives the circle, counter-clockwise from (radius, 0) and from rest. The error is that of the axes, not of the encoders.
-template <class Configuration, class PlantFriction = gms_plant> circle_result mill(const cut& c = {}) {
-    axis_in_cut<Configuration, PlantFriction> in_x(x, c.friction_x, milling_harmonics::x, c),
-        in_y(y, c.friction_y, milling_harmonics::y, c);
+/// `cutter(direction)` gives the force of the coming period.
+template <class Configuration, class PlantFriction, class Cutter>
+circle_result mill(const cut& c, Cutter cutter) {
+    axis_in_cut<Configuration, PlantFriction> in_x(x, c.friction_x, c), in_y(y, c.friction_y, c);
     using motion = typename decltype(in_x)::loop::motion;
     const double w = c.feed / c.radius, T = period.value(), start = 0.05; // s, of the run-in
     const auto turn = static_cast<std::size_t>(2 * pi_ / w / T);
@@ -185,11 +198,15 @@ template <class Configuration, class PlantFriction = gms_plant> circle_result mi
             found.angle.push_back(std::fmod(angle * 180 / pi_, 360));
             found.radial.push_back(error);
         }
-        in_x.step(along(cosine, -sine * speed, -sine * gain - cosine * speed * speed));
-        in_y.step(along(sine, cosine * speed, cosine * gain - sine * speed * speed));
+        const auto push = cutter(std::remainder(angle + pi_ / 2, 2 * pi_)); // the way of the table
+        in_x.step(along(cosine, -sine * speed, -sine * gain - cosine * speed * speed), push.x);
+        in_y.step(along(sine, cosine * speed, cosine * gain - sine * speed * speed), push.y);
     }
     found.rms = std::sqrt(found.rms / static_cast<double>(found.radial.size()));
     return found;
+}
+template <class Configuration, class PlantFriction = gms_plant> circle_result mill(const cut& c = {}) {
+    return mill<Configuration, PlantFriction>(c, synthesized(c));
 }
 
 } // namespace thesis

@@ -30,7 +30,7 @@ inline std::string with_unit(const row& r) {
     return number(r.simulated) + (sign.empty() || sign == "°" ? sign : "\u00a0" + sign);
 }
 /// As the thesis prints it.
-inline std::string printed(const std::optional<double>& v) { return v ? fmt::format("{:g}", *v) : "-"; }
+inline std::string as_printed(const std::optional<double>& v) { return v ? fmt::format("{:g}", *v) : "-"; }
 
 inline std::optional<double> distance(const row& r, const std::optional<double>& other) {
     if (!r.simulated || !other || *other == 0) return std::nullopt;
@@ -44,10 +44,21 @@ inline std::string percent(double off) {
 /// "15.6 (-0.3 %)": a given figure, and how far ours lies from it.
 inline std::string compared(const row& r, const std::optional<double>& other) {
     const auto off = distance(r, other);
-    return off ? fmt::format("{} ({})", printed(other), percent(*off)) : printed(other);
+    return off ? fmt::format("{} ({})", as_printed(other), percent(*off)) : as_printed(other);
 }
 
-/// What issue 3 asks: loop figures within 2 %, friction figures within 10 % of reference_computation.
+/// "4 of 6": how many of the given figures ours comes near to; a dash where none is given.
+inline std::string near_words(const std::vector<row>& rows, std::optional<double> row::*given, double limit) {
+    std::size_t all = 0, near = 0;
+    for (const row& r : rows)
+        if (const auto off = distance(r, r.*given)) {
+            ++all;
+            near += std::abs(*off) <= limit;
+        }
+    return all == 0 ? "-" : fmt::format("{} of {}", near, all);
+}
+
+/// What is asked: loop figures within 2 %, friction figures within 10 % of reference_computation.
 struct tally {
     std::size_t compared = 0, within = 0;
     std::vector<const row*> outside{};

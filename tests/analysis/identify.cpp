@@ -9,13 +9,15 @@ using namespace thesis;
 
 TEST_CASE("thesis.identify: Fc, Fs and the virgin curve at 1, 5, 15 and 30 um lie in their own intervals") {
     for (const axis* a : {&x, &y}) {
-        const auto rows = identification::identify(*a);
-        CHECK(rows.size() == 6);
+        const auto rows = identification::identify(*a).rows;
+        CHECK(rows.size() == 8);
         for (const auto& row : rows) {
             CAPTURE(a->name);
             CAPTURE(row.quantity);
             CAPTURE(row.simulated);
             CHECK(row.held());
+            if (row.unit != "N")
+                continue; // Vs and the viscous part follow from the fall of the map, less sharply
             CHECK(std::abs(row.simulated / row.reference - 1) < 0.05);
             CHECK(row.high - row.low < 0.18 * row.reference); // and the interval says something
         }
@@ -28,11 +30,11 @@ TEST_CASE("thesis.identify: without 0.01 mm/s, where the axis creeps from count 
         CAPTURE(a->name);
         const auto runs = identification::constant_speeds(*a, 3);
         const auto all = analysis::fit_stribeck(analysis::map_friction<>(runs, period, a->kf));
-        CHECK(all.surprise > 5); // the fit sees that one point is off
+        CHECK(all.surprise > 2); // the fit sees that one point is off: noise alone gives 1
         const auto fit =
             analysis::fit_stribeck(analysis::map_friction<>({runs.begin() + 4, runs.end()}, period, a->kf));
         CHECK(fit.converged);
-        CHECK(fit.surprise < 5);
+        CHECK(fit.surprise < 1);
         CHECK(fit.coulomb.holds(a->curve.coulomb));
         REQUIRE(fit.static_level);
         CHECK(fit.static_level->holds(a->curve.static_level));

@@ -67,7 +67,7 @@ TEST_CASE("reproduce: an axis that diverges is a row without a figure, and never
     thesis::axis wild = thesis::x;
     wild.kp = 20.0 * wild.kp;
     const auto found =
-        friction_case<thesis::no_friction_model, thesis::no_observer>(wild, "wild", "none", {15, 15, 21.8, 16.8}, 1.5);
+        friction_case<thesis::no_friction_model, thesis::no_observer>(wild, "wild", "none", {21.8, 16.8}, 1.5);
     REQUIRE(found.rows.size() == 2);
     for (const row& r : found.rows) {
         CHECK_FALSE(r.simulated);

@@ -29,6 +29,16 @@ for how in ("none", "static", "gms", "dob", "dob_static", "dob_gms"):
     ASKED[f"thesis.circle.{how}"] = ["radial_max", "radial_rms"]
 for configuration in ("i", "ii", "iii"):
     ASKED[f"thesis.cutting.{configuration}"] = ["radial_rms"]
+for axis in "xy":
+    ASKED[f"thesis.frf.{axis}"] = ["A", "B", "Td"]
+    ASKED[f"thesis.a_prime.{axis}"] = ["A_prime"]
+    ASKED[f"thesis.feedforward.{axis}"] = ["error_without", "error_with"]
+for kind, harmonics in (("observer", (1, 2, 3, 15)), ("ferraris", (1, 2, 3, 15)), ("ferraris_tracking", (1, 3, 15))):
+    ASKED[f"thesis.harmonics.{kind}"] = [f"rms_{how}_{h}" for h in harmonics for how in ("off", "on")]
+for configuration in ("i", "ii", "iii"):
+    ASKED[f"thesis.real_cut.{configuration}"] = ["radial_rms"]
+ASKED["thesis.ferraris_calibration"] = ["sensitivity", "offset"]
+ASKED["thesis.harmonic_observer"] = ["error_23Hz"] + [f"rms_{how}_{h}" for h in (1, 3) for how in ("off", "on")]
 # As shared/reference/virtual_cnc.md lists them.
 for law in ("pid", "smc"):
     for path in ("diamond", "circle"):
@@ -66,7 +76,7 @@ REFERENCE = {
 
 
 def tolerance(identifier):
-    return 0.02 if identifier.startswith(("thesis.loop", "thesis.repetitive")) else 0.10
+    return 0.02 if identifier.startswith(("thesis.loop", "thesis.repetitive", "thesis.frf")) else 0.10
 
 
 def faults(rows):

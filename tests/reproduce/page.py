@@ -47,7 +47,7 @@ def main():
                     where = f"{width} px, {scheme}"
                     show(driver, given.page.resolve().as_uri(), width, scheme)
                     pictures = driver.execute_script(PICTURES)
-                    check(len(pictures) >= 25, f"{where}: only {len(pictures)} pictures")
+                    check(len(pictures) >= 60, f"{where}: only {len(pictures)} pictures")
                     for p in pictures:
                         check("label" in p, f"{where}: '{p['title']}' was not drawn: {p.get('text')}")
                         check(p["curves"] > 0 and not p["unresolved"], f"{where}: '{p['title']}' has {p['curves']} curves")
@@ -62,7 +62,9 @@ def main():
                         shoot(driver, given.shots / f"{given.page.stem}-{width}-{scheme}.png")
                     print(f"{where}: {len(pictures)} pictures, no horizontal scroll")
             rows = driver.execute_script("return document.querySelectorAll('tr[data-id]').length")
-            check(rows >= 100, f"only {rows} rows")
+            check(rows >= 300, f"only {rows} rows")
+            printed = driver.execute_script("return document.querySelectorAll('#printed tr[data-printed]').length")
+            check(printed >= 600, f"only {printed} printed numbers")
             check_alone(driver)
             pdf = driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
             (given.shots / f"{given.page.stem}.pdf").write_bytes(base64.b64decode(pdf["data"]))

@@ -42,7 +42,7 @@ chosen() { # ID OTHER-OPTIONS: how many are listed
 
 "$program" --id thesis.loop.x --id thesis.repetitive --json rows.json >out 2>err || fail "--json ends with $?"
 [ ! -e quadrant_reproduction.html ] || fail "a page was written though only rows were asked for"
-[ "$(grep -c '"quantity"' rows.json)" = 12 ] || fail "rows.json has $(grep -c '"quantity"' rows.json) rows"
+[ "$(grep -c '"quantity"' rows.json)" = 19 ] || fail "rows.json has $(grep -c '"quantity"' rows.json) rows"
 "$program" --quiet --id thesis.repetitive --json quiet.json >out 2>err || fail "--quiet ends with $?"
 [ ! -s out ] && [ ! -s err ] || fail "--quiet says $(cat out err)"
 

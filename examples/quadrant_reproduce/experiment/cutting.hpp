@@ -56,7 +56,9 @@ inline std::vector<picture> radial_pictures(const std::string& name, const thesi
                 .polar = true,
                 .polar_zero = 60.0}}},
         {"Spectrum of the radial error while cutting",
-         "Amplitudes of three turns under a Hann window; the cutter's harmonics are multiples of 23.294 Hz.",
+         "Amplitudes of three turns under a Hann window. The radius turns with the circle, so that a harmonic "
+         "i of the "
+         "cutter stands at i 23.294 Hz plus and minus the 0.53 Hz of the circle.",
          {panel{.x_label = "frequency [Hz]",
                 .y_label = "amplitude [um]",
                 .lines = {radial_spectrum(name, found.radial)},
@@ -65,13 +67,12 @@ inline std::vector<picture> radial_pictures(const std::string& name, const thesi
 }
 
 template <class Configuration>
-outcome cutting_case(const std::string& which, const std::string& name, double measured,
-                     std::optional<double> reference, const std::string& note) {
+outcome cutting_case(const std::string& which, const std::string& name, std::optional<double> reference,
+                     const std::string& note) {
     const std::string id = "thesis.cutting." + which;
     const auto found = thesis::mill<Configuration>();
     outcome out{{radial_row(id, "radial_rms", found, note)}, radial_pictures(name, found)};
-    // Measured: Table 5.4 [Jamaludin2008]; reference: shared/reference/thesis.md, "Repetitive control".
-    out.rows[0].published_measured = measured;
+    // Reference: shared/reference/thesis.md, "Repetitive control".
     out.rows[0].reference_computation = reference;
     if constexpr (std::same_as<Configuration, thesis::learning>) {
         out.rows.push_back(radial_row(id, "radial_rms_first_order",
@@ -113,13 +114,13 @@ inline experiment cutting() {
         0.10,
         {{"thesis.cutting.i",
           [] {
-              return cutting_case<uncompensated>("i", "(i) none", 7.68, 11.4,
+              return cutting_case<uncompensated>("i", "(i) none", 11.4,
                                                  "the force scale of the thesis is not printed");
           }},
          {"thesis.cutting.ii",
-          [] { return cutting_case<compensated>("ii", "(ii) observer and GMS", 4.43, 4.4, ""); }},
+          [] { return cutting_case<compensated>("ii", "(ii) observer and GMS", 4.4, ""); }},
          {"thesis.cutting.iii", [] {
-              return cutting_case<thesis::learning>("iii", "(iii) and repetitive", 1.09, std::nullopt,
+              return cutting_case<thesis::learning>("iii", "(iii) and repetitive", std::nullopt,
                                                     "the reference computation gives a range, 0.3 to 0.7 um: "
                                                     "that between weights [2, -1] and [1]");
           }}}};

@@ -66,25 +66,40 @@ inline outcome dob_force_case(const thesis::axis& a) {
         draw(on, error_under_push<thesis::observer>(
                      a, {a.corner, quadrant::axis_model<quadrant::signal::voltage>{a.B, a.A}}, hertz));
     }
+    // Where the observer stops helping: the first crossing of the two lines, straight between them.
+    std::optional<double> crossing;
+    for (std::size_t i = 1; i < off.x.size() && !crossing; ++i) {
+        const double before = std::log(on.y[i - 1] / off.y[i - 1]), now = std::log(on.y[i] / off.y[i]);
+        if (before < 0 && now >= 0)
+            crossing = off.x[i - 1] + (off.x[i] - off.x[i - 1]) * before / (before - now);
+    }
+    out.rows.push_back({id, "helps_up_to", "Hz", crossing, {}, {}, {}, "between the lines of the picture"});
+    panel drawn{.x_label = "frequency [Hz]",
+                .y_label = "error amplitude [um]",
+                .lines = {off, on},
+                .log_x = true,
+                .log_y = true};
+    if (a.name == std::string("y"))
+        drawn.lines.push_back({.name = "published, Fig. 5.3",
+                               .x = {1, 1, 58, 58.2, 100, 100},
+                               .y = {133, 2.96, 109, 112, 36.4, 57.8},
+                               .drawn = line::style::points});
     out.pictures = {{std::string("Axis ") + a.name + ": error under a push of 1 V",
                      "Where the lines cross the observer stops helping; above it makes worse.",
-                     {panel{.x_label = "frequency [Hz]",
-                            .y_label = "error amplitude [um]",
-                            .lines = {off, on},
-                            .log_x = true,
-                            .log_y = true}}}};
+                     {std::move(drawn)}}};
     return out;
 }
 
 inline experiment dob_force() {
-    return {"A sinusoidal force against the observer",
-            "[Jamaludin2008] eqs. (4.1-4.20)",
-            "The resting axis on its linear model is pushed as by 1 V at the motor; simulated sample by sample "
-            "at 2 kHz with the "
-            "delay and the hold. The thesis prints no figure for this.",
-            0.02,
-            {{"thesis.dob_force.x", [] { return dob_force_case(thesis::x); }},
-             {"thesis.dob_force.y", [] { return dob_force_case(thesis::y); }}}};
+    return {
+        "A sinusoidal force against the observer",
+        "[Jamaludin2008] eqs. (4.20), (5.1), (5.2), Figs. 5.2 and 5.3",
+        "The resting axis on its linear model is pushed as by 1 V at the motor; simulated sample by sample "
+        "at 2 kHz with the delay and the hold. The thesis prints the amplitudes of the y axis, simulated "
+        "(Fig. 5.2) and by the transfer functions (Fig. 5.3); it takes 1 V for 1450 N, which is the x axis.",
+        0.02,
+        {{"thesis.dob_force.x", [] { return dob_force_case(thesis::x); }},
+         {"thesis.dob_force.y", [] { return dob_force_case(thesis::y); }}}};
 }
 
 } // namespace quadrant_reproduce

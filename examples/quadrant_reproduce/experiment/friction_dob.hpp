@@ -7,11 +7,10 @@ namespace quadrant_reproduce {
 /// The friction experiment again, with the disturbance observer.
 inline experiment friction_dob() {
     using namespace thesis;
-    // Measured: Table 4.10 [Jamaludin2008].
     const std::string id = "thesis.friction_dob.";
     return {
         "Friction at reversals, with the disturbance observer",
-        "[Jamaludin2008] eqs. (4.1-4.20), Table 4.10",
+        "[Jamaludin2008] eqs. (4.1-4.20), Tables 4.9 and 4.10",
         "The same runs with the observer of 60 Hz (x) and 90 Hz (y) on B/(s(s+A')). Friction feedforward "
         "enters behind "
         "the observer's tap. At 10 mm/s the static curve makes it worse: its step at the reversal comes at "
@@ -20,29 +19,19 @@ inline experiment friction_dob() {
         0.10,
         {{id + "x.none",
           [=] {
-              return friction_case<no_friction_model, observer>(x, id + "x.none", "observer alone", {{}, 7, {}, {}}, 2.5);
+              return friction_case<no_friction_model, observer>(x, id + "x.none", "observer alone", {}, 2.5);
           }},
          {id + "x.static",
-          [=] {
-              return friction_case<static_curve, observer>(x, id + "x.static", "and static", {{}, 3, {}, {}},
-                                                           2.5);
-          }},
-         {id + "x.gms",
-          [=] {
-              return friction_case<gms_model, observer>(x, id + "x.gms", "and GMS", {{}, 2.5, {}, {}}, 4);
-          }},
+          [=] { return friction_case<static_curve, observer>(x, id + "x.static", "and static", {}, 2.5); }},
+         {id + "x.gms", [=] { return friction_case<gms_model, observer>(x, id + "x.gms", "and GMS", {}, 4); }},
          {id + "y.none",
           [=] {
-              return friction_case<no_friction_model, observer>(y, id + "y.none", "observer alone", {{}, 11, {}, {}}, 2.5);
+              return friction_case<no_friction_model, observer>(y, id + "y.none", "observer alone", {}, 2.5);
           }},
          {id + "y.static",
-          [=] {
-              return friction_case<static_curve, observer>(y, id + "y.static", "and static", {{}, 5, {}, {}},
-                                                           2.5);
-          }},
-         {id + "y.gms", [=] {
-              return friction_case<gms_model, observer>(y, id + "y.gms", "and GMS", {{}, 3, {}, {}}, 4);
-          }}}};
+          [=] { return friction_case<static_curve, observer>(y, id + "y.static", "and static", {}, 2.5); }},
+         {id + "y.gms",
+          [=] { return friction_case<gms_model, observer>(y, id + "y.gms", "and GMS", {}, 4); }}}};
 }
 
 } // namespace quadrant_reproduce

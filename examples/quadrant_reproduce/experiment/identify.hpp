@@ -71,10 +71,14 @@ private:
     std::normal_distribution<double> gauss_;
 };
 
+/// The speeds of [Jamaludin2008] section 3.3.2 [m/s].
+inline constexpr std::array map_speeds{1e-5, 4e-5, 8e-5, 2e-4,   4e-4,   5e-4, 1e-3,   2e-3, 4e-3,
+                                       5e-3, 8e-3, 1e-2, 1.4e-2, 1.6e-2, 2e-2, 2.5e-2, 3e-2};
+
 /// Runs at constant speeds, both ways: first fast enough for the springs to be bent, then at the speed.
 inline std::vector<rig::log> constant_speeds(const axis& a, unsigned seed) {
     std::vector<rig::log> out;
-    for (const double speed : {1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2})
+    for (const double speed : map_speeds)
         for (const double way : {1.0, -1.0}) {
             constexpr double start = 0.1, run_in = 1.5; // s
             const double first = std::max(speed, 1.5e-4), length = run_in + std::max(4.0, 5e-5 / speed);
@@ -118,28 +122,36 @@ struct identified {
     bool held() const { return low <= reference && reference <= high; }
 };
 
-/// The whole of it: friction map at 8 speeds, then the virgin curve with the level that the map gave, then the elements.
-inline std::vector<identified> identify(const axis& a, unsigned seed = 1) {
-    const auto map = analysis::map_friction<>(constant_speeds(a, seed), period, a.kf);
-    const auto level = analysis::fit_stribeck(map);
+/// What the procedures found, and the map that the first of them gave.
+struct findings {
+    std::vector<identified> rows;
+    analysis::friction_map map;
+};
+
+/// The whole of it: friction map at the thesis' 17 speeds, then the virgin curve with the level that the map gave, then the
+/// elements.
+inline findings identify(const axis& a, unsigned seed = 1) {
+    findings out{{}, analysis::map_friction<>(constant_speeds(a, seed), period, a.kf)};
+    const auto level = analysis::fit_stribeck(out.map);
     const quantity<si::mass> mass = a.kf / a.B;
+    const auto viscous = a.curve.viscous + a.A_gms * mass;
     const auto curve = analysis::find_virgin_curve<>(
         {slow_sinusoid(a, 15e-6, 4, seed + 100), slow_sinusoid(a, 450e-6, 4, seed + 101)}, period, a.kf,
-        {.mass = 1.02 * mass,
-         .viscous = 0.98 * (a.curve.viscous + a.A_gms * mass),
-         .level = level.parameters()});
+        {.mass = 1.02 * mass, .viscous = 0.98 * viscous, .level = level.parameters()});
     const auto springs = analysis::fit_gms<4>(curve);
 
     const std::string id = std::string("thesis.identify.") + a.name;
-    std::vector<identified> rows;
-    const auto add = [&](const std::string& name, const auto& found, double truth) {
-        rows.push_back({id, name, "N", found.value.value(), found.low.value(), found.high.value(), truth});
+    const auto add = [&](const std::string& name, const std::string& unit, const auto& found, double truth) {
+        out.rows.push_back({id, name, unit, found.value.value(), found.low.value(), found.high.value(), truth});
     };
-    add("Fc", level.coulomb, a.curve.coulomb.value());
-    if (level.static_level) add("Fs", *level.static_level, a.curve.static_level.value());
+    add("Fc", "N", level.coulomb, a.curve.coulomb.value());
+    if (level.static_level) add("Fs", "N", *level.static_level, a.curve.static_level.value());
+    if (level.stribeck_velocity) add("Vs", "m/s", *level.stribeck_velocity, a.curve.stribeck_velocity.value());
+    add("viscous", "N s/m", level.viscous, viscous.value());
     for (const int um : {1, 5, 15, 30})
-        add("virgin_" + std::to_string(um) + "um", springs.at(um * 1e-6 * 1_m), virgin_force(a, um * 1e-6));
-    return rows;
+        add("virgin_" + std::to_string(um) + "um", "N", springs.at(um * 1e-6 * 1_m),
+            virgin_force(a, um * 1e-6));
+    return out;
 }
 
 } // namespace thesis::identification

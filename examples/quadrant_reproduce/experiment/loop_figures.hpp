@@ -17,11 +17,29 @@ struct loop_figures {
     double position_gain_margin, position_gain_margin_at;
     double position_phase_margin, position_phase_margin_at;
     double position_bandwidth;
-    double tracking_ratio_10Hz;   ///< |1 - T| at 10 Hz
-    double min_dynamic_stiffness; ///< [N/um]
+    double tracking_ratio_10Hz;                                                  ///< |1 - T| at 10 Hz
+    double min_dynamic_stiffness;                                                ///< [N/um]
+    double velocity_closed_bandwidth = std::numeric_limits<double>::quiet_NaN(); ///< [Hz], of eq. (2.26)
+    double position_closed_bandwidth = std::numeric_limits<double>::quiet_NaN(); ///< [Hz], of eq. (2.31)
 };
 
 inline const analysis::band servo{0.5_Hz, 900_Hz};
+
+/// Where a closed loop falls through -3 dB for the first time [Hz]; NaN where it does not.
+template <class Response> double falls_through(const Response& closed, const analysis::band& b) {
+    const auto above = [&](frequency f) { return std::abs(closed(f)) > std::sqrt(0.5); };
+    const auto lines = analysis::grid(b);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        if (!above(lines[i - 1]) || above(lines[i])) continue;
+        frequency low = lines[i - 1], high = lines[i];
+        for (int step = 0; step < 40; ++step) {
+            const frequency middle = 0.5 * (low + high);
+            (above(middle) ? low : high) = middle;
+        }
+        return low.value();
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Of a `p_pi_loop` or a `p_pi_dob_loop`.
 template <class Loop>
@@ -43,7 +61,9 @@ loop_figures figures_of(const Loop& loop, gain_of<signal::force, signal::voltage
             at(p.smallest_phase()),
             hz(analysis::sensitivity_bandwidth([&](frequency f) { return loop.sensitivity(f); }, b)),
             std::abs(loop.error_ratio(10_Hz)),
-            analysis::least([&](frequency f) { return loop.dynamic_stiffness(f, kf); }, b).value * 1e-6};
+            analysis::least([&](frequency f) { return loop.dynamic_stiffness(f, kf); }, b).value * 1e-6,
+            falls_through([&](frequency f) { return 1.0 - loop.velocity_sensitivity(f); }, b),
+            falls_through([&](frequency f) { return loop.tracking(f); }, b)};
 }
 
 } // namespace thesis

@@ -116,4 +116,10 @@ inline mode_fit fit_modes_to(const axis& a, const published_loop& wanted) {
     return {plant, figures_of(loop, a.kf), least / std::sqrt(double(distance.values()))};
 }
 
+/// The modes of an axis, fitted once in a run.
+inline const mode_fit& fitted_modes(const axis& a) {
+    static const mode_fit of_x = fit_modes_to(x, published_x), of_y = fit_modes_to(y, published_y);
+    return &a == &x ? of_x : of_y;
+}
+
 } // namespace thesis

@@ -26,13 +26,13 @@ inline outcome repetitive_case() {
     const std::array<double, 2> second{2, -1};
     const auto chosen = indices(first), steepest = indices(second);
     outcome out;
-    // Published: chapter 5 [Jamaludin2008]. Reference: shared/reference/thesis.md, "Repetitive control", the closed form
+    // Reference: shared/reference/thesis.md, "Repetitive control", the closed form
     // 2 sin(0.01 pi) and 6.02 dB.
     out.rows = {{"thesis.repetitive",
                  "gamma_p",
                  "1",
                  chosen.periodic,
-                 0.063,
+                 {},
                  {},
                  0.0628,
                  "weights [1]: the published pair is that of a first-order loop, though the text has order 2"},
@@ -40,7 +40,7 @@ inline outcome repetitive_case() {
                  "gamma_np",
                  "dB",
                  chosen.non_periodic_db,
-                 6,
+                 {},
                  {},
                  6.02,
                  fmt::format("weights [1]; [2, -1] gives {:.2f} dB and a gamma_p of {:.4f}",
@@ -70,6 +70,33 @@ inline outcome repetitive_case() {
     draw("weights [1]", error_ratio(first));
     draw("weights [2, -1]", error_ratio(second));
 
+    // Fig. 5.21: the loop around which the memory lies, 1/S - 1, with and without it.
+    picture loop_with{
+        "The loop with the memory",
+        "x axis, weights [1]: gain of the open loop, sensitivity and complementary sensitivity, without and "
+        "with "
+        "the memory.",
+        {panel{.x_label = "", .y_label = "loop gain [dB]", .lines = {}, .log_x = true},
+         panel{
+             .x_label = "", .y_label = "S [dB]", .lines = {}, .log_x = true, .y_range = std::pair{-70.0, 15.0}},
+         panel{.x_label = "frequency [Hz]",
+               .y_label = "T [dB]",
+               .lines = {},
+               .log_x = true,
+               .y_range = std::pair{-70.0, 15.0}}}};
+    for (const bool with : {false, true}) {
+        std::array<line, 3> curves;
+        for (line& c : curves) c.name = with ? "with the memory" : "cascade";
+        const auto ratio = error_ratio(first);
+        for (const double f : at) {
+            const complex s = (1.0 - closed(qa::hertz(f))) * (with ? ratio(qa::hertz(f)) : complex(1));
+            const std::array values{std::abs(1.0 / s - 1.0), std::abs(s), std::abs(1.0 - s)};
+            for (std::size_t i = 0; i < 3; ++i)
+                curves[i].x.push_back(f), curves[i].y.push_back(qa::decibel(std::max(values[i], 1e-6)));
+        }
+        for (std::size_t i = 0; i < 3; ++i) loop_with.panels[i].lines.push_back(std::move(curves[i]));
+    }
+
     line one{.name = "first harmonic", .x = {}, .y = {}}, eight{.name = "eight harmonics", .x = {}, .y = {}};
     for (double db = 6.03; db <= 12.04; db += 0.25) {
         const auto weights = qa::repetitive_weights<2>(db);
@@ -81,6 +108,7 @@ inline outcome repetitive_case() {
     }
     out.pictures = {
         gain,
+        loop_with,
         {"The trade-off of a second-order memory",
          "gamma_p (what is left at the harmonics when the period is 1 % off) over gamma_np (what is amplified "
          "between "
@@ -91,7 +119,7 @@ inline outcome repetitive_case() {
 
 inline experiment repetitive() {
     return {"Repetitive control",
-            "[Jamaludin2008] chapter 5",
+            "[Jamaludin2008] section 5.4.1, Figs. 5.17 to 5.21",
             "L is the inverse of the closed loop by least squares (90 taps, 30 ahead), Q a zero-phase low-pass "
             "of 200 Hz with 61 taps, "
             "the period that of 23.294 Hz, 1 % uncertain.",

@@ -79,20 +79,20 @@ inline constexpr std::array<std::array<tuning_action, 5>, 3> decision_table = []
     return table;
 }();
 
-/// Where the sets end. The source does not print its own; these are ours, for an index with 50 Hz and 2000 and for feed drives
-/// of machine tools: about 40 to 45 degrees, and an error of ten counts of the encoder.
+/// Where the sets end: Table 2 of the source. Its index of oscillation takes a threshold frequency and a scale that it does not
+/// print; 50 Hz and 2000 put all three of the gains that it tuned (Table 9) into the acceptable sets.
 struct tuning_limits {
-    std::array<double, 4> oscillation{5, 0.7, 0.3,
-                                      0.12};            ///< falling: above the first HIUN, below the last HIOQ
-    std::array<double, 4> phase_margin{20, 40, 45, 60}; ///< [deg], rising: below the first or none HIUN
-    std::array<double, 4> tracking_error{5e-4, 2e-4, 2e-5, 1.25e-5}; ///< [m], falling: above the first EL
+    std::array<double, 4> oscillation{1, 0.75, 0.5,
+                                      0.25};            ///< falling: above the first HIUN, below the last HIOQ
+    std::array<double, 4> phase_margin{30, 40, 45, 60}; ///< [deg], rising: below the first or none HIUN
+    std::array<double, 4> tracking_error{20e-3, 5e-3, 1e-3, 0.1e-3}; ///< [m], falling: above the first EL
 };
 
 /// A trial as states of OSC, PHM, TRE. Without a phase margin the tracking error is EL: it is that of a limit cycle.
 inline std::array<tuning_state, 3> classified(const tuning_trial& t, const tuning_limits& limits = {}) {
     const auto falling = [](double x, const std::array<double, 4>& ends) {
         std::size_t set = 0;
-        while (set < 4 && !(x > ends[set])) ++set; // NaN is the last: refused by tune()
+        while (set < 4 && !(x >= ends[set])) ++set; // NaN is the last: refused by tune()
         return tuning_state(set);
     };
     std::size_t set = 0;

@@ -11,7 +11,7 @@ namespace quadrant::analysis {
 ///   velocity B gained/(z - kept),  position B {way + gained^2/(z - kept)}/(z - 1),  of `viscous_step`
 /// Source: [Franklin1998] zero-order hold.
 template <signal_tag Command = signal::voltage> struct sampled_axis {
-    axis_model<Command> plant;
+    quadrant::axis_model<Command> plant;
     duration period;
 
     complex velocity(frequency f) const {

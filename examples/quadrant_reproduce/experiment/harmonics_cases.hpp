@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../milling_table.hpp"
+#include "../push_run.hpp"
+#include "../row.hpp"
+
+namespace quadrant_reproduce {
+
+inline std::optional<double> rms_of(const thesis::push_result& r) {
+    return r.diverged ? std::nullopt : std::optional(r.rms);
+}
+
+/// The last so many seconds of a run, time from there.
+inline line last_of(const std::string& name, const thesis::push_result& r, const std::vector<double>& y,
+                    double seconds) {
+    line out{.name = name, .x = {}, .y = {}};
+    const auto count = std::min(y.size(), std::size_t(seconds / thesis::period.value()));
+    for (std::size_t k = y.size() - count; k < y.size(); ++k) {
+        out.x.push_back(r.time[k] - r.time[y.size() - count]);
+        out.y.push_back(y[k]);
+    }
+    return out;
+}
+
+/// Fig. 5.7: both axes along the circle, GMS friction and the inverse model fed forward, without and with observer.
+inline outcome harmonics_circle(const std::string& id) {
+    using namespace thesis;
+    const auto off = thesis::mill<configuration<gms_model, no_observer, no_memory>>();
+    const auto on = thesis::mill<compensated>();
+    const auto largest = [](const circle_result& r) {
+        return r.diverged ? std::nullopt : std::optional(r.largest);
+    };
+    outcome out;
+    out.rows = {{id, "radial_max_off", "um", largest(off), {}, {}, {}, "30 mm at 100 mm/s, force scale 1.38"},
+                {id, "radial_max_on", "um", largest(on), {}, {}, {}, ""}};
+    panel polar{.x_label = "", .y_label = "um", .lines = {}, .polar = true, .polar_zero = 60.0};
+    for (const auto& [name, r] : {std::pair{"without observer", &off}, std::pair{"with observer", &on}}) {
+        line turn{.name = name, .x = {}, .y = {}};
+        for (std::size_t k = r->radial.size() / 3 * 2; k < r->radial.size(); ++k)
+            turn.x.push_back(r->angle[k]), turn.y.push_back(r->radial[k]);
+        polar.lines.push_back(std::move(turn));
+    }
+    out.pictures = {{"Radial error with 15 harmonics, without and with observer",
+                     "Polar plot in um about the nominal circle of 30 mm.",
+                     {std::move(polar)}}};
+    return out;
+}
+
+/// Figs. 5.23 and 5.24: GMS friction, its feedforward and the observer, along the sinusoid of 30 mm; without and with the memory.
+inline outcome harmonics_memory(const std::string& id, const thesis::axis& a) {
+    using namespace thesis;
+    outcome out;
+    picture errors{
+        "The memory against 1 to 15 harmonics",
+        "Tracking error along the sinusoid of 30 mm, the last half second, without and with the memory.",
+        {}};
+    const auto& table = a.name == std::string("x") ? milling_harmonics::x : milling_harmonics::y;
+    const auto follow = [&](auto configured, int harmonics) {
+        using chosen = decltype(configured);
+        const cut c{.cycle = exact_cycle, .weights = first_order};
+        axis_in_cut<chosen, gms_plant> axis(a, a, c);
+        auto some = table;
+        for (std::size_t i = std::size_t(harmonics); i < 15; ++i) some.real[i] = some.imaginary[i] = 0;
+        cutting_force<15> cutter({milling_harmonics::fundamental, c.force * milling_harmonics::scale, some},
+                                 period);
+        push_result r;
+        const double w = 0.1 / 0.03, T = period.value(), end = 2 * 2 * pi_ / w;
+        double squares = 0, counted = 0;
+        for (int k = 0; k * T < end; ++k) {
+            const double t = k * T, x = 0.03 * (1 - std::cos(w * t));
+            const double error = 1e6 * (x - axis.position());
+            if (!(std::abs(error) < 1000) || axis.stopped()) return push_result{.diverged = true};
+            r.time.push_back(t), r.error.push_back(error);
+            if (t > end / 2) squares += error * error, counted += 1;
+            axis.step({x * 1_m, 0.03 * w * std::sin(w * t) * 1_mps, 0.03 * w * w * std::cos(w * t) * 1_mps2},
+                      cutter());
+        }
+        r.rms = std::sqrt(squares / counted);
+        return r;
+    };
+    for (const int h : {1, 2, 3, 15}) {
+        const auto off = follow(compensated{}, h), on = follow(thesis::learning{}, h);
+        const std::string n = std::to_string(h);
+        out.rows.push_back({id, "rms_off_" + n, "um", rms_of(off), {}, {}, {}, "observer and GMS feedforward"});
+        out.rows.push_back(
+            {id, "rms_on_" + n, "um", rms_of(on), {}, {}, {}, "and the memory, weights [1], exact cycle"});
+        if (a.name == std::string("y"))
+            errors.panels.push_back(
+                panel{.x_label = h == 15 ? "time [s]" : "",
+                      .y_label = n + (h == 1 ? " harmonic [um]" : " harmonics [um]"),
+                      .lines = {last_of("without", off, off.error, 0.5), last_of("with", on, on.error, 0.5)}});
+    }
+    if (!errors.panels.empty()) out.pictures = {std::move(errors)};
+    return out;
+}
+
+/// Fig. 5.10: what the estimator says of the force, without being fed back.
+inline outcome ferraris_estimate(const std::string& id) {
+    using namespace thesis;
+    using boxes = milling_axis_boxes<absent<signal::velocity, signal::voltage>, by_ferraris>;
+    auto c = controller_of<boxes>(y);
+    c.plant_pole = y.A;
+    c.disturbance = {.feeds_back = false};
+    milling_axis<boxes> loop{.box = {c, period}};
+    const quantity<si::mass> mass = y.kf / y.B;
+    linear_motor<coulomb_viscous<>> motor({.mass = mass,
+                                           .force_constant = y.kf,
+                                           .friction = {.viscous = y.A * mass},
+                                           .delay = 0.4_ms,
+                                           .substeps = 10},
+                                          period);
+    cutting_force<15> cutter(
+        {milling_harmonics::fundamental, 1.38 * milling_harmonics::scale, milling_harmonics::y}, period);
+    line given{.name = "force", .x = {}, .y = {}}, estimated{.name = "estimate", .x = {}, .y = {}};
+    auto before = motor.now().v;
+    for (int k = 0; k < 2400; ++k) {
+        loop.box.disturbance.sense((motor.now().v - before) / period);
+        before = motor.now().v;
+        const auto force = cutter();
+        const auto u = loop({}, motor.now().x);
+        if (k >= 2000) {
+            const double t = (k - 2000) * period.value();
+            given.x.push_back(t), given.y.push_back(force.value());
+            estimated.x.push_back(t), estimated.y.push_back(loop.box.disturbance.force().value());
+        }
+        motor(u, force);
+    }
+    // How late: the shift that fits best, in steps of a sample.
+    double best = HUGE_VAL, late = 0;
+    for (std::size_t shift = 0; shift < 30; ++shift) {
+        double squares = 0;
+        for (std::size_t k = 30; k < given.y.size(); ++k) {
+            const double e = estimated.y[k] - given.y[k - shift];
+            squares += e * e;
+        }
+        if (squares < best) best = squares, late = double(shift) * period.value();
+    }
+    outcome out;
+    out.rows = {
+        {id,
+         "estimate_late_by",
+         "ms",
+         1e3 * late,
+         {},
+         {},
+         {},
+         "the shift by whole samples that fits the force best; the thesis sees it late, without a number"}};
+    out.pictures = {{"The force and what the Ferraris estimator says of it",
+                     "y axis at rest, 15 harmonics, the estimate is not fed back; Q of 90 Hz.",
+                     {panel{.x_label = "time [s]", .y_label = "force [N]", .lines = {given, estimated}}}}};
+    return out;
+}
+
+} // namespace quadrant_reproduce

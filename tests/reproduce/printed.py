@@ -1,0 +1,115 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSL-1.0
+"""Every printed number of the three sources stands in docs/reproduction.md with ours beside it, or with the reason why there is none.
+
+printed.py REPRODUCTION.md [SOURCES]
+
+Counts the list: of every number either ours is there, or a reason. Where SOURCES (the folder of the three texts) is there: every
+number in the list is in the text of its source letter for letter, and every number in the tables of the text is in the list.
+"""
+import pathlib
+import re
+import sys
+
+SOURCE_FILES = {"[Jamaludin2008]": "000_*.txt", "[Yeung2006]": "001_*.txt", "[LowKeck2003]": "002_*.txt"}
+# Numbers of each table, as its rows and columns have them.
+CELLS = {
+    "[Jamaludin2008]": {"2.1": 6, "2.2": 4, "2.3": 8, "2.4": 2, "2.5": 8, "2.6": 2, "3.1": 10, "3.2": 8, "3.3": 8, "3.4": 8, "3.5": 45,
+                        "3.6": 45, "4.1": 8, "4.2": 6, "4.3a": 8, "4.3b": 8, "4.4": 6, "4.5": 10, "4.6": 8, "4.7": 8, "4.8": 4, "4.9": 6,
+                        "4.10": 6, "4.11": 18, "5.1": 12, "5.2": 12, "5.3": 9, "5.4": 3, "5.5": 7, "5.6": 3},
+    "[Yeung2006]": {"2": 12, "3": 25, "4": 49, "7": 30, "8": 46, "9": 20, "10": 12, "11": 24, "12": 24},
+}
+# Where the numbers of a table stand in the text: from its caption to a word that begins what follows.
+ENDS = {"4.2": "In feedforward friction", "4.4": "The GMS friction model", "4.6": "The inverse model-based", "4.7": "The gain margin and the phase margin of both",
+        "4.8": "The disturbance observer improves", "4.9": "A combination of GMS", "4.10": "Next, circular tests", "5.1": "Next, circular tests",
+        "5.2": "Finally, the cutting", "5.3": "The estimator is able", "5.4": "The repetitive controller", "5.6": "5.6 Summary",
+        "2.3": "The magnitudes of the gain", "2.5": "The gain and phase margins", "3.5": "Table 3.6. Y-axis", "3.6": "A comparison between"}
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+
+
+def rows(path):
+    """Of the last part: (source, place, what, origin, printed, ours, where)."""
+    source = None
+    for line in pathlib.Path(path).read_text(encoding="utf-8").split("## Every printed number")[-1].splitlines():
+        if line.startswith("### "):
+            source = line.split()[1]
+        cells = [c.strip() for c in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if source and len(cells) == 7 and cells[0] not in ("place", "---"):
+            yield source, cells[0], cells[1], cells[2], cells[3], cells[4], cells[6]
+
+
+def count_faults(listed):
+    tables = {}
+    for source, place, what, origin, printed, ours, where in listed:
+        if ours == "-" and not where.startswith("cannot be computed: "):
+            yield f"{source} {place}, {what}: {printed} has no figure of ours and no reason"
+        if where.startswith("cannot be computed: ") and len(where) < 40:
+            yield f"{source} {place}, {what}: the reason is short: {where}"
+        if place.startswith("Table "):
+            key = source, place[6:]
+            tables[key] = tables.get(key, 0) + 1
+    for source, cells in CELLS.items():
+        for table, wanted in cells.items():
+            if tables.get((source, table), 0) != wanted:
+                yield f"{source} Table {table}: {tables.get((source, table), 0)} numbers in the list, {wanted} in the table"
+
+
+def text_of(folder, pattern):
+    found = list(pathlib.Path(folder).glob(pattern))
+    if not found:
+        return None
+    text = found[0].read_text(encoding="utf-8").replace("−", "-")
+    text = re.sub(r"(?<=\d),(?=\d{3}\b)", "", text)  # 50,000
+    # The Virtual CNC's text has K for a minus before a digit, and !10K4 for a power.
+    text = re.sub(r"!10K(\d+)", r"e-\1", text)
+    return re.sub(r"\bK(?=\d)", "-", text)
+
+
+def text_faults(listed, folder):
+    texts = {source: text_of(folder, pattern) for source, pattern in SOURCE_FILES.items()}
+    for source, place, what, _, printed, _, _ in listed:
+        number = printed.split(" ")[0]
+        if texts[source] and number and number not in texts[source]:
+            yield f"{source} {place}, {what}: {number} is not in the text"
+    cnc = texts["[Yeung2006]"] or ""
+    in_contours = {p.split(" ")[0] for s, place, _, _, p, _, _ in listed if place in ("Table 11", "Table 12")}
+    for line in re.findall(r"^\s*(?:PID|SMC)((?: \d+\.\d+){4})\s*$", cnc, re.M):
+        for number in line.split():
+            if number not in in_contours:
+                yield f"Tables 11 and 12: {number} of the text is not in the list"
+    thesis = texts["[Jamaludin2008]"]
+    if not thesis:
+        return
+    for table, end in ENDS.items():
+        listed_here = {p.split(" ")[0] for s, place, _, _, p, _, _ in listed if s == "[Jamaludin2008]" and place == f"Table {table}"}
+        start = thesis.index(f"Table {table}. ")
+        stop = thesis.find(end, start)
+        if stop < 0:
+            yield f"Table {table}: its end '{end}' is not in the text"
+            continue
+        block = thesis[start:stop].split("\n")
+        for cell in block[1:]:  # the caption's own numbers are in its first line
+            for number in re.findall(r"(?<![\w.])\d+\.?\d*(?= ?(?:dB|Hz|deg|µm|um|%|$))", cell.strip()):
+                index = table in ("3.5", "3.6") and number.isdigit() and int(number) <= 15  # of the harmonic
+                if number.rstrip(".") not in listed_here and not index and not re.fullmatch(r"\d\d\d?", number):  # page numbers
+                    yield f"Table {table}: {number} of the text is not in the list ({cell.strip()})"
+
+
+def main():
+    listed = list(rows(sys.argv[1]))
+    faults = list(count_faults(listed))
+    missing = [line for line in pathlib.Path(sys.argv[1]).read_text(encoding="utf-8").splitlines() if "| missing |" in line]
+    faults += [f"missing: {line}" for line in missing]
+    whole = len(sys.argv) > 2 and pathlib.Path(sys.argv[2]).is_dir()
+    if whole:
+        faults += text_faults(listed, sys.argv[2])
+    for fault in faults[:40]:
+        print("FAILED:", fault)
+    cannot = sum(1 for row in listed if row[6].startswith("cannot"))
+    print(f"{len(listed)} printed numbers, {len(listed) - cannot} with ours beside, {cannot} with a reason; "
+          f"{'compared with the texts; ' if whole else ''}{len(faults)} faults")
+    sys.exit(bool(faults) or len(listed) < 600)
+
+
+if __name__ == "__main__":
+    main()
