@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../feedforward/axis_motion.hpp"
 #include "../finite.hpp"
 #include "cascade.hpp"
 #include "maps.hpp"
@@ -95,29 +96,27 @@ template <milling_boxes Boxes> struct milling_axis {
     using acceleration = quantity_of<signal::acceleration, real>;
     using command = quantity_of<command_of<Boxes>, real>;
     using wires = milling_wires<command_of<Boxes>, real>;
-    static_assert(every_wire_has_a_tap(wires::taps()));
+    static_assert(every_wire_has_a_tap(
+        milling_wires<command_of<Boxes>, std::conditional_t<multi_lane<real>, double, real>>::taps()));
+    static_assert(!multi_lane<real> || steps_together<real>, "an axis holds as a whole: lanes_in_step");
 
-    /// What the trajectory asks for at one moment.
-    struct motion {
-        milling_axis::position position{};
-        milling_axis::velocity velocity{};
-        milling_axis::acceleration acceleration{};
-    };
+    using motion = axis_motion<real>; ///< what the trajectory asks for at one moment
 
     Boxes box;
     wires wire{};
     bool fault = false;    ///< a sample was not finite; cleared by reset and settle
     bool tracking = false; ///< the last sample was a `track`: nothing is learnt
 
-    command operator()(const motion& reference, position measured) noexcept {
+    [[gnu::always_inline]] command operator()(const motion& reference, position measured) noexcept {
         return step(reference, reference, measured);
     }
-    command operator()(const motion& reference, const motion& ahead, position measured) noexcept {
+    [[gnu::always_inline]] command operator()(const motion& reference, const motion& ahead,
+                                              position measured) noexcept {
         return step(reference, ahead, measured);
     }
 
     void settle(position x, command hold = command()) noexcept {
-        if (!finite(x, hold)) {
+        if (!all(finite(x, hold))) {
             fault = true;
             return;
         }
@@ -151,8 +150,8 @@ template <milling_boxes Boxes> struct milling_axis {
         track(reference, reference, measured, applied);
     }
     void track(const motion& reference, const motion& ahead, position measured, command applied) noexcept {
-        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
-                    applied)) {
+        if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
+                        applied))) {
             fault = true;
             return;
         }
@@ -217,7 +216,7 @@ template <milling_boxes Boxes> struct milling_axis {
         fault = false;
     }
 
-    bool limited() const noexcept { return wire.limited != wire.wanted; }
+    bool limited() const noexcept { return !all(equal(wire.limited, wire.wanted)); }
     bool faulted() const noexcept {
         return fault ||
                std::apply([](const auto&... each) { return (detail::is_faulted(each) || ...); }, boxes(box));
@@ -229,7 +228,7 @@ private:
     /// One function with all boxes in it, whatever the compiler would have left as calls.
     [[gnu::always_inline, gnu::flatten]] inline command step(const motion& reference, const motion& ahead,
                                                              position measured) noexcept {
-        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured)) {
+        if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured))) {
             fault = true;
             return wire.command;
         }

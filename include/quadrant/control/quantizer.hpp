@@ -58,7 +58,8 @@ private:
     value rounded(value x) const noexcept {
         using std::round;
         const auto rounds = greater(step_, value());
-        if (none(rounds)) return x;
+        if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
+            if (none(rounds)) return x;
         return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
     }
 
