@@ -77,10 +77,11 @@ public:
     };
     xy_control(const parameters& p, duration period) : x_{.box = {p.x, period}}, y_{.box = {p.y, period}} {}
 
-    commands operator()(const motions& r, const positions& measured) noexcept {
+    [[gnu::always_inline]] commands operator()(const motions& r, const positions& measured) noexcept {
         return (*this)(r, r, measured);
     }
-    commands operator()(const motions& r, const motions& ahead, const positions& measured) noexcept {
+    [[gnu::always_inline]] commands operator()(const motions& r, const motions& ahead,
+                                               const positions& measured) noexcept {
         if (!good(r, ahead, measured)) return command_now();
         const command ux = x_(r.x, ahead.x, measured.x), uy = y_(r.y, ahead.y, measured.y);
         return {.x = on_x(ux), .y = on_y(uy)};
@@ -155,23 +156,16 @@ public:
     };
     xy_control(const parameters& p, duration period) : both_{.box = in_lanes<Boxes>::of(p.x, p.y, period)} {}
 
-    commands operator()(const motions& r, const positions& measured) noexcept {
-        return (*this)(r, r, measured);
-    }
-    commands operator()(const motions& r, const motions& ahead, const positions& measured) noexcept {
-        const auto now = packed(r), then = &r == &ahead ? now : packed(ahead);
+    [[gnu::always_inline]] commands operator()(const motions& r, const positions& measured) noexcept {
+        const auto now = packed(r);
         const auto seen = packed(measured);
-        const xy_number sum =
-            magnitude_of(now) + (abs(seen.value()) + (&r == &ahead ? xy_number(0) : magnitude_of(then)));
-        if (!detail::is_sensible(sum[0] + sum[1]) || broken_) {
-            fault_ = true;
-            return last_;
-        }
-        const xy_number u = both_(now, then, seen).value(), size = abs(u);
-        if (detail::is_sensible(size[0] + size[1]))
-            return last_ = {.x = on_x(command::from_value(u[0])), .y = on_y(command::from_value(u[1]))};
-        broken_ = fault_ = true;
-        return last_;
+        return step(now, now, seen, magnitude_of(now) + abs(seen.value()));
+    }
+    [[gnu::always_inline]] commands operator()(const motions& r, const motions& ahead,
+                                               const positions& measured) noexcept {
+        const auto now = packed(r), then = packed(ahead);
+        const auto seen = packed(measured);
+        return step(now, then, seen, (magnitude_of(now) + magnitude_of(then)) + abs(seen.value()));
     }
     void settle(const positions& at, const commands& hold = {}) noexcept {
         if (!sensible({}, at) || !sensible(hold)) return void(fault_ = true);
@@ -211,6 +205,19 @@ public:
     }
 
 private:
+    [[gnu::always_inline]] commands step(const typename axis::motion& now, const typename axis::motion& then,
+                                         const typename axis::position& seen, const xy_number& sizes) noexcept {
+        if (broken_ || !detail::is_sensible(sizes[0] + sizes[1])) [[unlikely]] {
+            fault_ = true;
+            return last_;
+        }
+        const xy_number u = both_(now, then, seen).value(), size = abs(u);
+        if (!detail::is_sensible(size[0] + size[1])) [[unlikely]] {
+            broken_ = fault_ = true;
+            return last_;
+        }
+        return last_ = {.x = on_x(command::from_value(u[0])), .y = on_y(command::from_value(u[1]))};
+    }
     static xy_number magnitude_of(const typename axis::motion& m) noexcept {
         return abs(m.position.value()) + (abs(m.velocity.value()) + abs(m.acceleration.value()));
     }

@@ -113,6 +113,10 @@ public:
     friend lanes turned_as(const lanes& a, const lanes& b) noexcept {
         return map([](const piece& x, const piece& y) { return detail::turned_as(x, y); }, a, b);
     }
+    /// The bits of both: below a power of two where both are.
+    friend lanes bits_joined(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return detail::bits_joined(x, y); }, a, b);
+    }
     /// p 2^k, where k are the lowest bits of `shifted`.
     friend lanes scaled_by_bits(const lanes& p, const lanes& shifted) noexcept {
         return map([](const piece& x, const piece& k) { return detail::scaled_by_bits(x, k); }, p, shifted);

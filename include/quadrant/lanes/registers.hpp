@@ -140,6 +140,11 @@ xsimd::batch<double, Set> turned_as(const xsimd::batch<double, Set>& a,
 }
 #endif
 #ifdef XSIMD_HPP
+template <class Set>
+xsimd::batch<double, Set> bits_joined(const xsimd::batch<double, Set>& a,
+                                      const xsimd::batch<double, Set>& b) noexcept {
+    return a | b;
+}
 /// p 2^k, where k are the lowest bits of `shifted`; by adding to the exponent.
 template <class Set>
 xsimd::batch<double, Set> scaled_by_bits(const xsimd::batch<double, Set>& p,
@@ -149,6 +154,9 @@ xsimd::batch<double, Set> scaled_by_bits(const xsimd::batch<double, Set>& p,
                                                           (xsimd::bitwise_cast<whole>(shifted) << 52));
 }
 #endif
+inline double bits_joined(double a, double b) noexcept {
+    return bits_as<double>(bits_as<std::uint64_t>(a) | bits_as<std::uint64_t>(b));
+}
 inline double scaled_by_bits(double p, double shifted) noexcept {
     return bits_as<double>(bits_as<std::uint64_t>(p) + (bits_as<std::uint64_t>(shifted) << 52));
 }

@@ -112,7 +112,7 @@ public:
     struct state {
         detail::lane_window<W, taps_of_m::size> m{};        ///< e + r
         detail::lane_window<W, taps_of_r::size> r{};        ///< r, `ahead` samples early
-        std::array<double, (Order * Capacity + 5) * W> p{}; ///< ring of Q (e + r), as in `repetitive`
+        std::array<double, 2 * (Order * Capacity + 2) * W> p{}; ///< ring of Q (e + r), written twice
         std::size_t next_p = 0;                             ///< where the coming p goes, in samples
         std::size_t fading = 0;                             ///< steps left of a change of cycle
     };
@@ -135,7 +135,7 @@ public:
         const std::size_t now = state_.next_p;
         state_.next_p = now + 1 == size_p ? 0 : now + 1;
         p.write(&state_.p[now * W]);
-        if (now < 3) p.write(&state_.p[(now + size_p) * W]);
+        p.write(&state_.p[(now + size_p) * W]);
         if (state_.fading > 0) [[unlikely]]
             fade_on();
         return out_.keep(value::from_value(y));
@@ -202,10 +202,7 @@ private:
         }
         return out;
     }
-    std::size_t ring_at(std::size_t before) const noexcept {
-        const std::size_t next = state_.next_p;
-        return next >= before ? next - before : next + size_p - before;
-    }
+    std::size_t ring_at(std::size_t before) const noexcept { return state_.next_p + size_p - before; }
     [[gnu::always_inline]] Real read(const memory_reader& from) const noexcept {
         pair sum{};
         for (std::size_t k = 0; k < Order; ++k) {
