@@ -27,9 +27,7 @@ template <class V> [[gnu::always_inline]] inline V at(const double* p) {
 }
 [[gnu::always_inline]] inline void put(double* p, v2 v) { __builtin_memcpy(p, &v, sizeof v); }
 [[gnu::always_inline]] inline v2 all(double x) { return v2{x, x}; }
-[[gnu::always_inline]] inline v2 magnitude(v2 x) {
-    return (v2)((i2)x & i2{INT64_MAX, INT64_MAX});
-}
+[[gnu::always_inline]] inline v2 magnitude(v2 x) { return (v2)((i2)x & i2{INT64_MAX, INT64_MAX}); }
 [[gnu::always_inline]] inline v2 within(v2 x, v2 limit) {
     x = x > limit ? limit : x;
     return x < -limit ? -limit : x;
@@ -159,7 +157,8 @@ private:
         const v2 v = rate * (reference - travelled), speed = magnitude(v);
         travelled = reference;
         const v2 level = coulomb + excess * fall(speed * inverse_vs), left = fall(-(attraction / level));
-        const v4 v_of = twice(v), speed_of = twice(speed), level_of = twice(level), left_of = twice(left), none{};
+        const v4 v_of = twice(v), speed_of = twice(speed), level_of = twice(level), left_of = twice(left),
+                 none{};
         const i4 sign = (i4)v_of & (i4)twice(all(-0.0)), moves = v_of != none;
         for (int i = 0; i < 2; ++i) { // springs 0 and 1 of both axes, then 2 and 3
             const v4 along = (v4)((i4)force[i] ^ sign), held = share[i] * level_of;
@@ -177,7 +176,8 @@ private:
     void take(int j, const xy_axis<Learning, Smoothing>& a) {
         lose[j] = a.lose, take_rate[j] = a.take, rate[j] = a.rate;
         const double a0 = 1 + a.g * (a.damping + a.g); // the notch as a direct form
-        b0[j] = (1 + a.g * a.g) / a0, b1[j] = 2 * (a.g * a.g - 1) / a0, a2[j] = (1 - a.damping * a.g + a.g * a.g) / a0;
+        b0[j] = (1 + a.g * a.g) / a0, b1[j] = 2 * (a.g * a.g - 1) / a0,
+        a2[j] = (1 - a.damping * a.g + a.g * a.g) / a0;
         position_gain[j] = a.position_gain, velocity_gain[j] = a.velocity_gain, per_sample[j] = a.per_sample;
         inertia[j] = a.inertia_gain, drag[j] = a.drag_gain, limit[j] = a.limit, dac_step[j] = a.dac_step;
         from_z0[j] = a.from_z0, from_z1[j] = a.from_z1, from_z2[j] = a.from_z2;
@@ -197,8 +197,8 @@ private:
     }
 
     static constexpr int ring = 256;
-    v2 lose, take_rate, b0, b1, a2, position_gain, velocity_gain, per_sample, inertia, drag, limit, dac_step, inverse_step,
-        rate, coulomb, excess, inverse_vs, viscous, attraction;
+    v2 lose, take_rate, b0, b1, a2, position_gain, velocity_gain, per_sample, inertia, drag, limit, dac_step,
+        inverse_step, rate, coulomb, excess, inverse_vs, viscous, attraction;
     v2 from_z0, from_z1, from_z2, from_u0, from_u1, from_u2, feedback1, feedback2, solved, c1, c2;
     v4 share[2], stiffness[2];
     v4 weight[2][2];
