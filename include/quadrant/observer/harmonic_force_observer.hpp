@@ -59,6 +59,7 @@ public:
         std::array<value, Harmonics> in_phase{}, across{}; ///< q and r
     };
     static constexpr std::size_t order = 2 + 2 * Harmonics;
+    static constexpr bool takes_last_applied = true; ///< a loop feeds the command that acted since the sample before
 
     harmonic_force_observer(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("harmonic_force_observer.period", period);
