@@ -58,9 +58,6 @@ both_axes() {
     done
     sed -n 's/^xy_loop\/hal_chain|\(.*\)/| xy_loop\/hal_chain | | | \1 |/p' "$here/xy_times.txt" # where LinuxCNC is installed
 }
-rows >"$here/rows.txt"
-both_axes >"$here/xy_rows.txt"
-both_axes_v3 >"$here/xy_v3_rows.txt"
 both_axes_v3() { # the same for x86-64-v3, products and sums fused where the compiler likes, beside an expert's loop
     grep -q avx2 /proc/cpuinfo || { echo "| (no AVX2 here) | | | | |"; return; }
     for compiler in g++ clang++; do
@@ -82,6 +79,9 @@ both_axes_v3() { # the same for x86-64-v3, products and sums fused where the com
         done
     done
 }
+rows >"$here/rows.txt"
+both_axes >"$here/xy_rows.txt"
+both_axes_v3 >"$here/xy_v3_rows.txt"
 busy=$(cut -d' ' -f1 /proc/loadavg)
 (cd "$here" && examples/quadrant-latency >latency.txt) || true # 1: did not fit; the text says so
 
