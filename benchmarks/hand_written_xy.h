@@ -44,11 +44,12 @@ struct xy_notch {
 
 template <int LearningTaps, int SmoothingTaps> struct xy_axis {
     /* designed once */
-    double lose, take, g, damping, brake, thrust, position_gain, velocity_gain, per_sample, inertia_gain, drag_gain, limit,
-        dac_step, rate;
+    double lose, take, g, damping, brake, thrust, position_gain, velocity_gain, per_sample, inertia_gain,
+        drag_gain, limit, dac_step, rate;
     double coulomb, excess, stribeck_velocity, viscous, attraction_step, share[xy_springs],
         stiffness_step[xy_springs];
-    double from_z0, from_z1, from_z2, from_u0, from_u1, from_u2, feedback1, feedback2, solved;
+    double from_z0, from_z1, from_z2, from_u0, from_u1, from_u2, feedback1, feedback2, solved, from_more0,
+        from_more1;
     double weight[2][4], learning[xy_window(LearningTaps)],
         smoothing[xy_window(SmoothingTaps)]; /* newest last */
     size_t oldest[2], ahead;
@@ -174,8 +175,8 @@ template <class Axis> inline double xy_observe(Axis* a, double measured) {
 template <class Axis> inline void xy_applied(Axis* a, double u) {
     if (!a->stepped) return;
     const double more = u - a->d_command, d = a->disturbance.last - a->from_u0 * more;
-    const double d0 = a->d0 + (a->feedback1 * a->from_u0 - a->from_u1) * more;
-    const double d1 = a->d1 + (a->feedback2 * a->from_u0 - a->from_u2) * more;
+    const double d0 = a->d0 + a->from_more0 * more;
+    const double d1 = a->d1 + a->from_more1 * more;
     if (!(xy_finite(u + d) && xy_finite(d0) && xy_finite(d1))) {
         a->disturbance.fault = true;
         return;
@@ -221,8 +222,20 @@ struct xy_motion {
     double position, velocity, acceleration, measured;
 };
 
+/* Below 2^199 in sum: places, speeds and accelerations of a machine. A NaN is not. */
+static inline bool xy_sensible(const struct xy_motion* x, const struct xy_motion* y) {
+    const double sum = ((fabs(x->position) + (fabs(x->velocity) + fabs(x->acceleration))) +
+                        (fabs(y->position) + (fabs(y->velocity) + fabs(y->acceleration)))) +
+                       (fabs(x->measured) + fabs(y->measured));
+    const double most = 0x1p199;
+    uint64_t bits, limit;
+    memcpy(&bits, &sum, sizeof bits);
+    memcpy(&limit, &most, sizeof limit);
+    return bits < limit;
+}
+
 template <int LearningTaps, int SmoothingTaps>
-inline double xy_control(struct xy_axis<LearningTaps, SmoothingTaps>* a, const struct xy_motion* in) {
+inline double xy_step(struct xy_axis<LearningTaps, SmoothingTaps>* a, const struct xy_motion* in) {
     double y;
 
     if (!xy_finite(in->position + (in->position + (in->velocity + (in->acceleration + in->measured))))) {
@@ -231,10 +244,10 @@ inline double xy_control(struct xy_axis<LearningTaps, SmoothingTaps>* a, const s
     }
     a->reference = in->position;
     a->measured = in->measured;
-    a->rate_wanted = xy_notched(a, &a->reference_notch,
-                                xy_estimate(&a->reference_velocity, a->lose, a->take, in->position));
-    a->rate_measured = xy_notched(a, &a->measured_notch,
-                                  xy_estimate(&a->measured_velocity, a->lose, a->take, in->measured));
+    a->rate_wanted =
+        xy_notched(a, &a->reference_notch, xy_estimate(&a->reference_velocity, a->lose, a->take, in->position));
+    a->rate_measured =
+        xy_notched(a, &a->measured_notch, xy_estimate(&a->measured_velocity, a->lose, a->take, in->measured));
     a->error = in->position - in->measured;
     a->learned = xy_remember(a, a->error);
     a->demand = xy_kept(&a->position_loop, a->position_gain * (a->error + a->learned)) + a->rate_wanted;
@@ -343,6 +356,8 @@ inline void xy_design(const struct xy_parameters<LearningTaps, SmoothingTaps>* p
         a->from_u2 = 4 * c0 / under0;
         a->feedback1 = (4 * c0 + 2 * c1) / under0;
         a->feedback2 = 4 * c0 / under0;
+        a->from_more0 = a->feedback1 * a->from_u0 - a->from_u1;
+        a->from_more1 = a->feedback2 * a->from_u0 - a->from_u2;
         a->solved = 1 / (1 - a->from_u0);
     }
 

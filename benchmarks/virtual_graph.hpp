@@ -138,6 +138,7 @@ public:
         for (const auto& each : nodes_) each->step(wire_);
         return wire_[command];
     }
+    double last() const noexcept { return wire_[command]; }
     bool limited() const noexcept { return wire_[clipped] != wire_[wanted]; }
     bool faulted() const noexcept {
         for (const auto& each : nodes_)

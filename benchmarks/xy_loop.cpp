@@ -35,11 +35,21 @@ template <class Loop> void reversing(benchmark::State& state) {
 BENCHMARK(loop<xy_loop::typed<90, 61>>)->Name("xy_loop/typed");
 BENCHMARK(standing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/standing");
 BENCHMARK(reversing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/reversing");
+BENCHMARK(loop<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes");
+BENCHMARK(standing<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes/standing");
+BENCHMARK(reversing<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes/reversing");
+#ifdef __AVX2__
+BENCHMARK(loop<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert");
+BENCHMARK(standing<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert/standing");
+BENCHMARK(reversing<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert/reversing");
+#endif
 BENCHMARK(loop<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written");
 BENCHMARK(standing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/standing");
 BENCHMARK(reversing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/reversing");
 BENCHMARK(loop<xy_loop::as_graph<90, 61>>)->Name("xy_loop/virtual_graph");
+BENCHMARK(standing<xy_loop::as_graph<90, 61>>)->Name("xy_loop/virtual_graph/standing");
 BENCHMARK(loop<xy_loop::typed<1, 1>>)->Name("xy_loop/typed/without_fir");
+BENCHMARK(loop<xy_loop::typed_lanes<1, 1>>)->Name("xy_loop/typed_lanes/without_fir");
 BENCHMARK(loop<xy_loop::by_hand<1, 1>>)->Name("xy_loop/hand_written/without_fir");
 BENCHMARK(loop<xy_loop::as_graph<1, 1>>)->Name("xy_loop/virtual_graph/without_fir");
 

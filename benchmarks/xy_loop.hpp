@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#ifdef __AVX2__
+#    include "expert_xy.hpp"
+#endif
 #include "hand_written_xy.h"
 #include "quadrant_latency/loop.hpp"
 #include "virtual_graph.hpp"
@@ -9,8 +12,8 @@
 #include <cstdio>
 #include <limits>
 
-/// The controller of both axes of the milling table three times: typed (examples/quadrant_latency/loop.hpp), by hand, and as a
-/// run-time graph of the same blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
+/// The controller of both axes of the milling table: typed, alone and in lanes (examples/quadrant_latency/loop.hpp), by hand, as an
+/// expert writes it, and as a run-time graph of the same blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
 namespace xy_loop {
 
 using namespace quadrant;
@@ -18,6 +21,8 @@ using quadrant_latency::commands;
 using quadrant_latency::sample;
 template <std::size_t Learning, std::size_t Smoothing>
 using typed = quadrant_latency::typed_loop<quadrant_latency::memory_of<Learning, Smoothing>>;
+template <std::size_t Learning, std::size_t Smoothing>
+using typed_lanes = quadrant_latency::typed_lanes<quadrant_latency::memory_of<Learning, Smoothing>>;
 
 /// The typed parameters as bare numbers.
 template <std::size_t Learning, std::size_t Smoothing>
@@ -55,6 +60,7 @@ xy_parameters<int(Learning), int(Smoothing)> in_doubles(const thesis::axis& axis
 
 template <std::size_t Learning, std::size_t Smoothing> struct by_hand {
     xy_axis<int(Learning), int(Smoothing)> x, y;
+    bool fault = false;
 
     by_hand() {
         const auto px = in_doubles<Learning, Smoothing>(thesis::x),
@@ -65,11 +71,15 @@ template <std::size_t Learning, std::size_t Smoothing> struct by_hand {
     [[gnu::noinline, gnu::flatten]] commands step(const sample& s) noexcept {
         const xy_motion mx = {s.x.position, s.x.velocity, s.x.acceleration, s.x.measured};
         const xy_motion my = {s.y.position, s.y.velocity, s.y.acceleration, s.y.measured};
-        return {xy_control(&x, &mx), xy_control(&y, &my)};
+        if (!xy_sensible(&mx, &my)) {
+            fault = true;
+            return {x.command, y.command};
+        }
+        return {xy_step(&x, &mx), xy_step(&y, &my)};
     }
     int flags() const noexcept {
-        return (x.limited != x.wanted) | xy_faulted(&x) << 1 | (y.limited != y.wanted) << 2 |
-               xy_faulted(&y) << 3;
+        return (x.limited != x.wanted) | (y.limited != y.wanted) << 1 |
+               (fault || xy_faulted(&x) || xy_faulted(&y)) << 2;
     }
 };
 
@@ -82,11 +92,21 @@ template <std::size_t Learning, std::size_t Smoothing> struct as_graph {
         y{boxes(quadrant_latency::parameters_of<quadrant_latency::memory_of<Learning, Smoothing>>(thesis::y),
                 thesis::period)};
 
+    bool fault = false;
+
     [[gnu::noinline]] commands step(const sample& s) noexcept {
+        const xy_motion mx = {s.x.position, s.x.velocity, s.x.acceleration, s.x.measured};
+        const xy_motion my = {s.y.position, s.y.velocity, s.y.acceleration, s.y.measured};
+        if (!xy_sensible(&mx, &my)) {
+            fault = true;
+            return {x.last(), y.last()};
+        }
         return {x.step(s.x.position, s.x.velocity, s.x.acceleration, s.x.measured),
                 y.step(s.y.position, s.y.velocity, s.y.acceleration, s.y.measured)};
     }
-    int flags() const noexcept { return x.limited() | x.faulted() << 1 | y.limited() << 2 | y.faulted() << 3; }
+    int flags() const noexcept {
+        return x.limited() | y.limited() << 1 | (fault || x.faulted() || y.faulted()) << 2;
+    }
 };
 
 /// One pass; the sum stands for a consumer of the commands.
@@ -125,13 +145,55 @@ template <class A, class B> bool same(const std::vector<sample>& in, const char*
     return true;
 }
 
+#ifdef __AVX2__
+/// The expert's: for x86-64-v3.
+template <std::size_t Learning, std::size_t Smoothing> struct by_expert {
+    expert::loop<int(Learning), int(Smoothing)> both{in_doubles<Learning, Smoothing>(thesis::x),
+                                                     in_doubles<Learning, Smoothing>(thesis::y)};
+
+    commands step(const sample& s) noexcept {
+        const auto u = both.step({s.x.position, s.x.velocity, s.x.acceleration, s.x.measured},
+                                 {s.y.position, s.y.velocity, s.y.acceleration, s.y.measured});
+        return {u[0], u[1]};
+    }
+};
+#endif
+
+/// True when both loops give the same commands behind the DAC.
+template <class A, class B> bool same_commands(const std::vector<sample>& in, const char* name) {
+    A a;
+    B b;
+    for (std::size_t k = 0; k < in.size(); ++k) {
+        const commands ua = a.step(in[k]), ub = b.step(in[k]);
+        if (ua.x == ub.x && ua.y == ub.y) continue;
+        std::fprintf(stderr, "%s: sample %zu: x %.17g and %.17g, y %.17g and %.17g\n", name, k, ua.x, ub.x,
+                     ua.y, ub.y);
+        return false;
+    }
+    return true;
+}
+/// Of the loops that round otherwise on the way: the circle, at rest, turning round.
+template <std::size_t Learning, std::size_t Smoothing> bool same_behind_the_dac() {
+    bool good = true;
+    for (const auto& in :
+         {quadrant_latency::circle(20'000), quadrant_latency::standing(), quadrant_latency::reversing()}) {
+        good = good && same_commands<typed<Learning, Smoothing>, typed_lanes<Learning, Smoothing>>(
+                           in, "typed, in lanes");
+#ifdef __AVX2__
+        good = good &&
+               same_commands<typed<Learning, Smoothing>, by_expert<Learning, Smoothing>>(in, "typed, expert");
+#endif
+    }
+    return good;
+}
+
 /// The three loops are one loop: checked over 20 000 samples before anything is measured.
 template <std::size_t Learning, std::size_t Smoothing> bool comparable() {
     bool good = true;
     for (const auto& in : {quadrant_latency::circle(20'000), rough(20'000)})
         good = good && same<typed<Learning, Smoothing>, by_hand<Learning, Smoothing>>(in, "typed, by hand") &&
                same<typed<Learning, Smoothing>, as_graph<Learning, Smoothing>>(in, "typed, virtual graph");
-    return good;
+    return good && same_behind_the_dac<Learning, Smoothing>();
 }
 
 } // namespace xy_loop

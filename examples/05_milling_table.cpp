@@ -48,7 +48,7 @@ memory::parameters learned(const axis& a, const choice& c) {
     for (double& tap : p.learning) tap *= c.gain;
     return p;
 }
-template <class Boxes> Boxes controller(const axis& a, const choice& c) {
+template <class Boxes> typename Boxes::parameters controller(const axis& a, const choice& c) {
     typename Boxes::parameters p{.position_gain = position_gain,
                                  .velocity_gain = a.kp,
                                  .velocity_integral = a.ki,
@@ -62,31 +62,30 @@ template <class Boxes> Boxes controller(const axis& a, const choice& c) {
         p.disturbance = {a.corner, axis_model<signal::voltage>{a.B, a.A_gms}};
     }
     if constexpr (std::same_as<Boxes, learning>) p.memory = learned(a, c);
-    return {p, period};
+    return p;
 }
-linear_motor<maxwell_slip<4>>::parameters machine(const axis& a) {
+using motor = linear_motor<maxwell_slip<4>>;
+using slide = table_axis_boxes<motor>;
+using table = xy_table<slide, slide>;
+
+slide::parameters machine(const axis& a) {
     auto f = gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0));
     f.curve.viscous += a.A_gms * a.kf / a.B;
-    return {.mass = a.kf / a.B, .force_constant = a.kf, .friction = f, .delay = 0.4_ms, .encoder_step = 250_nm};
+    const motor::parameters p{.mass = a.kf / a.B, .force_constant = a.kf, .friction = f, .delay = 0.4_ms};
+    return {.motor = p, .encoder_step = 250_nm};
 }
 
-template <class Boxes> struct slide {
-    milling_axis<Boxes> loop;
-    linear_motor<maxwell_slip<4>> motor;
-    cutting_force<15> cutter;
-    quantity<si::length> reading = motor.now().x;
-
-    void step(const typename milling_axis<Boxes>::motion& r) { reading = motor(loop(r, reading), cutter()); }
-    bool stopped() const { return loop.faulted() || motor.faulted() || loop.limited(); }
-};
 template <class Boxes> void mill(const char* name, const choice& chosen = {}) {
     namespace measured = milling_harmonics;
-    const auto on = [&](const axis& a, const harmonic_table<15>& harmonics) {
-        return slide<Boxes>{{.box = controller<Boxes>(a, chosen)},
-                            {machine(a), period},
-                            {{measured::fundamental, 1.38 * measured::scale, harmonics}, period}};
+    const auto cutter = [](const harmonic_table<15>& harmonics) {
+        return cutting_force<15>::parameters{measured::fundamental, 1.38 * measured::scale, harmonics};
     };
-    auto sx = on(x, measured::x), sy = on(y, measured::y);
+    xy_loop<Boxes, Boxes, table, cutting_force<15>> loop(
+        {.control = {controller<Boxes>(x, chosen), controller<Boxes>(y, chosen)},
+         .table = {.x = machine(x), .y = machine(y)},
+         .process_x = cutter(measured::x),
+         .process_y = cutter(measured::y)},
+        period);
     const double R = 0.03, w = 0.1 / R, T = period.value(), start = 0.05; // m, rad/s, s, s: from rest
     const int turn = int(2 * pi_ / (w * T));
     divergence_guard runs_away(100, std::size_t(turn)); // um
@@ -94,13 +93,13 @@ template <class Boxes> void mill(const char* name, const choice& chosen = {}) {
     for (int k = 0; k < 4 * turn; ++k) {
         const double late = std::exp(-k * T / start), angle = w * (k * T - start * (1 - late));
         const double v = w * (1 - late), a = w / start * late, s = R * std::sin(angle), c = R * std::cos(angle);
-        const double at_x = R + sx.motor.now().x.value(), at_y = sy.motor.now().x.value();
-        const double error = 1e6 * (std::hypot(at_x, at_y) - R);
-        if (runs_away(error) || sx.stopped() || sy.stopped())
+        const auto &at_x = loop.table().x().wire.place, &at_y = loop.table().y().wire.place;
+        const double error = 1e6 * (std::hypot(R + at_x.value(), at_y.value()) - R);
+        if (runs_away(error) || loop.faulted() || loop.limited())
             return void(std::printf("%-46s unstable: stopped after %.1f s, no result\n", name, k * T));
         if (k >= turn) squares += error * error;
-        sx.step({(c - R) * 1_m, -s * v * 1_mps, (-s * a - c * v * v) * 1_mps2});
-        sy.step({s * 1_m, c * v * 1_mps, (c * a - s * v * v) * 1_mps2});
+        loop({.x = {(c - R) * 1_m, -s * v * 1_mps, (-s * a - c * v * v) * 1_mps2},
+              .y = {s * 1_m, c * v * 1_mps, (c * a - s * v * v) * 1_mps2}});
     }
     std::printf("%-46s %5.1f um\n", name, std::sqrt(squares / (3 * turn)));
 }

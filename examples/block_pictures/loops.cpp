@@ -199,6 +199,65 @@ picture draw_xy_table() {
               {over("", "acceleration [m/s^2]", {acceleration}),
                over("time [ms]", "position of y [um]", {coupled, alone})});
 }
+/// Gains and friction as [Jamaludin2008] prints them for x; y is a third heavier.
+template <class Boxes> typename Boxes::parameters axis_in_circle(double heavier) {
+    typename Boxes::parameters p{.position_gain = 150.0 / 1_s,
+                                 .velocity_gain = 60_V / 1_mps,
+                                 .velocity_integral = 450_V / 1_m,
+                                 .estimator_corner = 150_Hz,
+                                 .notch = {330_Hz, 0.06},
+                                 .plant_gain = 4.526_mps2 / 1_V / heavier,
+                                 .plant_pole = 2.5_Hz,
+                                 .friction = {},
+                                 .limit = 10_V};
+    if constexpr (requires { p.friction.curve; }) {
+        p.friction.curve = {0.084_V, 0.122_V, 2.2_mmps, {}};
+        p.friction.forces = {0.045_V, 0.038_V, 0.018_V, 0.0045_V};
+        p.friction.stiffness = {42621_V / 1_m, 6794_V / 1_m, 3096_V / 1_m, 224_V / 1_m};
+        p.friction.attraction = 0.31_V / 1_s;
+        p.disturbance = {60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V / heavier, 2.5_Hz}};
+    }
+    return p;
+}
+template <class Boxes> curve on_a_circle(const char* name) {
+    using motor = linear_motor<maxwell_slip<4>>;
+    using slide = table_axis_boxes<motor>;
+    const auto machine = [](double heavier) {
+        motor::parameters m{
+            .mass = heavier * 320_kg, .force_constant = 1450_N / 1_V, .friction = {}, .delay = 0.4_ms};
+        m.friction.curve = {122_N, 177_N, 2.2_mmps, 800_N / 1_mps};
+        m.friction.forces = {65_N, 55_N, 26_N, 6.5_N};
+        m.friction.stiffness = {61.8e6_N / 1_m, 9.852e6_N / 1_m, 4.49e6_N / 1_m, 0.325e6_N / 1_m};
+        m.friction.attraction = 450_N / 1_s;
+        return slide::parameters{.motor = m, .encoder_step = 250_nm};
+    };
+    xy_loop<Boxes, Boxes, xy_table<slide, slide>> loop(
+        {.control = {axis_in_circle<Boxes>(1), axis_in_circle<Boxes>(1.3)},
+         .table = {machine(1), machine(1.3)}},
+        T);
+    curve radial(name);
+    const double R = 0.03, w = 0.02 / R, turn = 2 * pi / w, run_in = 0.2;
+    for (int k = 0; k * T.value() < 1.5 * turn; ++k) {
+        const double t = k * T.value(), late = std::exp(-t / run_in), angle = w * (t - run_in * (1 - late));
+        const double v = w * (1 - late), a = w / run_in * late, s = R * std::sin(angle),
+                     c = R * std::cos(angle);
+        const double x = R + loop.table().x().wire.place.value(), y = loop.table().y().wire.place.value();
+        if (t > 0.5 * turn && k % 40 == 0) radial.add(angle * 180 / pi - 180, 1e6 * (std::hypot(x, y) - R));
+        loop({.x = {(c - R) * 1_m, -s * v * 1_mps, (-s * a - c * v * v) * 1_mps2},
+              .y = {s * 1_m, c * v * 1_mps, (c * a - s * v * v) * 1_mps2}});
+    }
+    return radial;
+}
+picture draw_xy_loop() {
+    using friction = maxwell_slip<4, signal::velocity, signal::voltage>;
+    using compensated = milling_axis_boxes<friction, disturbance_observer<signal::voltage>>;
+    return of("Radial error of a table on a circle of 30 mm at 20 mm/s: cascade and inverse of the axis alone, "
+              "and with "
+              "Maxwell-slip friction and disturbance observer",
+              {over("angle from 180 deg [deg]", "radial error [um]",
+                    {on_a_circle<milling_axis_boxes<>>("cascade"),
+                     on_a_circle<compensated>("with friction and observer")})});
+}
 } // namespace
 
 family loops() {
@@ -208,6 +267,7 @@ family loops() {
             {"parameter_swap", draw_parameter_swap},
             {"gantry_pair", draw_gantry_pair},
             {"table_axis", draw_table_axis},
-            {"xy_table", draw_xy_table}};
+            {"xy_table", draw_xy_table},
+            {"xy_loop", draw_xy_loop}};
 }
 } // namespace block_pictures

@@ -3,6 +3,7 @@
 #include "../quadrant_reproduce/thesis.hpp"
 
 #include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/compose/xy_control_lanes.hpp>
 #include <quadrant/memory/repetitive.hpp>
 
 #include <cmath>
@@ -100,24 +101,26 @@ inline std::vector<sample> reversing(std::size_t n = 20'000) {
     return all;
 }
 
-/// Everything is inlined into `step` and `step` into nothing, as in a servo interrupt.
-template <class Memory> struct typed_loop {
-    using axis = milling_axis<boxes<Memory>>;
-    using length = quantity_of<signal::position>;
-    axis x{.box = {parameters_of<Memory>(thesis::x), thesis::period}};
-    axis y{.box = {parameters_of<Memory>(thesis::y), thesis::period}};
+/// Everything is inlined into `step` and `step` into nothing, as in a servo interrupt. Boxes: those of one axis, or `in_lanes` of them.
+template <class Memory, class Boxes> struct loop_of {
+    using control = quadrant::xy_control<Boxes>;
+    control both{{parameters_of<Memory>(thesis::x), parameters_of<Memory>(thesis::y)}, thesis::period};
 
     [[gnu::noinline, gnu::flatten]] commands step(const sample& s) noexcept {
+        using length = typename control::position;
         const auto motion = [](const axis_sample& a) {
-            return typename axis::motion{length::from_value(a.position),
-                                         quantity_of<signal::velocity>::from_value(a.velocity),
-                                         quantity_of<signal::acceleration>::from_value(a.acceleration)};
+            return axis_motion<>{length::from_value(a.position),
+                                 quantity_of<signal::velocity>::from_value(a.velocity),
+                                 quantity_of<signal::acceleration>::from_value(a.acceleration)};
         };
-        return {x(motion(s.x), length::from_value(s.x.measured)).value(),
-                y(motion(s.y), length::from_value(s.y.measured)).value()};
+        const auto u = both({motion(s.x), motion(s.y)}, {.x = on_x(length::from_value(s.x.measured)),
+                                                         .y = on_y(length::from_value(s.y.measured))});
+        return {u.x.plain().value(), u.y.plain().value()};
     }
-    /// Bits: limited and faulted, x first.
-    int flags() const noexcept { return x.limited() | x.faulted() << 1 | y.limited() << 2 | y.faulted() << 3; }
+    /// Bits: x limited, y limited, faulted.
+    int flags() const noexcept { return both.limited_x() | both.limited_y() << 1 | both.faulted() << 2; }
 };
+template <class Memory> using typed_loop = loop_of<Memory, boxes<Memory>>;
+template <class Memory> using typed_lanes = loop_of<Memory, in_lanes<boxes<Memory>>>;
 
 } // namespace quadrant_latency

@@ -2,11 +2,13 @@
 // quadrant-latency: does my loop fit my period, with what margin?
 #include "../page/nearest_option.hpp"
 #include "../page/outputs.hpp"
+#include "bound.hpp"
 #include "page.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 
 namespace {
@@ -64,9 +66,21 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0, 1023));
     app.add_option("--html", html, "write the page (one HTML file, opens without a network)")
         ->capture_default_str();
+    bool bound = false, directed_calls = false;
+    app.add_flag("--bound", bound,
+                 "count instead: the most instructions of one call over directed inputs (valgrind)");
+    app.add_flag("--directed_calls", directed_calls, "")->group(""); // what --bound runs under callgrind
     app.footer("Exit code: 0 when no call was longer than the period, 1 when one was, 2 on bad input.");
     try {
         app.parse(argc, argv);
+        if (directed_calls) {
+            quadrant_latency::make_directed_calls();
+            return 0;
+        }
+        if (bound) {
+            fmt::print("{}", quadrant_latency::bound(std::filesystem::read_symlink("/proc/self/exe").string()));
+            return quadrant_page::ended(0, "quadrant-latency");
+        }
         return quadrant_page::ended(run(plan, html), "quadrant-latency");
     } catch (const CLI::ParseError& e) {
         return quadrant_page::said(app, e, argc, argv, bad_input_code);

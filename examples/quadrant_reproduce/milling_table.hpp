@@ -6,8 +6,11 @@
 
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
+#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/compose/xy_loop.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/memory/repetitive.hpp>
+#include <quadrant/process/cutting_force.hpp>
 #include <quadrant/process/milling_force.hpp>
 #include <quadrant/process/milling_harmonics.hpp>
 
@@ -107,47 +110,77 @@ using uncompensated = configuration<no_friction_model, no_observer, no_memory>; 
 using compensated = configuration<gms_model, observer, no_memory>;              ///< (ii)
 using learning = configuration<gms_model, observer, memory>;                    ///< (iii)
 
-/// One axis of the table: loop, motor, the cutter's force on it, an encoder that may be noisy.
-template <class Configuration, class PlantFriction> class axis_in_cut {
+/// A scale that adds white noise to what it reads; without noise a piece of wire.
+class noisy_scale {
 public:
-    using loop = milling_axis<typename Configuration::boxes>;
-    using motor = linear_motor<typename PlantFriction::box>;
-
-    axis_in_cut(const axis& a, const axis& friction, const cut& c)
-        : loop_{.box = {Configuration::controller(a, c), period}}, motor_(machine(a, friction, c), period),
-          noise_(1e-6 * c.noise), gauss_(std::uint64_t(a.name[0])) {}
-
-    void settle(quantity<si::length> at) {
-        motor_.settle(at);
-        loop_.settle(at);
-        reading_ = at;
-    }
-    void step(const typename loop::motion& r, quantity_of<signal::force> push) {
-        reading_ = motor_(loop_(r, reading_), push);
-        if (noise_ > 0) reading_ = 250_nm * std::round((motor_.now().x + noise_ * gauss_() * 1_m) / 250_nm);
-    }
-    double position() const { return motor_.now().x.value(); } ///< of the axis, not of its encoder [m]
-    bool stopped() const { return motor_.faulted() || loop_.faulted() || loop_.limited(); }
+    using input = signal::position;
+    using output = signal::position;
+    using value = quantity<si::length>;
+    struct parameters {
+        double noise = 0; ///< m rms
+        std::uint64_t seed = 0;
+    };
+    noisy_scale(const parameters& p, duration) : given_(p), gauss_(p.seed) {}
+    value operator()(value at) noexcept { return given_.noise > 0 ? at + given_.noise * gauss_() * 1_m : at; }
+    void reset() noexcept { gauss_ = white_noise(given_.seed); }
+    void settle(value) noexcept {}
 
 private:
-    static auto machine(const axis& a, const axis& friction, const cut& c) {
+    parameters given_;
+    white_noise gauss_;
+};
+
+/// A process whose force of the coming period is told from outside: a cutter whose force depends on the way that both axes go.
+struct told_force {
+    struct parameters {};
+    told_force(const parameters&, duration) {}
+    quantity_of<signal::force> operator()() noexcept { return now; }
+    void reset() noexcept { now = {}; }
+    quantity_of<signal::force> now{};
+};
+
+/// Both controllers, the table, the cutter in it.
+template <class Configuration, class PlantFriction> class table_in_cut {
+    using boxes = typename Configuration::boxes;
+    using motor = linear_motor<typename PlantFriction::box>;
+    using slide = table_axis_boxes<motor, noisy_scale>;
+
+public:
+    using loop = xy_loop<boxes, boxes, xy_table<slide, slide>, told_force>;
+
+    explicit table_in_cut(const cut& c)
+        : loop_({.control = {Configuration::controller(x, c), Configuration::controller(y, c)},
+                 .table = {.x = machine(x, c.friction_x, c), .y = machine(y, c.friction_y, c)}},
+                period) {}
+
+    void settle(quantity<si::length> at_x) {
+        loop_.settle({.x = on_x(at_x), .y = on_y(quantity<si::length>())});
+    }
+    void step(const typename loop::motions& r, quantity_of<signal::force> push_x,
+              quantity_of<signal::force> push_y) {
+        loop_.process_x().now = push_x;
+        loop_.process_y().now = push_y;
+        loop_(r);
+    }
+    /// How far the axes, not their encoders, are from the middle [m].
+    double from_middle() const {
+        return std::hypot(loop_.table().x().wire.place.value(), loop_.table().y().wire.place.value());
+    }
+    bool stopped() const { return loop_.faulted() || loop_.limited(); }
+
+private:
+    static typename slide::parameters machine(const axis& a, const axis& friction, const cut& c) {
         const quantity<si::mass> believed = a.kf / a.B;
         typename motor::parameters p{.mass = c.mass * believed,
                                      .force_constant = a.kf,
                                      .friction = PlantFriction::of(friction),
                                      .delay = 0.4_ms,
-                                     .encoder_step = 250_nm,
                                      .substeps = c.substeps};
-        if (c.noise > 0) p.encoder_step = {};           // rounded behind the noise
         p.friction.curve.viscous += a.A_gms * believed; // A' beside sigma
-        return p;
+        return {.motor = p, .scale = {1e-6 * c.noise, std::uint64_t(a.name[0])}, .encoder_step = 250_nm};
     }
 
     loop loop_;
-    motor motor_;
-    quantity<si::length> reading_{};
-    double noise_; ///< m rms
-    white_noise gauss_;
 };
 
 /// The cutter by its measured harmonics.
@@ -175,13 +208,13 @@ struct circle_result {
 /// `cutter(direction)` gives the force of the coming period.
 template <class Configuration, class PlantFriction, class Cutter>
 circle_result mill(const cut& c, Cutter cutter) {
-    axis_in_cut<Configuration, PlantFriction> in_x(x, c.friction_x, c), in_y(y, c.friction_y, c);
-    using motion = typename decltype(in_x)::loop::motion;
+    table_in_cut<Configuration, PlantFriction> table(c);
+    using motion = typename decltype(table)::loop::motion;
     const double w = c.feed / c.radius, T = period.value(), start = 0.05; // s, of the run-in
     const auto turn = static_cast<std::size_t>(2 * pi_ / w / T);
     divergence_guard runs_away(100, turn);
     circle_result found;
-    in_x.settle(c.radius * 1_m);
+    table.settle(c.radius * 1_m);
     const auto samples = static_cast<std::size_t>(c.turns * static_cast<double>(turn));
     for (std::size_t k = 0; k < samples; ++k) {
         const double t = static_cast<double>(k) * T, fade = std::exp(-t / start);
@@ -190,8 +223,8 @@ circle_result mill(const cut& c, Cutter cutter) {
         const auto along = [&](double p, double v, double a) {
             return motion{c.radius * p * 1_m, c.radius * v * 1_mps, c.radius * a * 1_mps2};
         };
-        const double error = 1e6 * (std::hypot(in_x.position(), in_y.position()) - c.radius);
-        if (runs_away(error) || in_x.stopped() || in_y.stopped()) return {.diverged = true, .stopped = t};
+        const double error = 1e6 * (table.from_middle() - c.radius);
+        if (runs_away(error) || table.stopped()) return {.diverged = true, .stopped = t};
         if (k >= turn) {
             found.rms += error * error;
             found.largest = std::max(found.largest, std::abs(error));
@@ -199,8 +232,9 @@ circle_result mill(const cut& c, Cutter cutter) {
             found.radial.push_back(error);
         }
         const auto push = cutter(std::remainder(angle + pi_ / 2, 2 * pi_)); // the way of the table
-        in_x.step(along(cosine, -sine * speed, -sine * gain - cosine * speed * speed), push.x);
-        in_y.step(along(sine, cosine * speed, cosine * gain - sine * speed * speed), push.y);
+        table.step({.x = along(cosine, -sine * speed, -sine * gain - cosine * speed * speed),
+                    .y = along(sine, cosine * speed, cosine * gain - sine * speed * speed)},
+                   push.x, push.y);
     }
     found.rms = std::sqrt(found.rms / static_cast<double>(found.radial.size()));
     return found;

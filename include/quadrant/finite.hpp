@@ -47,6 +47,11 @@ constexpr Value only_where([[maybe_unused]] const mask_of<Value>& good, const Va
         return select(good, x, Value::from_value(std::numeric_limits<double>::quiet_NaN()));
 }
 
+/// x: lanes in step are good.
+template <class Value> constexpr const Value& only_where(in_every_lane<true>, const Value& x) noexcept {
+    return x;
+}
+
 /// The last good output of a block and its fault flag; for lanes, one of each in every lane.
 template <class Quantity> class held_output {
 public:
@@ -67,6 +72,7 @@ public:
             return last_;
         }
     }
+    constexpr Quantity keep(in_every_lane<true>, Quantity y) noexcept { return keep(y); }
     constexpr Quantity hold() noexcept {
         fault_ = mask(true);
         return last_;
@@ -74,6 +80,7 @@ public:
     constexpr void raise() noexcept { fault_ = mask(true); }
     /// Raises the fault where `bad` is true.
     constexpr void raise(const mask& bad) noexcept { fault_ = either(fault_, bad); }
+    constexpr void raise(in_every_lane<false>) noexcept {}
     constexpr void reset(Quantity y = Quantity()) noexcept {
         last_ = y;
         fault_ = mask(false);
@@ -83,6 +90,7 @@ public:
         set_where(good, last_, y);
         fault_ = !good;
     }
+    constexpr void settle(in_every_lane<true>, Quantity y) noexcept { reset(y); }
     /// True when some lane has a fault.
     constexpr bool faulted() const noexcept { return any(fault_); }
     /// Which lanes have a fault; a bool for a number without lanes.

@@ -16,6 +16,8 @@
 #include "compose/series.hpp"
 #include "compose/table_axis.hpp"
 #include "compose/taps.hpp"
+#include "compose/xy_control.hpp"
+#include "compose/xy_loop.hpp"
 #include "compose/xy_table.hpp"
 #include "control/axis_enable.hpp"
 #include "control/axis_law.hpp"

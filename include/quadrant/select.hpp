@@ -3,8 +3,10 @@
 #include "units.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 /// Comparison and choice for every number type. `a < b` has one answer; a number of lanes (lanes.hpp) has one answer
 /// per lane, a mask. A block that is to run in lanes writes `select(less(x, low), low, x)` where a block in double
@@ -30,6 +32,41 @@ concept multi_lane = requires {
 template <class Number>
 concept several_lanes = multi_lane<Number> && lane_count<Number> >
 1;
+
+/// Lanes that take a sample all together or not at all (`lanes_in_step`).
+template <class Number>
+concept steps_together = multi_lane<Number> &&
+    !std::is_same_v<decltype(finite_lanes(std::declval<Number>())), typename Number::mask>;
+
+/// An answer that is the same in every lane and known to the compiler: nothing is computed for it and nothing chosen by it.
+template <bool Answer> struct in_every_lane {
+    /// As a mask.
+    template <class Mask>
+    requires(!std::is_arithmetic_v<Mask> && requires { Mask(true)[0]; }) operator Mask() const noexcept {
+        return Mask(Answer);
+    }
+    friend constexpr in_every_lane<!Answer> operator!(in_every_lane) noexcept { return {}; }
+    friend constexpr bool any(in_every_lane) noexcept { return Answer; }
+    friend constexpr bool all(in_every_lane) noexcept { return Answer; }
+    friend constexpr bool none(in_every_lane) noexcept { return !Answer; }
+    template <class Mask> friend constexpr Mask both(in_every_lane, const Mask& m) noexcept {
+        if constexpr (Answer)
+            return m;
+        else
+            return Mask();
+    }
+    template <class Mask> friend constexpr Mask either(const Mask& m, in_every_lane) noexcept {
+        if constexpr (Answer)
+            return Mask(true);
+        else
+            return m;
+    }
+    template <class Value>
+    friend constexpr Value select(in_every_lane, const Value& one,
+                                  const std::type_identity_t<Value>& other) noexcept {
+        return Answer ? one : other;
+    }
+};
 
 namespace detail {
 template <class Number> struct mask_of { using type = bool; };
@@ -162,6 +199,19 @@ constexpr mask_of<Value> outside(const Value& x, const std::type_identity_t<Valu
 /// The value without its sign.
 template <class Value> constexpr Value absolute(const Value& x) noexcept {
     return select(less(x, Value()), -x, x);
+}
+/// The same in lanes.
+template <multi_lane Real> Real absolute(const Real& x) noexcept { return abs(x); }
+/// The same for a quantity of lanes.
+template <class Unit, multi_lane Real> quantity<Unit, Real> absolute(const quantity<Unit, Real>& x) noexcept {
+    return quantity<Unit, Real>::from_value(abs(x.value()));
+}
+/// exp(-x) of a number that is not below zero: what is left of a decay.
+template <class Real>
+requires(!multi_lane<Real>) Real decayed(const Real& x)
+noexcept {
+    using std::exp;
+    return exp(-x);
 }
 
 /// One instance: the number itself, or one lane of it.

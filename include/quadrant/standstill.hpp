@@ -66,9 +66,9 @@ requires(!multi_lane<detail::bare_of<Value>>) constexpr bool died_out(const Valu
 template <class Value, class... More>
 requires multi_lane<detail::bare_of<Value>>
 auto died_out(const Value& x, const More&... more) noexcept {
-    auto most = absolute(detail::bare(x));
-    ((most = larger(most, absolute(detail::bare(more)))), ...);
-    return less(most, detail::bare_of<Value>(detail::least));
+    auto bits = detail::bare(x);
+    ((bits = bits_joined(bits, detail::bare(more))), ...);
+    return less(absolute(bits), detail::bare_of<Value>(detail::least)); // which is a power of two
 }
 /// x, and zero where x has died out: what a state with one pole stores.
 template <class Value> constexpr Value unless_died_out(const Value& x) noexcept {

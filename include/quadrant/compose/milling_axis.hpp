@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../feedforward/axis_motion.hpp"
 #include "../finite.hpp"
 #include "cascade.hpp"
 #include "maps.hpp"
@@ -10,13 +11,24 @@
 
 namespace quadrant {
 
-/// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either
-/// d(measured, wanted) with the loop through its own estimate solved (what it sees applied is wanted - estimate), or one
-/// input, which `absent` is.
+/// A disturbance box that is fed this cycle's wish, solves the loop through its own estimate, and is told afterwards what was applied.
+template <class D, class Command, class Real>
+concept fed_the_wish = requires(D d, quantity_of<Command, Real> u) {
+    d.applied(u);
+};
+/// A disturbance box that is fed the command that acted since the sample before, and says so.
+template <class D>
+concept fed_the_last_applied = requires {
+    requires D::takes_last_applied;
+};
+/// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either of two inputs,
+/// d(measured, u), which then tells which u it is fed (`fed_the_wish`, `fed_the_last_applied`), or of one, which `absent` is.
 template <class D, class Command, class Real>
 concept observes_disturbance = maps<D, signal::position, Command, Real> ||
-    (requires(D d, quantity_of<signal::position, Real> measured, quantity_of<Command, Real> wanted) {
-        { d(measured, wanted) } -> std::same_as<quantity_of<Command, Real>>;
+    ((fed_the_wish<D, Command, Real> ||
+      fed_the_last_applied<D>)&&requires(D d, quantity_of<signal::position, Real> measured,
+                                         quantity_of<Command, Real> u) {
+        { d(measured, u) } -> std::same_as<quantity_of<Command, Real>>;
         d.reset();
     });
 
@@ -81,7 +93,8 @@ template <signal_tag Command, class Real> struct milling_wires {
 ///   `ahead` is the reference at the moment when the command will act: the feedforward of plant and friction takes it.
 ///   Without preview it is the reference itself.
 /// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction enters behind
-/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A memory box gives what is
+/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A `disturbance_observer` is fed this
+/// cycle's wish, a `harmonic_force_observer` what acted since the sample before. A memory box gives what is
 /// added to the position error.
 /// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
 /// allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the same place gives u again.
@@ -95,29 +108,27 @@ template <milling_boxes Boxes> struct milling_axis {
     using acceleration = quantity_of<signal::acceleration, real>;
     using command = quantity_of<command_of<Boxes>, real>;
     using wires = milling_wires<command_of<Boxes>, real>;
-    static_assert(every_wire_has_a_tap(wires::taps()));
+    static_assert(every_wire_has_a_tap(
+        milling_wires<command_of<Boxes>, std::conditional_t<multi_lane<real>, double, real>>::taps()));
+    static_assert(!multi_lane<real> || steps_together<real>, "an axis holds as a whole: lanes_in_step");
 
-    /// What the trajectory asks for at one moment.
-    struct motion {
-        milling_axis::position position{};
-        milling_axis::velocity velocity{};
-        milling_axis::acceleration acceleration{};
-    };
+    using motion = axis_motion<real>; ///< what the trajectory asks for at one moment
 
     Boxes box;
     wires wire{};
     bool fault = false;    ///< a sample was not finite; cleared by reset and settle
     bool tracking = false; ///< the last sample was a `track`: nothing is learnt
 
-    command operator()(const motion& reference, position measured) noexcept {
+    [[gnu::always_inline]] command operator()(const motion& reference, position measured) noexcept {
         return step(reference, reference, measured);
     }
-    command operator()(const motion& reference, const motion& ahead, position measured) noexcept {
+    [[gnu::always_inline]] command operator()(const motion& reference, const motion& ahead,
+                                              position measured) noexcept {
         return step(reference, ahead, measured);
     }
 
     void settle(position x, command hold = command()) noexcept {
-        if (!finite(x, hold)) {
+        if (!all(finite(x, hold))) {
             fault = true;
             return;
         }
@@ -151,11 +162,12 @@ template <milling_boxes Boxes> struct milling_axis {
         track(reference, reference, measured, applied);
     }
     void track(const motion& reference, const motion& ahead, position measured, command applied) noexcept {
-        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
-                    applied)) {
+        if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
+                        applied))) {
             fault = true;
             return;
         }
+        const command acted = last_applied();
         look(reference, measured);
         if (!tracking) forget();
         tracking = true;
@@ -166,7 +178,7 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.travel = box.travel(ahead.position);
         wire.friction = box.friction(wire.travel);
         wire.compensated = applied - wire.friction;
-        wire.disturbance = estimate(measured, wire.compensated + wire.disturbance);
+        wire.disturbance = estimate(measured, wire.compensated + wire.disturbance, acted);
         if constexpr (requires { box.disturbance.applied(wire.compensated); })
             box.disturbance.applied(wire.compensated);
         if constexpr (requires { box.disturbance.disturbance(); })
@@ -217,7 +229,7 @@ template <milling_boxes Boxes> struct milling_axis {
         fault = false;
     }
 
-    bool limited() const noexcept { return wire.limited != wire.wanted; }
+    bool limited() const noexcept { return !all(equal(wire.limited, wire.wanted)); }
     bool faulted() const noexcept {
         return fault ||
                std::apply([](const auto&... each) { return (detail::is_faulted(each) || ...); }, boxes(box));
@@ -229,7 +241,7 @@ private:
     /// One function with all boxes in it, whatever the compiler would have left as calls.
     [[gnu::always_inline, gnu::flatten]] inline command step(const motion& reference, const motion& ahead,
                                                              position measured) noexcept {
-        if (!finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured)) {
+        if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured))) {
             fault = true;
             return wire.command;
         }
@@ -242,7 +254,7 @@ private:
         wire.inertia = box.inertia(ahead.acceleration);
         wire.drag = box.drag(ahead.velocity);
         wire.linear = wire.feedback + wire.inertia + wire.drag;
-        wire.disturbance = estimate(measured, wire.linear);
+        wire.disturbance = estimate(measured, wire.linear, last_applied());
         wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
         wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
         wire.friction = box.friction(wire.travel);
@@ -277,9 +289,15 @@ private:
         wire.limited = detail::settled(box.amplifier, wire.wanted);
         wire.command = detail::settled(box.dac, wire.limited);
     }
-    [[gnu::always_inline, gnu::flatten]] inline command estimate(position measured, command wanted) noexcept {
-        if constexpr (requires { box.disturbance(measured, wanted); })
-            return box.disturbance(measured, wanted);
+    /// What acted on the plant since the sample before, without the friction that was fed forward; before the wires of this sample.
+    command last_applied() const noexcept { return wire.compensated + (wire.command - wire.wanted); } // z^-1
+    [[gnu::always_inline, gnu::flatten]] inline command
+    estimate(position measured, [[maybe_unused]] command wish, [[maybe_unused]] command acted) noexcept {
+        using observer = decltype(box.disturbance);
+        if constexpr (fed_the_last_applied<observer>)
+            return box.disturbance(measured, acted);
+        else if constexpr (fed_the_wish<observer, command_of<Boxes>, real>)
+            return box.disturbance(measured, wish);
         else
             return box.disturbance(measured);
     }

@@ -46,6 +46,7 @@ public:
     }
     void retune(const quantizer& next) noexcept { ///< J <= half of both steps
         step_ = next.step_;
+        inverse_step_ = next.inverse_step_;
         given_ = next.given_;
     }
 
@@ -58,12 +59,18 @@ private:
     value rounded(value x) const noexcept {
         using std::round;
         const auto rounds = greater(step_, value());
-        if (none(rounds)) return x;
-        return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
+        if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
+            if (none(rounds)) return x;
+        if constexpr (steps_together<Real>) { // off by a step where a division would meet the middle between two of them
+            const Real whole = round(Real(x * inverse_step_));
+            return select(rounds, value(whole * step_), x);
+        } else
+            return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
     }
 
     parameters given_;
     value step_;
+    decltype(Real(1) / value()) inverse_step_ = Real(1) / step_;
     held_output<value> out_;
 };
 

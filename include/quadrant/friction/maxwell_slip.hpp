@@ -9,6 +9,12 @@
 
 namespace quadrant {
 
+namespace detail {
+template <std::size_t N>
+concept some_springs = N >
+0;
+} // namespace detail
+
 /// Friction of N springs side by side, each of which sticks until its share of the level and then slips (Generalized
 /// Maxwell-slip): small loops close, and after them the force is back on the curve of the large one.
 ///   sticks: dF_i/dt = stiffness_i v, until F_i sign(v) = w_i s(v)
@@ -32,7 +38,8 @@ namespace quadrant {
 /// `stribeck` throws for the curve and the period.
 /// Cost: 2 exponentials and about 4 multiplications an element; 16 bytes an element. One bristle, smooth: `lugre`.
 template <std::size_t N, signal_tag In = signal::velocity, signal_tag Out = signal::force, class Real = double>
-requires(N > 0) class maxwell_slip {
+requires detail::some_springs<N>
+class maxwell_slip {
 public:
     using input = In;
     using output = Out;

@@ -43,8 +43,10 @@ public:
         require_positive("stribeck.period", period);
         require_not_negative("stribeck.coulomb", p.coulomb);
         require_finite("stribeck.static_level", p.static_level);
-        require(p.static_level >= p.coulomb, "stribeck.static_level", p.static_level,
-                "must not be below coulomb (" + detail::shortest(detail::plain(p.coulomb)) + ")");
+        require_lanes([&](std::size_t i) { return lane(p.static_level, i) >= lane(p.coulomb, i); },
+                      "stribeck.static_level", p.static_level,
+                      "must not be below coulomb (" + detail::shortest(detail::plain(lane(p.coulomb, 0))) +
+                          ")");
         require_positive("stribeck.stribeck_velocity", p.stribeck_velocity);
         require_not_negative("stribeck.viscous", p.viscous);
         require(p.shape >= 0.25 && p.shape <= 4, "stribeck.shape", p.shape, "must lie between 0.25 and 4");
@@ -52,12 +54,12 @@ public:
 
     value operator()(argument v) noexcept {
         const value y = at(v);
-        return finite(y) ? out_.keep(y) : out_.hold();
+        return out_.keep(finite(y), y);
     }
     void reset() noexcept { out_.reset(); }
     void settle(argument v) noexcept {
         const value y = at(v);
-        finite(y) ? out_.reset(y) : out_.raise();
+        out_.settle(finite(y), y);
     }
     void retune(const stribeck& next) noexcept { ///< J: what the curve changes at v
         const held_output<value> out = out_;
@@ -67,11 +69,16 @@ public:
 
     /// Magnitude of the dry part: what holds a resting axis, and what brakes a moving one.
     value breakaway() const noexcept { return coulomb_ + excess_; }
-    value slip(argument v) const noexcept {
+    [[gnu::always_inline]] value slip(argument v) const noexcept {
         using std::abs, std::exp, std::log;
-        const Real ratio = abs((v / velocity_).value());
-        if (given_.shape == 1) return coulomb_ + excess_ * exp(-ratio);
-        if (ratio == Real(0)) return breakaway();
+        Real ratio;
+        if constexpr (multi_lane<Real>) // off by half a unit in the last place, and a division shorter
+            ratio = abs(Real((v * inverse_velocity_).value()));
+        else
+            ratio = abs((v / velocity_).value());
+        if (given_.shape == 1) return coulomb_ + excess_ * decayed(ratio);
+        if constexpr (!multi_lane<Real>) // which log and exp get right
+            if (ratio == Real(0)) return breakaway();
         return coulomb_ + excess_ * exp(-exp(Real(given_.shape) * log(ratio)));
     }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
@@ -91,12 +98,18 @@ public:
 
 private:
     value at(argument v) const noexcept {
-        return (v > argument() ? slip(v) : v < argument() ? -slip(v) : value()) + viscous_ * v;
+        if constexpr (multi_lane<Real>) {
+            const value level = slip(v);
+            return select(greater(v, argument()), level, select(less(v, argument()), -level, value())) +
+                   viscous_ * v;
+        } else
+            return (v > argument() ? slip(v) : v < argument() ? -slip(v) : value()) + viscous_ * v;
     }
 
     parameters given_;
     value coulomb_, excess_;
     argument velocity_;
+    decltype(Real(1) / argument()) inverse_velocity_ = Real(1) / velocity_;
     gain_of<Out, In, Real> viscous_;
     held_output<value> out_;
 };

@@ -82,4 +82,19 @@ using here = x86<extensions_here>;
 using here = other;
 #endif
 
+/// The same set, for lanes that take a sample all together or not at all (`lanes_in_step`).
+template <class Isa> struct in_step {};
+/// Whether a set is one of those.
+template <class Isa> inline constexpr bool is_in_step = false;
+/// True.
+template <class Isa> inline constexpr bool is_in_step<in_step<Isa>> = true;
+
+/// Whether a set rounds to whole numbers in one instruction, whatever their size (SSE4.1).
+template <class Isa> inline constexpr bool rounds_in_registers = false;
+/// From SSE4.1 on.
+template <unsigned Extensions>
+inline constexpr bool rounds_in_registers<x86<Extensions>> = (Extensions & sse4_1) != 0;
+/// As the set in it.
+template <class Isa> inline constexpr bool rounds_in_registers<in_step<Isa>> = rounds_in_registers<Isa>;
+
 } // namespace quadrant::isa

@@ -54,7 +54,7 @@ public:
     }
     friend lane_mask operator!(const lane_mask& a) noexcept {
         lane_mask out;
-        for (std::size_t i = 0; i < pieces; ++i) out.piece_[i] = !a.piece_[i];
+        for (std::size_t i = 0; i < pieces; ++i) out.piece_[i] = detail::opposite(a.piece_[i]);
         return out;
     }
     lane_mask& operator&=(const lane_mask& o) noexcept { return *this = *this & o; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../fine_sum.hpp"
 #include "number.hpp"
 
 #include <cmath>
@@ -41,6 +42,28 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
         for (std::size_t i = 0; i < W; ++i)
             if (!near[i]) y.set(i, std::exp(x[i]));
     return y;
+}
+/// exp(-x) for x >= 0, within one unit in the last place; beyond 708, where it is no normal number any more, that of 708. 2^-k from
+/// the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the work of `exp`, and the same on every
+/// instruction set.
+template <std::size_t W, class Isa> lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
+    using number = lanes<W, Isa>;
+    const number most(708), shift(0x1.8p52);
+    const number y = -select(less(most, x), most, x);
+    const number shifted = detail::rounded_here<number>(y * number(1.442695040888963407359924681) + shift);
+    const number k = shifted - shift;
+    const number r = (y - k * number(.69314718055966295651160180568695068359375)) -
+                     k * number(.28235290563031577122588448175013436025525412068e-12);
+    const number r2 = r * r, r4 = r2 * r2;
+    const auto term = [&r](double low, double high) { return number(low) + r * number(high); };
+    const number low = term(0.5, 0.166666666666666851703837),
+                 next = term(0.0416666666666665047591422, 0.00833333333331652721664984),
+                 more = term(0.00138888888889774492207962, 0.000198412698960509205564975),
+                 high = term(2.4801587159235472998791e-05, 2.75572362911928827629423e-06),
+                 last = term(2.75573911234900471893338e-07, 2.51112930892876518610661e-08) +
+                        r2 * number(2.08860621107283687536341e-09);
+    const number p = (low + r2 * next) + r4 * ((more + r2 * high) + r4 * last);
+    return scaled_by_bits(number(1) + (r + r2 * p), shifted);
 }
 /// xsimd's in registers.
 template <std::size_t W, class Isa> lanes<W, Isa> log(const lanes<W, Isa>& x) noexcept {
@@ -101,19 +124,22 @@ template <std::size_t W, class Isa> lanes<W, Isa> floor(const lanes<W, Isa>& x) 
         return floor(v);
     });
 }
+template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept;
 /// Halves away from zero, as std::round.
 template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) noexcept {
-    return detail::rounded(x, [](const auto& v) {
-        using std::round;
-        return round(v);
-    });
+    // Away from zero by the largest number below a half, then towards zero: as std::round, bit for bit.
+    return trunc(x + turned_as(lanes<W, Isa>(0x1.fffffffffffffp-2), x));
 }
 /// As std::trunc.
 template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept {
-    return detail::rounded(x, [](const auto& v) {
+    const auto truncated = [](const auto& v) {
         using std::trunc;
         return trunc(v);
-    });
+    };
+    if constexpr (isa::rounds_in_registers<Isa>)
+        return lanes<W, Isa>::map(truncated, x);
+    else
+        return detail::rounded(x, truncated);
 }
 /// std::atan2, lane by lane.
 template <std::size_t W, class Isa>

@@ -21,10 +21,10 @@ namespace quadrant {
 /// when W is odd, the lanes are W doubles. `Isa` is the instruction set, by default that of the translation unit.
 template <std::size_t W, class Isa = isa::here> class lanes {
     using registers = detail::lane_registers<W, Isa>;
-    using piece = typename registers::number;
     static constexpr std::size_t pieces = W / registers::width;
 
 public:
+    using piece = typename registers::number; ///< what one register holds
     static_assert(W > 0, "at least one lane");
     using mask = lane_mask<W, Isa>;
     static constexpr std::size_t size = W;
@@ -100,15 +100,56 @@ public:
     friend mask equal(const lanes& a, const lanes& b) noexcept {
         return test([](const piece& x, const piece& y) { return x == y; }, a, b);
     }
-    friend mask finite_lanes(const lanes& a) noexcept {
-        return test([](const piece& x) { return detail::is_finite(x); }, a);
+    friend auto finite_lanes(const lanes& a) noexcept {
+        if constexpr (isa::is_in_step<Isa>)
+            return in_every_lane<true>();
+        else
+            return a.finite_mask();
     }
     friend mask within_turns(const lanes& a) noexcept {
         return test([](const piece& x) { return detail::within_turns(x); }, a);
     }
+    /// a, negated where b has a minus sign (also that of a zero).
+    friend lanes turned_as(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return detail::turned_as(x, y); }, a, b);
+    }
+    /// The bits of both: below a power of two where both are.
+    friend lanes bits_joined(const lanes& a, const lanes& b) noexcept {
+        return map([](const piece& x, const piece& y) { return detail::bits_joined(x, y); }, a, b);
+    }
+    /// p 2^k, where k are the lowest bits of `shifted`.
+    friend lanes scaled_by_bits(const lanes& p, const lanes& shifted) noexcept {
+        return map([](const piece& x, const piece& k) { return detail::scaled_by_bits(x, k); }, p, shifted);
+    }
     friend lanes select(const mask& choice, const lanes& one, const lanes& other) noexcept {
         return chosen(choice, one, other);
     }
+
+    /// Which lanes are finite; asked also of lanes in step, at the border of their loop.
+    mask finite_mask() const noexcept {
+        return test([](const piece& x) { return detail::is_finite(x); }, *this);
+    }
+    /// W numbers that lie one behind the other.
+    static lanes read(const double* from) noexcept {
+        lanes out;
+        for (std::size_t i = 0; i < pieces; ++i) detail::get(out.piece_[i], from + i * registers::width);
+        return out;
+    }
+    /// Writes them one behind the other.
+    void write(double* to) const noexcept {
+        for (std::size_t i = 0; i < pieces; ++i) detail::put(piece_[i], to + i * registers::width);
+    }
+    /// How many lanes a register holds, and the i-th register.
+    static constexpr std::size_t register_width = registers::width;
+    const piece& in_register(std::size_t i) const noexcept { return piece_[i]; }
+    /// From one register after the other: make(i) gives the i-th.
+    template <class Make> static lanes from_registers(Make&& make) noexcept {
+        lanes out;
+        for (std::size_t i = 0; i < pieces; ++i) out.piece_[i] = make(i);
+        return out;
+    }
+    /// N times as many lanes.
+    template <std::size_t N> using times = lanes<N * W, Isa>;
 
     /// Applies `f` to the registers of the arguments: for functions that xsimd and std have under one name.
     template <class F, class... More> static lanes map(F f, const lanes& a, const More&... more) noexcept {
@@ -144,6 +185,11 @@ private:
 
     std::array<piece, pieces> piece_;
 };
+
+/// Lanes that take a sample all together or not at all, such as the axes of one table: `finite` is true of them without a look, so
+/// no block inside holds, and the loop around the blocks checks its inputs once, at its border (`xy_control`). A block of its own
+/// should have `lanes`, which hold each for itself.
+template <std::size_t W, class Isa = isa::here> using lanes_in_step = lanes<W, isa::in_step<Isa>>;
 
 /// W.
 template <std::size_t W, class Isa> inline constexpr std::size_t lane_count<lanes<W, Isa>> = W;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #if defined(__SSE2__) && __has_include(<xsimd/xsimd.hpp>)
@@ -108,6 +109,9 @@ xsimd::batch_bool<double, Set> join(const xsimd::batch_bool<double, Set>& a,
                                     const xsimd::batch_bool<double, Set>& b) noexcept {
     return a | b;
 }
+template <class Set> xsimd::batch_bool<double, Set> opposite(const xsimd::batch_bool<double, Set>& m) noexcept {
+    return ~m; // xsimd's ! compares
+}
 /// True where xsimd's sin and cos hold: the rest is for the C library.
 template <class Set> xsimd::batch_bool<double, Set> within_turns(const xsimd::batch<double, Set>& x) noexcept {
     return xsimd::abs(x) <= xsimd::constants::mediumpi<xsimd::batch<double, Set>>();
@@ -128,8 +132,42 @@ template <class Set> void get(xsimd::batch_bool<double, Set>& m, const bool* in)
 }
 #endif
 
+#ifdef XSIMD_HPP
+template <class Set>
+xsimd::batch<double, Set> turned_as(const xsimd::batch<double, Set>& a,
+                                    const xsimd::batch<double, Set>& b) noexcept {
+    return a ^ xsimd::bitofsign(b);
+}
+#endif
+#ifdef XSIMD_HPP
+template <class Set>
+xsimd::batch<double, Set> bits_joined(const xsimd::batch<double, Set>& a,
+                                      const xsimd::batch<double, Set>& b) noexcept {
+    return a | b;
+}
+/// p 2^k, where k are the lowest bits of `shifted`; by adding to the exponent.
+template <class Set>
+xsimd::batch<double, Set> scaled_by_bits(const xsimd::batch<double, Set>& p,
+                                         const xsimd::batch<double, Set>& shifted) noexcept {
+    using whole = xsimd::batch<std::int64_t, Set>;
+    return xsimd::bitwise_cast<xsimd::batch<double, Set>>(whole(xsimd::bitwise_cast<whole>(p)) +
+                                                          (xsimd::bitwise_cast<whole>(shifted) << 52));
+}
+#endif
+inline double bits_joined(double a, double b) noexcept {
+    return bits_as<double>(bits_as<std::uint64_t>(a) | bits_as<std::uint64_t>(b));
+}
+inline double scaled_by_bits(double p, double shifted) noexcept {
+    return bits_as<double>(bits_as<std::uint64_t>(p) + (bits_as<std::uint64_t>(shifted) << 52));
+}
+inline double turned_as(double a, double b) noexcept { return std::signbit(b) ? -a : a; }
+
+/// Lanes in step lie in the registers of their set.
+template <std::size_t W, class Isa> struct lane_registers<W, isa::in_step<Isa>> : lane_registers<W, Isa> {};
+
 constexpr double choose(bool c, double a, double b) noexcept { return c ? a : b; }
 constexpr bool meet(bool a, bool b) noexcept { return a && b; }
+constexpr bool opposite(bool m) noexcept { return !m; }
 constexpr bool join(bool a, bool b) noexcept { return a || b; }
 constexpr bool within_turns(double) noexcept { return true; } // std::sin and std::cos hold everywhere
 constexpr bool any_of(bool m) noexcept { return m; }

@@ -193,8 +193,7 @@ public:
         return l * memory * q / (1.0 - memory * q);
     }
     bool integrates() const noexcept { ///< has a pole at z = 1
-        return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <=
-               16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
+        return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <= whole_tolerance;
     }
     bool fading() const noexcept { return state_.fading > 0; }
     bool limited() const noexcept { return limited_; } ///< the last cycle(d) lay outside the range
@@ -203,6 +202,12 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
+    template <signal_tag S, std::size_t C, std::size_t O, std::size_t L, std::size_t Q, class R>
+    requires detail::repeats<O, L, Q>
+    friend class repetitive; // the one in lanes takes its cycle apart the same way
+
+    static constexpr double whole_tolerance = ///< of the sum of a Q and weights that let nothing through
+        16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
     static constexpr double rounding = 1e-12; ///< of a cycle that was given as a multiple of the period
     static constexpr std::size_t size_p = Order * Capacity + 2;
 
@@ -212,7 +217,11 @@ private:
         std::array<std::array<Real, 4>, Order> weight{};
     };
     memory_reader reader(number periods) const noexcept {
-        const number least(double(given_.ahead + half + 2)), most{double(Capacity)};
+        return reader_for(periods, given_.weights, given_.ahead);
+    }
+    static memory_reader reader_for(number periods, const std::array<number, Order>& weights,
+                                    std::size_t ahead) noexcept {
+        const number least(double(ahead + half + 2)), most{double(Capacity)};
         if (detail::plain(periods) < detail::plain(least)) periods = least; // by rounding
         if (detail::plain(periods) > detail::plain(most)) periods = most;
         memory_reader out;
@@ -220,8 +229,8 @@ private:
             const number delay = number(double(i + 1)) * periods;
             const double whole = std::floor(detail::plain(delay));
             const auto cubic = detail::cubic_weights(number(delay - number(whole)));
-            out.oldest[i] = std::size_t(whole) - given_.ahead - half + 2;
-            for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(given_.weights[i] * cubic[j]);
+            out.oldest[i] = std::size_t(whole) - ahead - half + 2;
+            for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(weights[i] * cubic[j]);
         }
         return out;
     }
@@ -276,8 +285,8 @@ private:
 /// In lanes: each lane has its own cycle, weights and filters, and the call loops over the lanes.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
           std::size_t SmoothingTaps, several_lanes Real>
-requires detail::repeats<Order, LearningTaps, SmoothingTaps>
-class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real>
+requires detail::repeats<Order, LearningTaps, SmoothingTaps> &&
+    (!steps_together<Real>)class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real>
     : public lane_by_lane<
           repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>, Real> {
     using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>;

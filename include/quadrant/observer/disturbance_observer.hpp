@@ -88,6 +88,8 @@ public:
             require_finite("disturbance_observer.plant.denominator", from_measured_[i]);
             if (i > 0) feedback_[i - 1] = Real(under[i] / under[0]);
         }
+        for (std::size_t i = 0; i < order; ++i)
+            from_applied_[i] = feedback_[i] * from_command_[0] - from_command_[i + 1];
         solved_ = Real(1) / (Real(1) - from_command_[0]);
         standstill_ = select(
             integrates_, gain_of<Command, Measured, Real>(),
@@ -124,7 +126,7 @@ public:
         auto s = state_.s;
         Real sum = bare(u, d);
         for (std::size_t i = 0; i < order; ++i) {
-            s[i] = s[i].plus((feedback_[i] * from_command_[0] - from_command_[i + 1]) * more);
+            s[i] = s[i].plus(from_applied_[i] * more);
             sum += s[i].high.value();
         }
         const auto good = finite(sum);
@@ -148,7 +150,7 @@ public:
         set_where(good, state_.measured, measured);
         set_where(good, state_.moved, x);
         set_where(good, state_.command, u);
-        set_where(good, stepped_, mask_of<Real>());
+        if constexpr (!std::is_empty_v<decltype(stepped_)>) set_where(good, stepped_, mask_of<Real>());
         out_.settle(good, d);
     }
     void retune(const disturbance_observer& next) noexcept {
@@ -168,6 +170,7 @@ public:
         set_where(good, from_measured_, next.from_measured_);
         set_where(good, from_command_, next.from_command_);
         set_where(good, feedback_, next.feedback_);
+        set_where(good, from_applied_, next.from_applied_);
         set_where(good, standstill_, next.standstill_);
         set_where(good, solved_, next.solved_);
         set_where(good, state_.s, s);
@@ -247,10 +250,11 @@ private:
         from_measured_{}; ///< numerator of Q/Gn, by rising power of 1/D (differences.hpp)
     std::array<Real, order + 1> from_command_{};    ///< numerator of Q; [0] passes straight through
     std::array<Real, order> feedback_{};            ///< denominator from 1/D on
+    std::array<Real, order> from_applied_{};        ///< what a command beyond the one taken for applied changes
     gain_of<Command, Measured, Real> standstill_{}; ///< 1 / Gn(0)
     Real solved_{1};
     state state_;
-    mask_of<Real> stepped_{};
+    decltype(finite(Real())) stepped_{};
     held_output<value> out_;
 };
 

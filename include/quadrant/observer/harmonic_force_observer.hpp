@@ -59,6 +59,7 @@ public:
         std::array<value, Harmonics> in_phase{}, across{}; ///< q and r
     };
     static constexpr std::size_t order = 2 + 2 * Harmonics;
+    static constexpr bool takes_last_applied = true; ///< a loop feeds the command that acted since the sample before
 
     harmonic_force_observer(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("harmonic_force_observer.period", period);
@@ -118,19 +119,22 @@ public:
         const Real off = encoder.value() - px;
         state next;
         Real sum{0};
-        bool good = true;
+        bool good = true, still = true;
         for (std::size_t i = 0; i < Harmonics; ++i) {
             const Real before = state_.in_phase[i].value(), aside = state_.across[i].value();
             const Real q = turn_[i].cosine * before + turn_[i].sine * aside + gain_[2 + 2 * i] * off;
             const Real r = turn_[i].cosine * aside - turn_[i].sine * before + gain_[3 + 2 * i] * off;
-            next.in_phase[i] = value::from_value(unless_died_out(q));
-            next.across[i] = value::from_value(unless_died_out(r));
+            next.in_phase[i] = value::from_value(q);
+            next.across[i] = value::from_value(r);
             sum += lead_[i].cosine * q + lead_[i].sine * r;
             good = good && finite(q, r);
+            still = still && died_out(q, r);
         }
-        next.position = argument::from_value(unless_died_out(px + gain_[0] * off));
-        next.velocity = velocity::from_value(unless_died_out(pv + gain_[1] * off));
+        next.position = argument::from_value(px + gain_[0] * off);
+        next.velocity = velocity::from_value(pv + gain_[1] * off);
         if (!good || !finite(next.position, next.velocity, sum)) return out_.hold();
+        // All at once: a position is far smaller than the command that made it, and alone at zero it would move the others.
+        if (still && died_out(next.position, next.velocity)) next = {};
         state_ = next;
         innovation_ = argument::from_value(off);
         return out_.keep(value::from_value(sum));

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "repetitive.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace quadrant {
+
+namespace detail {
+/// The last Size inputs of W lanes as plain numbers, oldest first and never wrapped around; see `fir_window`.
+template <std::size_t W, std::size_t Size> struct lane_window {
+    alignas(64) std::array<double, 2 * Size * W> x{};
+    std::size_t next = 0; ///< where the coming one goes, in numbers
+
+    template <class Real> void put(const Real& newest) noexcept {
+        const std::size_t now = next; // a register may be written anywhere: not read again
+        next = now + W == Size * W ? 0 : now + W;
+        newest.write(&x[now]);
+        newest.write(&x[now + Size * W]);
+    }
+    template <class Real> void fill(const Real& all) noexcept {
+        for (std::size_t i = 0; i < x.size(); i += W) all.write(&x[i]);
+    }
+    const double* oldest() const noexcept { return &x[next]; } ///< of the last Size inputs
+    const double* ago(std::size_t samples) const noexcept {
+        return &x[next + (Size - samples) * W];
+    } ///< 1 ... Size
+};
+
+/// FIR coefficients for each lane, and their sum over a window of the samples before and the newest, which never goes through
+/// memory. Eight partial sums: off by at most (Size/8 + 4) half units in the last place of sum |c| |x|.
+template <class Real, std::size_t Taps> class lane_taps {
+    static constexpr std::size_t W = lane_count<Real>, before = Taps - 1;
+    using pair = typename Real::template times<2>;
+
+public:
+    static constexpr std::size_t size = before == 0 ? 8 : (before + 7) / 8 * 8; ///< of the window
+
+    void set(const std::array<Real, Taps>& c) noexcept {
+        newest_ = c[0];
+        for (std::size_t i = 1; i < Taps; ++i) c[i].write(&c_[(size - i) * W]);
+    }
+    Real operator()(const lane_window<W, size>& window, const Real& newest) const noexcept {
+        if constexpr (before == 0) return newest_ * newest;
+        pair s0{}, s1{}, s2{}, s3{};
+        const double* const x = window.oldest();
+        const auto part_at = [&](std::size_t i) { return pair::read(&c_[i]) * pair::read(x + i); };
+        for (std::size_t i = 0; i < size * W; i += 8 * W) {
+            s0 += part_at(i);
+            s1 += part_at(i + 2 * W);
+            s2 += part_at(i + 4 * W);
+            s3 += part_at(i + 6 * W);
+        }
+        const pair all = (s0 + s2) + (s1 + s3);
+        return (part<W>(all, 0) + part<W>(all, 1)) + newest_ * newest;
+    }
+    Real sum() const noexcept {
+        Real all = newest_;
+        for (std::size_t i = 0; i < size * W; i += W) all += Real::read(&c_[i]);
+        return all;
+    }
+
+private:
+    Real newest_{};
+    alignas(64) std::array<double, size * W> c_{};
+};
+} // namespace detail
+
+/// In lanes that step together: one ring and one position in it for all of them. Each lane has its own cycle, weights and filters;
+/// a sample costs little more than one lane does, since neighbouring taps of all lanes fill a register. A fade is common: it
+/// starts where one lane's cycle changes.
+/// The sums are those of `repetitive` in another order: see detail::lane_taps.
+template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
+          std::size_t SmoothingTaps, several_lanes Real>
+requires detail::repeats<Order, LearningTaps, SmoothingTaps> && steps_together<Real>
+class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real> {
+    static constexpr std::size_t W = lane_count<Real>;
+    using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, double>;
+
+    using pair = typename Real::template times<2>;
+    using taps_of_m = detail::lane_taps<Real, SmoothingTaps>;
+    using taps_of_r = detail::lane_taps<Real, LearningTaps>;
+
+public:
+    using input = Signal;
+    using output = Signal;
+    using argument = quantity_of<Signal, Real>;
+    using value = quantity_of<Signal, Real>;
+    using number = Real; ///< of parameters
+
+    /// As those of one memory, each for all lanes; `ahead` and `fade` are common to them.
+    struct parameters {
+        quantity<si::time, Real> cycle;
+        std::array<Real, Order> weights{Real(1)};
+        std::array<Real, LearningTaps> learning{Real(1)};
+        std::size_t ahead = 0;
+        std::array<Real, SmoothingTaps> smoothing = only_the_middle();
+        duration fade{};
+
+        static std::array<Real, SmoothingTaps> only_the_middle() {
+            std::array<Real, SmoothingTaps> q{};
+            q[SmoothingTaps / 2] = Real(1);
+            return q;
+        }
+        /// Those of lane i.
+        typename one::parameters of(std::size_t i) const {
+            return {lane(cycle, i), lane(weights, i), lane(learning, i), ahead, lane(smoothing, i), fade};
+        }
+    };
+    /// The cycles that were learnt, and the samples that are inside the filters.
+    struct state {
+        detail::lane_window<W, taps_of_m::size> m{};        ///< e + r
+        detail::lane_window<W, taps_of_r::size> r{};        ///< r, `ahead` samples early
+        std::array<double, 2 * (Order * Capacity + 2) * W> p{}; ///< ring of Q (e + r), written twice
+        std::size_t next_p = 0;                             ///< where the coming p goes, in samples
+        std::size_t fading = 0;                             ///< steps left of a change of cycle
+    };
+
+    repetitive(const parameters& p, duration period) : given_(p), period_(period) {
+        for (std::size_t i = 0; i < W; ++i) static_cast<void>(one(p.of(i), period)); // checks
+        take_filters();
+        reset();
+    }
+
+    value operator()(argument e) noexcept {
+        Real early = read(reader_);
+        if (state_.fading > 0) [[unlikely]]
+            early = faded(early);
+        const Real before = given_.ahead == 0 ? early : Real::read(state_.r.ago(given_.ahead));
+        const Real m = e.value() + before;
+        const Real p = unless_died_out(smoothing_(state_.m, m)), y = learning_(state_.r, early);
+        state_.r.put(early);
+        state_.m.put(m);
+        const std::size_t now = state_.next_p;
+        state_.next_p = now + 1 == size_p ? 0 : now + 1;
+        p.write(&state_.p[now * W]);
+        p.write(&state_.p[(now + size_p) * W]);
+        if (state_.fading > 0) [[unlikely]]
+            fade_on();
+        return out_.keep(value::from_value(y));
+    }
+    void reset() noexcept {
+        limited_ = pending_ = false;
+        state_ = state();
+        periods_ = given_.cycle.value() / Real(period_.value());
+        reader_ = old_reader_ = reader(periods_);
+        out_.reset();
+    }
+    void settle(argument x) noexcept { stand(x.value(), out_.last().value(), false); }
+    void settle(argument x, value y) noexcept { stand(x.value(), y.value(), true); }
+
+    /// Of what repeats in each lane, from the next step on; see `repetitive`.
+    void cycle(quantity<si::time, Real> d) noexcept {
+        if (!all(d.value().finite_mask())) return out_.raise();
+        Real periods = d.value() / Real(period_.value());
+        const Real least(double(given_.ahead + one::half + 2)), most{double(Capacity)};
+        limited_ = any(less(periods, least * Real(1 - one::rounding))) ||
+                   any(less(most * Real(1 + one::rounding), periods));
+        wanted_ = limited_to(periods, least, most);
+        pending_ = state_.fading > 0;
+        if (!pending_) start(wanted_);
+    }
+    void retune(const repetitive& next) noexcept {
+        if (next.period_ != period_ || next.given_.ahead != given_.ahead) return out_.raise();
+        given_ = next.given_;
+        learning_ = next.learning_;
+        smoothing_ = next.smoothing_;
+        reader_ = reader(periods_);
+        cycle(given_.cycle);
+    }
+    quantity<si::time, Real> cycle() const noexcept {
+        return quantity<si::time, Real>::from_value(periods_ * Real(period_.value()));
+    }
+
+    bool fading() const noexcept { return state_.fading > 0; }
+    bool limited() const noexcept { return limited_; } ///< the last cycle(d) lay outside the range in some lane
+    bool faulted() const noexcept { return out_.faulted(); }
+    mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
+    const parameters& given() const noexcept { return given_; }
+    const state& now() const noexcept { return state_; }
+
+private:
+    static constexpr std::size_t size_p = one::size_p;
+
+    /// Which samples of p make r in each lane, and how much of each; where all lanes read the same ones, in one go.
+    struct memory_reader {
+        std::array<std::array<std::size_t, W>, Order> oldest{}; ///< of the four: how far before the coming p
+        std::array<std::array<pair, 2>, Order> weight{};        ///< of the oldest first
+        bool alike = true;
+    };
+    memory_reader reader(const Real& periods) const noexcept {
+        memory_reader out;
+        for (std::size_t i = 0; i < W; ++i) {
+            const auto of_one = one::reader_for(periods[i], lane(given_.weights, i), given_.ahead);
+            for (std::size_t k = 0; k < Order; ++k) {
+                out.oldest[k][i] = of_one.oldest[k];
+                out.alike = out.alike && out.oldest[k][i] == out.oldest[k][0];
+                for (std::size_t j = 0; j < 4; ++j)
+                    out.weight[k][j / 2].set(j % 2 * W + i, of_one.weight[k][3 - j]);
+            }
+        }
+        return out;
+    }
+    std::size_t ring_at(std::size_t before) const noexcept { return state_.next_p + size_p - before; }
+    [[gnu::always_inline]] Real read(const memory_reader& from) const noexcept {
+        pair sum{};
+        for (std::size_t k = 0; k < Order; ++k) {
+            std::array<double, 4 * W> each;
+            const double* at = &state_.p[ring_at(from.oldest[k][0]) * W];
+            if (!from.alike) {
+                gather(from.oldest[k], each);
+                at = each.data();
+            }
+            sum += from.weight[k][0] * pair::read(at) + from.weight[k][1] * pair::read(at + 2 * W);
+        }
+        return part<W>(sum, 0) + part<W>(sum, 1);
+    }
+    void gather(const std::array<std::size_t, W>& oldest, std::array<double, 4 * W>& each) const noexcept {
+        for (std::size_t i = 0; i < W; ++i)
+            for (std::size_t j = 0; j < 4; ++j) each[j * W + i] = state_.p[(ring_at(oldest[i]) + j) * W + i];
+    }
+    /// Out of the way of the samples without a fade.
+    [[gnu::noinline]] Real faded(const Real& early) const noexcept {
+        return early + Real(double(state_.fading) / double(fade_)) * (read(old_reader_) - early);
+    }
+    [[gnu::noinline]] void fade_on() noexcept {
+        if (--state_.fading == 0 && pending_) start(wanted_);
+    }
+    void start(const Real& periods) noexcept {
+        pending_ = false;
+        if (all(equal(periods, periods_))) return;
+        old_reader_ = reader_;
+        periods_ = periods;
+        reader_ = reader(periods);
+        double longest = 0;
+        for (std::size_t i = 0; i < W; ++i) longest = periods[i] > longest ? periods[i] : longest;
+        const double steps = given_.fade.value() > 0 ? given_.fade.value() / period_.value() : longest;
+        fade_ = state_.fading = std::size_t(std::ceil(steps));
+    }
+    /// Each lane as one memory is that was settled; see there.
+    void stand(const Real& x, const Real& y, bool has_output) noexcept {
+        if (!all((x + y).finite_mask())) return out_.raise();
+        Real weights(0), to_m, to_r, to_y;
+        for (const Real& w : given_.weights) weights += w;
+        const Real gain = learning_.sum(), q = smoothing_.sum();
+        for (std::size_t i = 0; i < W; ++i) {
+            const double g = q[i] * weights[i];
+            const bool whole = std::abs(g - 1) <= one::whole_tolerance;
+            double m = 0, r = 0, out = 0;
+            if ((has_output || whole) && gain[i] != 0 && g != 0) {
+                r = y[i] / gain[i];
+                m = r / g;
+                out = y[i];
+            } else if (!whole) {
+                r = g / (1 - g) * x[i];
+                m = x[i] + r;
+                out = gain[i] * r;
+            }
+            to_m.set(i, m);
+            to_r.set(i, r);
+            to_y.set(i, out);
+        }
+        const Real p = q * to_m;
+        if (!all((to_m + p + to_r + to_y).finite_mask())) return out_.raise();
+        state_.m.fill(to_m);
+        state_.r.fill(to_r);
+        for (std::size_t i = 0; i < state_.p.size(); i += W) p.write(&state_.p[i]);
+        state_.fading = 0;
+        if (pending_) start(wanted_);
+        state_.fading = 0; // nothing to fade: both cycles read the same
+        out_.reset(value::from_value(to_y));
+    }
+    void take_filters() noexcept {
+        learning_.set(given_.learning);
+        smoothing_.set(given_.smoothing);
+    }
+
+    parameters given_;
+    duration period_;
+    taps_of_r learning_{};
+    taps_of_m smoothing_{};
+    Real periods_{0}, wanted_{0};
+    memory_reader reader_, old_reader_;
+    std::size_t fade_ = 1;
+    bool pending_ = false, limited_ = false;
+    state state_;
+    held_output<value> out_;
+};
+
+} // namespace quadrant
