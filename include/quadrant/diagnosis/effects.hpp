@@ -23,22 +23,29 @@
 #include "effect/friction_drift.hpp"
 #include "effect/gravity.hpp"
 #include "effect/load_friction.hpp"
+#include "effect/lost_motion.hpp"
 #include "effect/mass.hpp"
 #include "effect/minimum_duty.hpp"
+#include "effect/missed_steps.hpp"
+#include "effect/motor_friction.hpp"
 #include "effect/payload_mass.hpp"
+#include "effect/pitch_error.hpp"
 #include "effect/position_dependent_friction.hpp"
 #include "effect/position_spring.hpp"
 #include "effect/presliding_friction.hpp"
 #include "effect/quadratic_drag.hpp"
 #include "effect/sample_loss.hpp"
+#include "effect/scale_error.hpp"
 #include "effect/set_point_loss.hpp"
 #include "effect/setpoint_rate_limit.hpp"
 #include "effect/stribeck_friction.hpp"
 #include "effect/structural_resonance.hpp"
 #include "effect/supply_voltage.hpp"
 #include "effect/time_delay.hpp"
+#include "effect/travel_error.hpp"
 #include "effect/unlisted.hpp"
 #include "effect/viscous_friction.hpp"
+#include "effect/wind_up.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -79,6 +86,13 @@ inline constexpr std::array listed_effects{
     &suspect::command_delay,
     &suspect::setpoint_rate_limit,
     &suspect::set_point_loss,
+    &suspect::missed_steps,
+    &suspect::lost_motion,
+    &suspect::wind_up,
+    &suspect::pitch_error,
+    &suspect::travel_error,
+    &suspect::scale_error,
+    &suspect::motor_friction,
     &suspect::encoder_quantization,
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,

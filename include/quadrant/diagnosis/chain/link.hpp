@@ -8,8 +8,8 @@ namespace quadrant::diagnosis::chain {
 /// One link of the chain, both readings in units of the load.
 struct position_link {
     double period = 0;
-    std::vector<double> first; ///< asked, counted, or read on the motor [m]
-    std::vector<double> last;  ///< read behind it [m]
+    std::vector<double> first{}; ///< asked, counted, or read on the motor [m]
+    std::vector<double> last{};  ///< read behind it [m]
     double first_count = 0, last_count = 0;
     std::vector<unsigned char> left_out{}; ///< of each row; empty: every row counts
     /// Whether the first is what was asked, so that the last may follow it late.

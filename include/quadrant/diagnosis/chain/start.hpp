@@ -15,6 +15,7 @@ inline std::vector<term> suspects_of(const position_link& l) {
         if (l.turn > 0) out.push_back(term::cyclic); // else it is told as a pitch error
         if (!l.force.empty()) out.insert(out.end(), {term::spring, term::motor_friction});
         if (!l.asked) out.push_back(term::steps);
+        if (!l.asked && l.force.empty()) out.push_back(term::delay); // two registers, read one after the other
     }
     out.push_back(term::drift);
     return out;

@@ -2,6 +2,7 @@
 #pragma once
 #include "../bad_input.hpp"
 #include "../how_far.hpp"
+#include "../match.hpp"
 #include "../neighbour.hpp"
 #include "../simulate.hpp"
 #include "../with_drives.hpp"
@@ -59,6 +60,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
 
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine,
                                                    const machine_log& as_read) {
+    refuse_positions_only(machine, "a simulation");
     const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
     const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;
