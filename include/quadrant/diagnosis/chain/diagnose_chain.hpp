@@ -93,7 +93,23 @@ struct two_encoders {
     /// The log with the centre of mass of motor and load for the position: it obeys the laws of a rigid axis, whatever lies
     /// between the two.
     axis_log carried;
-    bool is_carried = false;
+    double motor_coulomb =
+        0; ///< friction on the motor's side, described or claimed: part of what the force overcomes [N]
+
+    /// The axis as the force sees it: the friction of both sides in one.
+    axis_description rigid(axis_description a) const {
+        if (motor_coulomb == 0) return a;
+        a.plant.coulomb_N = a.plant.coulomb_N.value_or(0) + motor_coulomb;
+        if (a.plant.static_N) *a.plant.static_N += motor_coulomb;
+        return a;
+    }
+    /// Values found for that axis as those of the guide alone.
+    void of_the_guide(std::vector<parameter_estimate>& values) const {
+        for (parameter_estimate& p : values)
+            if (p.key == "coulomb_N" || p.key == "static_N")
+                for (estimate& e : p.values)
+                    e = {e.value - motor_coulomb, e.low - motor_coulomb, e.high - motor_coulomb};
+    }
 };
 inline two_encoders diagnose_transmission(const axis_description& axis, const axis_log& log, double period,
                                           const std::string& file, const std::vector<std::string>& excluded,
@@ -103,6 +119,10 @@ inline two_encoders diagnose_transmission(const axis_description& axis, const ax
     give_force(d, axis, log);
     out.found = link_or_refusal(d, axis, file, excluded, limits);
     out.carried = log;
+    out.motor_coulomb = axis.transmission.motor_coulomb_N.value_or(0);
+    for (const cause& c : out.found.causes)
+        if (c.effect == "motor_friction" && c.probability >= 0.5)
+            out.motor_coulomb = c.parameters[0].values[0].value;
     const auto& mass = axis.transmission.motor_mass_kg;
     if (!mass) {
         out.notes.push_back(
@@ -116,7 +136,6 @@ inline two_encoders diagnose_transmission(const axis_description& axis, const ax
     out.carried.controller_reads = log.position;
     for (std::size_t k = 0; k < log.position.size(); ++k)
         out.carried.position[k] -= share * out.found.elastic[k];
-    out.is_carried = true;
     return out;
 }
 

@@ -133,6 +133,12 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
 inline void join_transmission(diagnosis_result& out, axis_result& result, std::vector<cause>& causes,
                               chain::two_encoders& t) {
     std::vector<cause> first;
+    t.of_the_guide(result.calibrated);
+    t.of_the_guide(result.calibrated_with_suspects);
+    for (cause& c : causes) {
+        t.of_the_guide(c.parameters);
+        t.of_the_guide(c.with_suspects);
+    }
     if (result.verdict <= verdict::within_tolerance) causes.clear(); // as where there is one encoder
     chain::join(result, first, out, std::move(t.found), "readings");
     causes.insert(causes.begin(), first.begin(), first.end());
@@ -300,7 +306,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         std::vector<std::string> excluded = machine.excluded_effects;
         if (transmission) // the two encoders show these themselves
             excluded.insert(excluded.end(), {"backlash", "structural_resonance"});
-        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s, excluded, r, tell);
+        const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
+        axis_case c(rigid, coupled, other ? &*other : nullptr, machine.sample_period_s, excluded, r, tell);
         detail::diagnose_axis(out, detail::need_blocks(c, log.file), transmission ? &*transmission : nullptr);
     }
     return out;
