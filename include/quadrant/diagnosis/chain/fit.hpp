@@ -139,11 +139,11 @@ inline fitted settled(const readings& r, fitted f) {
         double change = 0;
         for (std::size_t j = 0; j < f.of.size(); ++j) {
             const double by = f.values[static_cast<Eigen::Index>(j)];
-            if (f.of[j] == term::play) {
+            const bool first_of_its_term = j == 0 || f.of[j] != f.of[j - 1];
+            if (f.of[j] == term::play && first_of_its_term) {
                 next.play = std::max(next.play + by, 0.05 * next.play);
                 change = std::max(change, std::abs(by) / std::max(next.play, 1e-300));
             }
-            const bool first_of_its_term = j == 0 || f.of[j] != f.of[j - 1];
             if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
                 next.lag = std::max(next.lag + by, 0.05 * next.lag);
                 change = std::max(change, std::abs(by) / std::max(next.lag, 1e-300));

@@ -103,6 +103,19 @@ inline cause cause_of(const described_link& d, const answer& a, const axis_descr
     return c;
 }
 
+/// What is said of a finding that no name stands for: a drift over time, or readings of two moments.
+inline std::string note_without_name(const described_link& d, const answer& a, const axis_description& axis,
+                                     term what) {
+    if (what != term::drift)
+        return fmt::format("axis {}: {} is read {:.3g} ms later than {}.", axis.name, d.to,
+                           1e3 * a.best.model.lag, d.from);
+    const auto part = a.best.part(what);
+    return fmt::format(
+        "axis {}: the difference of {} and {} drifts by {:.3g} um over the record: warmth, or something "
+        "that is in no list.",
+        axis.name, d.to, d.from, 1e6 * (part.maxCoeff() - part.minCoeff()));
+}
+
 /// One link diagnosed.
 inline outcome diagnose_link(const described_link& d, const axis_description& axis,
                              const std::vector<std::string>& excluded, const rules& limits) {
@@ -123,15 +136,11 @@ inline outcome diagnose_link(const described_link& d, const axis_description& ax
     const auto share_of = [&](const finding& f) {
         return std::clamp((f.before * f.before - f.after * f.after) / whole, 0.0, 1.0);
     };
-    bool all_claimed = true;
+    bool all_claimed = true, drifts = false;
     for (const finding& f : a.findings) {
         if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
-            out.notes.push_back(f.what == term::drift
-                                    ? fmt::format("axis {}: the difference of {} and {} drifts over the "
-                                                  "record: warmth, or something in no list.",
-                                                  axis.name, d.to, d.from)
-                                    : fmt::format("axis {}: {} is read {:.3g} ms later than {}.", axis.name,
-                                                  d.to, 1e3 * a.best.model.lag, d.from));
+            drifts |= f.what == term::drift;
+            out.notes.push_back(note_without_name(d, a, axis, f.what));
             continue;
         }
         cause c = cause_of(d, a, axis, f);
@@ -154,9 +163,12 @@ inline outcome diagnose_link(const described_link& d, const axis_description& ax
         out.causes.push_back(std::move(c));
     }
     const double floor = r.noise() * r.noise(), after = a.best.held_out * a.best.held_out;
-    const bool at_floor = a.at_floor || after - floor < law_error * law_error * (whole - floor);
-    out.share_left = at_floor ? 0 : std::clamp((after - floor) / whole, 0.0, 1.0);
-    const double rest = std::clamp(after / whole, 0.0, 1.0);
+    const bool at_floor = !drifts && (a.at_floor || after - floor < law_error * law_error * (whole - floor));
+    double unnamed = 0;
+    for (const finding& f : a.findings)
+        if (f.what == term::drift) unnamed = share_of(f);
+    out.share_left = at_floor ? 0 : std::clamp(unnamed + (after - floor) / whole, 0.0, 1.0);
+    const double rest = std::clamp(unnamed + after / whole, 0.0, 1.0);
     out.places.push_back({"block",
                           "",
                           at_floor ? "noise and rounding of the two readings"

@@ -16,8 +16,7 @@ public:
         const double band = link_.force_band_Hz;
         first_ = band > 0 ? zero_phase(link_.first, band, link_.period) : link_.first;
         last_ = band > 0 ? zero_phase(link_.last, band, link_.period) : link_.last;
-        velocity_ = derivative(zero_phase(link_.first, band > 0 ? band : 0.06 / link_.period, link_.period),
-                               link_.period);
+        velocity_ = derivative(first_, link_.period);
         if (band > 0) noise_ = std::max(noise_ * std::sqrt(2 * band * link_.period), 0.1 * link_.count());
         for (double v : velocity_) speed_ = std::max(speed_, std::abs(v));
         choose_rows();
@@ -30,6 +29,8 @@ public:
     double speed() const { return speed_; }
     std::span<const double> first() const { return first_; }
     const std::vector<std::size_t>& rows() const { return rows_; }
+    /// Place on the travel, -1 to 1 from end to end.
+    double along(double x) const { return 2 * (x - middle_) / travel_; }
 
     /// Where what lies behind the play stands beside what drives it. With a force its sign tells which side is in contact; without,
     /// friction holds the load where it is.
@@ -127,7 +128,8 @@ inline std::vector<Eigen::VectorXd> readings::columns_of(const link_model& m, te
     case term::play: {
         const double more = std::max(1e-3 * m.play, 1e-2 * noise_);
         const auto now = offset(m, driven, m.play), wider = offset(m, driven, m.play + more);
-        return {by_row([&](std::size_t k) { return (wider[k] - now[k]) / more; })};
+        const auto by_width = [&](std::size_t k) { return (wider[k] - now[k]) / more; };
+        return {by_row(by_width), by_row([&](std::size_t k) { return by_width(k) * along(driven[k]); })};
     }
     case term::pitch:
         return wave(m.pitch_period, m.pitch_harmonics);
@@ -136,8 +138,7 @@ inline std::vector<Eigen::VectorXd> readings::columns_of(const link_model& m, te
     case term::smooth: {
         std::vector<Eigen::VectorXd> out;
         for (int order = 2; order < 2 + smooth_terms; ++order)
-            out.push_back(
-                by_row([&](std::size_t k) { return legendre(order, 2 * (driven[k] - middle_) / travel_); }));
+            out.push_back(by_row([&](std::size_t k) { return legendre(order, along(driven[k])); }));
         return out;
     }
     case term::spring:

@@ -103,7 +103,13 @@ private:
         const auto part = f.part(t);
         return (part.maxCoeff() - part.minCoeff()) / 2;
     }
+    /// With jumps looked for again beside all other terms: some stood in for what was found later.
+    fitted with_steps_again(fitted best) const {
+        if (!best.model.has(term::steps) || best.model.freed.size() < 2) return best;
+        return with_steps(r_, without_term(r_, best, term::steps, described_), limits_.margin);
+    }
     fitted pruned(fitted best) const {
+        best = with_steps_again(std::move(best));
         for (bool again = true; again && best.model.freed.size() > 1;) {
             again = false;
             for (term t : best.model.freed) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../rules.hpp"
 #include "../spatial_spectrum.hpp"
 #include "fit.hpp"
 
@@ -69,19 +70,23 @@ inline std::pair<std::size_t, double> best_cut(const Eigen::VectorXd& left) {
 }
 
 /// Jumps, one after the other, while each pays.
-inline fitted with_steps(const readings& r, const fitted& from) {
+inline fitted with_steps(const readings& r, const fitted& from, double margin) {
     fitted best = from;
     link_model m = from.model;
     constexpr std::size_t most = 12;
-    double each = 0;
     while (m.steps.size() < most) {
         const auto cut = best_cut(best.left);
         m.steps.push_back(r.rows()[cut.first]);
         std::sort(m.steps.begin(), m.steps.end());
         if (!m.has(term::steps)) m.freed.push_back(term::steps);
         fitted next = settled(r, fit_columns(r, m));
-        each = next.score - best.score;
-        if (each < 5) break;
+        double smallest = std::numeric_limits<double>::max();
+        for (std::size_t j = 0; j < next.of.size(); ++j)
+            if (next.of[j] == term::steps)
+                smallest = std::min(smallest, std::abs(next.values[static_cast<Eigen::Index>(j)]));
+        // A step that is missed is one of the counter at least.
+        if (!(next.score > best.score + margin) || smallest < std::max(r.of().first_count, r.of().last_count))
+            break;
         m = next.model;
         best = std::move(next);
     }
@@ -150,7 +155,7 @@ inline fitted with_term(const readings& r, const fitted& from, term t) {
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
         break;
     case term::steps:
-        return with_steps(r, from);
+        return with_steps(r, from, rules{}.margin);
     default:
         break;
     }
