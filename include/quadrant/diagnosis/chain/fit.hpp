@@ -151,7 +151,8 @@ inline fitted settled(const readings& r, fitted f) {
         }
         if (change < 1e-7) break;
         fitted moved = fit_columns(r, next);
-        if (!(moved.rms < f.rms)) break;
+        if (!(moved.rms <= f.rms * (1 + 1e-6))) break; // where the columns are exact the rms stays
+
         f = std::move(moved);
     }
     return f;

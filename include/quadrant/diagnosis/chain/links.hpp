@@ -75,7 +75,7 @@ inline double motor_to_load(const axis_description& axis, const axis_log& log, c
     if (std::abs(ratio - 1) <= tolerance_description::unstated) return to_load;
     const std::string what =
         log.motor_unit == "rad"
-            ? fmt::format("travel_per_turn_{} {:.5g}, not {:.5g}", m, std::abs(turn), *t.travel_per_turn_m)
+            ? fmt::format("travel_per_turn_{} {:.4g}, not {:.5g}", m, std::abs(turn), *t.travel_per_turn_m)
             : fmt::format("{}_motor_pos_{} times {:.5g}", axis.name, m, std::abs(measured));
     throw bad_input(file,
                     fmt::format("axis {}: the scale moves {:.4g} times as far as the motor's encoder says{}: "
