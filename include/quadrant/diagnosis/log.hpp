@@ -47,6 +47,8 @@ struct axis_log {
     std::vector<double> motor{}; ///< a second encoder, on the motor; empty: none
     std::string motor_unit{};    ///< "rad" of the motor's turn, or "m": in units of the load
     double motor_step = 0;
+    /// Displacement of a sticking axis that says nothing of its contact: `position` is that of parts that move against each other [m].
+    double least_give = 0;
     std::vector<double>
         controller_reads{}; ///< where `position` is not what the controller read: that; else empty
     std::vector<unsigned char> drive_off{}; ///< of each row: 1 where the drive is switched off; empty: never

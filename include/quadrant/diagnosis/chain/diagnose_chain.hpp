@@ -134,6 +134,9 @@ inline two_encoders diagnose_transmission(const axis_description& axis, const ax
     if (out.found.elastic.empty()) return out;
     const double share = std::min(1.0, *mass / axis.plant.mass_kg);
     out.carried.controller_reads = log.position;
+    // While the load sticks, the centre of mass moves with the motor.
+    out.carried.least_give =
+        share * (out.found.play / 2 + axis.plant.coulomb_N.value_or(0) * out.found.compliance);
     for (std::size_t k = 0; k < log.position.size(); ++k)
         out.carried.position[k] -= share * out.found.elastic[k];
     return out;

@@ -33,11 +33,24 @@ struct position_link {
     }
     /// Rounding of the difference; what was asked is asked as it stands [m].
     double rounding() const { return asked ? last_count : std::hypot(first_count, last_count); }
-    /// Noise of the difference of two right readings: rounding, or what no smooth motion explains [m].
+    /// Noise of the difference of two right readings: rounding, or what no smooth motion explains; where the first stands still often
+    /// enough, what is left there, since at a low rate an error that repeats along the travel looks like noise [m].
     double noise() const {
+        constexpr std::size_t enough = 32;
         std::vector<double> d(rows());
         for (std::size_t k = 0; k < rows(); ++k) d[k] = last[k] - first[k];
-        return detail::reading_noise(d, rounding());
+        const double moving = detail::reading_noise(d, rounding());
+        double sum = 0;
+        std::size_t still = 0;
+        for (std::size_t k = 0; k + 3 < rows(); ++k) {
+            if (first[k] != first[k + 1] || first[k] != first[k + 2] || first[k] != first[k + 3]) continue;
+            const double e = d[k + 3] - d[k] + 3 * (d[k + 1] - d[k + 2]);
+            sum += e * e / 20;
+            ++still;
+        }
+        if (still < enough) return moving;
+        return std::min(moving,
+                        std::max(std::sqrt(sum / static_cast<double>(still)), rounding() / std::sqrt(12.0)));
     }
     /// The coarser of the counts that are readings [m].
     double count() const { return asked ? last_count : std::max(first_count, last_count); }

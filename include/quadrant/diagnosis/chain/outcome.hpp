@@ -18,8 +18,9 @@ struct outcome {
     std::string structure;
     std::vector<double> difference,
         left; ///< one entry a row: last - first without its mean, and what the best model leaves [m]
-    std::vector<double> elastic; ///< play and wind-up alone, as measured, one entry a row [m]
-    bool gives = false;          ///< whether there is any
+    std::vector<double> elastic;     ///< play and wind-up alone, as measured, one entry a row [m]
+    double play = 0, compliance = 0; ///< of the best model [m], [m/N]
+    bool gives = false;              ///< whether there is any
 };
 
 /// The described value of a cause's first key, 0 when there is none.
@@ -186,6 +187,8 @@ inline outcome diagnose_link(const described_link& d, const axis_description& ax
     out.structure = fmt::format("axis {}: {:.3g} um rms between {} and {} (floor {:.3g} um)", axis.name,
                                 1e6 * a.best.held_out, d.from, d.to, 1e6 * r.noise());
     give_signals(out, r, a.best);
+    out.play = a.best.model.play;
+    out.compliance = term_values(d, a.best, axis).compliance();
     out.gives = a.best.model.play > 0 || a.best.model.compliance > 0 || a.best.model.has(term::spring);
     if (out.gives && !d.readings.force.empty()) {
         out.elastic = geometry(r, a.best);

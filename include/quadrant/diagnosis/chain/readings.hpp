@@ -46,6 +46,12 @@ public:
     }
 
     equations of_model(const link_model& m) const;
+    /// A function of the place, at every row, as smooth as the readings.
+    template <class Value> std::vector<double> along_travel(const link_model& m, Value value) const {
+        auto out = followed(link_.first, link_.period, m.how, m.lag);
+        for (double& x : out) x = value(x);
+        return link_.force_band_Hz > 0 ? zero_phase(out, link_.force_band_Hz, link_.period) : out;
+    }
 
 private:
     void choose_rows();
@@ -104,13 +110,15 @@ inline std::vector<Eigen::VectorXd> readings::columns_of(const link_model& m, te
         for (std::size_t i = 0; i < rows_.size(); ++i) c[static_cast<Eigen::Index>(i)] = value(rows_[i]);
         return c;
     };
+    // What repeats along the travel is as smooth as the readings that it is compared with.
     const auto wave = [&](double period, int harmonics) {
         std::vector<Eigen::VectorXd> out;
-        for (int j = 1; j <= harmonics; ++j) {
-            const double w = 2 * std::numbers::pi * j / period;
-            out.push_back(by_row([&](std::size_t k) { return std::sin(w * driven[k]); }));
-            out.push_back(by_row([&](std::size_t k) { return std::cos(w * driven[k]); }));
-        }
+        for (int j = 1; j <= harmonics; ++j)
+            for (const double turned : {0.0, std::numbers::pi / 2}) {
+                const auto each = along_travel(
+                    m, [&](double x) { return std::sin(2 * std::numbers::pi * j * x / period + turned); });
+                out.push_back(by_row([&](std::size_t k) { return each[k]; }));
+            }
         return out;
     };
     switch (t) {
@@ -165,11 +173,13 @@ inline equations readings::of_model(const link_model& m) const {
     const auto driven = followed(first_, link_.period, m.how, m.lag);
     const auto behind = m.play > 0 ? offset(m, driven, m.play) : std::vector<double>(driven.size(), 0.0);
     const auto n = static_cast<Eigen::Index>(rows_.size());
+    const auto errors = m.pitch.empty() ? std::vector<double>(driven.size(), 0.0)
+                                        : along_travel(m, [&](double x) { return described_pitch(m, x); });
     out.difference.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::size_t k = rows_[static_cast<std::size_t>(i)];
         double d = last_[k] - driven[k] - behind[k];
-        if (!m.pitch.empty()) d -= described_pitch(m, driven[k]);
+        d -= errors[k];
         if (!m.smooth.empty()) d -= smooth_curve(m, driven[k]);
         if (m.compliance > 0 && !link_.force.empty()) d += m.compliance * passed(m, k);
         out.difference[i] = d;

@@ -29,16 +29,20 @@ inline std::vector<double> places(const readings& r) {
     return out;
 }
 
+/// Whether a period is not told from a turn or a fraction of it on this travel.
+inline bool is_fraction(const readings& r, double p, double turn) {
+    for (int h = 1; turn > 0 && h <= 6; ++h)
+        if (std::abs(r.travel() * (1 / p - h / turn)) < 1.5) return true;
+    return false;
+}
+
 /// The period at which what a model leaves repeats best along the travel; 0: none. Those near a fraction of `but` do not count.
 inline double repeating_period(const readings& r, const fitted& from, double but) {
     const auto z = places(r);
     const std::vector<double> left(from.left.data(), from.left.data() + from.left.size());
     const double longest = r.travel() / 2, shortest = std::max(8 * r.of().count(), r.travel() / 4000);
-    for (double p : spatial_peaks(left, z, longest, shortest, 12)) {
-        bool fraction = false;
-        for (int h = 1; but > 0 && h <= 6; ++h) fraction |= std::abs(r.travel() * (1 / p - h / but)) < 1.5;
-        if (!fraction) return p;
-    }
+    for (double p : spatial_peaks(left, z, longest, shortest, 12))
+        if (!is_fraction(r, p, but)) return p;
     return 0;
 }
 
@@ -149,7 +153,8 @@ inline fitted with_term(const readings& r, const fitted& from, term t) {
         if (!(p > 0)) return from;
         freed(m);
         m.cyclic_period = p;
-        return settled(r, refined_period(r, m, p, [](link_model& x, double y) { x.cyclic_period = y; }));
+        fitted best = refined_period(r, m, p, [](link_model& x, double y) { x.cyclic_period = y; });
+        return is_fraction(r, best.model.cyclic_period, r.of().turn) ? from : settled(r, std::move(best));
     }
     case term::motor_friction:
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
