@@ -18,9 +18,9 @@ struct outcome {
     std::string structure;
     std::vector<double> difference,
         left; ///< one entry a row: last - first without its mean, and what the best model leaves [m]
-    std::vector<double> elastic;     ///< play and wind-up alone, as measured, one entry a row [m]
+    std::vector<double>
+        elastic; ///< how far load and motor are apart, one entry a row; empty: they move as one [m]
     double play = 0, compliance = 0; ///< of the best model [m], [m/N]
-    bool gives = false;              ///< whether there is any
 };
 
 /// The described value of a cause's first key, 0 when there is none.
@@ -39,32 +39,15 @@ inline bool inside_tolerance(const axis_description& axis, const parameter_estim
            std::abs(p.values[0].value / described - 1) <= axis.tolerance.of(std::string(key->tolerance_name()));
 }
 
-/// What the gears make of the first reading without play and wind-up, at every row: what a model found and what is described [m].
-inline std::vector<double> geometry(const readings& r, const fitted& f) {
-    const auto driven = followed(r.of().first, r.of().period, f.model.how, f.model.lag);
-    const auto velocity = derivative(zero_phase(driven, 0.06 / r.of().period, r.of().period), r.of().period);
-    std::vector<double> out = driven;
+/// How far the load is from the motor, at every row, but for what the readings alone make: their zeros and their moments [m].
+inline std::vector<double> apart(const readings& r, const fitted& f) {
+    const auto& l = r.of();
+    const auto velocity = derivative(zero_phase(l.first, 0.06 / l.period, l.period), l.period);
+    std::vector<double> out(l.rows());
     for (std::size_t k = 0; k < out.size(); ++k) {
-        const double x = driven[k];
-        if (!f.model.pitch.empty()) out[k] += described_pitch(f.model, x);
-        if (!f.model.smooth.empty()) out[k] += smooth_curve(f.model, x);
-        int wave = 0, order = 2;
-        for (std::size_t j = 0; j < f.of.size(); ++j) {
-            const double by = f.values[static_cast<Eigen::Index>(j)];
-            if (!f.of[j]) {
-                out[k] += by * (j == 0 ? 1 : velocity[k]);
-                continue;
-            }
-            if (*f.of[j] == term::scale) out[k] += by * (x - r.middle());
-            if (*f.of[j] == term::smooth) out[k] += by * legendre(order++, 2 * (x - r.middle()) / r.travel());
-            if (*f.of[j] == term::pitch || *f.of[j] == term::cyclic) {
-                if (f.of[j - 1] != f.of[j]) wave = 0;
-                const double p = *f.of[j] == term::pitch ? f.model.pitch_period : f.model.cyclic_period;
-                const double angle = 2 * std::numbers::pi * (wave / 2 + 1) * x / p;
-                out[k] += by * (wave % 2 == 0 ? std::sin(angle) : std::cos(angle));
-                ++wave;
-            }
-        }
+        out[k] = l.last[k] - l.first[k];
+        for (std::size_t j = 0; j < f.of.size(); ++j)
+            if (!f.of[j]) out[k] -= f.values[static_cast<Eigen::Index>(j)] * (j == 0 ? 1 : velocity[k]);
     }
     return out;
 }
@@ -189,12 +172,10 @@ inline outcome diagnose_link(const described_link& d, const axis_description& ax
     give_signals(out, r, a.best);
     out.play = a.best.model.play;
     out.compliance = term_values(d, a.best, axis).compliance();
-    out.gives = a.best.model.play > 0 || a.best.model.compliance > 0 || a.best.model.has(term::spring);
-    if (out.gives && !d.readings.force.empty()) {
-        out.elastic = geometry(r, a.best);
-        for (std::size_t k = 0; k < out.elastic.size(); ++k)
-            out.elastic[k] = d.readings.last[k] - out.elastic[k];
-    }
+    const link_model& m = a.best.model;
+    const bool moves = m.play > 0 || out.compliance > 0 || !m.pitch.empty() || !m.smooth.empty() ||
+                       m.has(term::pitch) || m.has(term::smooth);
+    if (moves && !d.readings.force.empty()) out.elastic = apart(r, a.best);
     return out;
 }
 

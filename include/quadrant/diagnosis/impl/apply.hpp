@@ -37,7 +37,7 @@ public:
                     "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the "
                     "{}",
                     c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
-                    text_of(c.gap_before_force_rms_N.value > 0
+                    text_of(c.gap_before_force_rms_N.value > 0 || !(c.gap_before_position_rms_m.value > 0)
                                 ? fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
                                               c.gap_after_force_rms_N.value)
                                 : fmt::format("position from {:.3g} m to {:.3g} m",
