@@ -90,7 +90,8 @@ inline axis_result diagnose_positions(diagnosis_result& out, std::vector<cause>&
 struct two_encoders {
     outcome found;
     std::vector<std::string> notes;
-    /// The log with the centre of mass of motor and load for the position: it obeys the laws of a rigid axis, whatever lies
+    /// The log with the centre of mass of motor and load for the position: it obeys the laws of a rigid axis,
+    /// whatever lies
     /// between the two.
     axis_log carried;
     double motor_coulomb =

@@ -108,7 +108,8 @@ inline fitted fit_columns(const readings& r, const link_model& m) {
     return out;
 }
 
-/// Calls `cost` at values between two ends and gives the best of what it saw: a grid by equal ratios, then golden section around
+/// Calls `cost` at values between two ends and gives the best of what it saw: a grid by equal ratios, then
+/// golden section around
 /// its best.
 template <class Cost> double least(Cost cost, double low, double high, int grid, int steps) {
     std::vector<double> at;

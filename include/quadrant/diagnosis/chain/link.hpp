@@ -17,7 +17,8 @@ struct position_link {
     /// Whether gears lie between the two: play, pitch and spring.
     bool geared = true;
     double turn = 0; ///< travel of one turn of the motor; 0: not known [m]
-    /// Force behind the motor's mass, before the motor's friction [N], and the direction of the motor, both as smooth as the
+    /// Force behind the motor's mass, before the motor's friction [N], and the direction of the motor, both as
+    /// smooth as the
     /// difference; empty: no force is known.
     std::vector<double> force{}, motor_direction{};
     double force_band_Hz = 0; ///< to which force and difference are smoothed; 0: they are not
@@ -33,8 +34,10 @@ struct position_link {
     }
     /// Rounding of the difference; what was asked is asked as it stands [m].
     double rounding() const { return asked ? last_count : std::hypot(first_count, last_count); }
-    /// Noise of the difference of two right readings: rounding, or what no smooth motion explains; where the first stands still often
-    /// enough, what is left there, since at a low rate an error that repeats along the travel looks like noise [m].
+    /// Noise of the difference of two right readings: rounding, or what no smooth motion explains; where the
+    /// first stands still often
+    /// enough, what is left there, since at a low rate an error that repeats along the travel looks like noise
+    /// [m].
     double noise() const {
         constexpr std::size_t enough = 32;
         std::vector<double> d(rows());
@@ -56,7 +59,8 @@ struct position_link {
     double count() const { return asked ? last_count : std::max(first_count, last_count); }
 };
 
-/// What lies behind a play of this width, held by friction, and whether it is known yet: before the first drive through the whole
+/// What lies behind a play of this width, held by friction, and whether it is known yet: before the first drive
+/// through the whole
 /// play it may stand anywhere in it.
 struct behind_play {
     std::vector<double> offset; ///< beside the motion that drives it [m]
@@ -79,7 +83,8 @@ inline behind_play play_of(std::span<const double> x, double width) {
 /// How a drive follows what it is asked for.
 enum class following { at_once, delayed, first_order };
 
-/// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 / lag).
+/// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 /
+/// lag).
 inline std::vector<double> followed(std::span<const double> x, double period, following how, double lag) {
     std::vector<double> out(x.begin(), x.end());
     if (how == following::at_once || !(lag > 0)) return out;

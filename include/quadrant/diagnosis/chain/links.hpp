@@ -56,7 +56,8 @@ inline double of_a_counted_metre(const transmission_description& t) {
     return t.counted_per_turn_m && t.travel_per_turn_m ? *t.travel_per_turn_m / *t.counted_per_turn_m : 1;
 }
 
-/// The motor's reading in units of the load; refuses one that the machine file cannot turn into those, or that moves otherwise than
+/// The motor's reading in units of the load; refuses one that the machine file cannot turn into those, or that
+/// moves otherwise than
 /// the scale by far more than any machine is wrong.
 inline double motor_to_load(const axis_description& axis, const axis_log& log, const std::string& file) {
     const transmission_description& t = axis.transmission;
@@ -139,7 +140,8 @@ inline described_link asked_to(const axis_description& axis, const axis_log& log
     return out;
 }
 
-/// The force behind the motor's mass on the link from motor to scale: command times force constant, as late as it acts, less what
+/// The force behind the motor's mass on the link from motor to scale: command times force constant, as late as
+/// it acts, less what
 /// moves the motor. Smoothed to the band in which the record shows forces.
 inline void give_force(described_link& d, const axis_description& axis, const axis_log& log) {
     auto& l = d.readings;

@@ -57,7 +57,8 @@ constexpr std::string_view name_of(term t) {
     }
 }
 
-/// What is described of a link, and what a model of it frees. Values of freed terms that are no columns stand here too.
+/// What is described of a link, and what a model of it frees. Values of freed terms that are no columns stand
+/// here too.
 struct link_model {
     std::vector<term> freed{};
     following how = following::at_once;
@@ -104,7 +105,8 @@ inline double described_pitch(const link_model& m, double x) {
     return out;
 }
 
-/// What the last reading is beside the first, with all that is described or set taken off, and the columns that explain it.
+/// What the last reading is beside the first, with all that is described or set taken off, and the columns that
+/// explain it.
 struct equations {
     std::vector<std::size_t> rows; ///< of the record, that count
     Eigen::VectorXd difference;    ///< [m]

@@ -39,7 +39,8 @@ inline bool inside_tolerance(const axis_description& axis, const parameter_estim
            std::abs(p.values[0].value / described - 1) <= axis.tolerance.of(std::string(key->tolerance_name()));
 }
 
-/// How far the load is from the motor, at every row, but for what the readings alone make: their zeros and their moments [m].
+/// How far the load is from the motor, at every row, but for what the readings alone make: their zeros and
+/// their moments [m].
 inline std::vector<double> apart(const readings& r, const fitted& f) {
     const auto& l = r.of();
     const auto velocity = derivative(zero_phase(l.first, 0.06 / l.period, l.period), l.period);

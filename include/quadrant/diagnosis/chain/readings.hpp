@@ -32,7 +32,8 @@ public:
     /// Place on the travel, -1 to 1 from end to end.
     double along(double x) const { return 2 * (x - middle_) / travel_; }
 
-    /// Where what lies behind the play stands beside what drives it. With a force its sign tells which side is in contact; without,
+    /// Where what lies behind the play stands beside what drives it. With a force its sign tells which side is
+    /// in contact; without,
     /// friction holds the load where it is.
     std::vector<double> offset(const link_model& m, std::span<const double> driven, double width) const {
         if (link_.force.empty()) return play_of(driven, width).offset;
@@ -63,8 +64,10 @@ private:
     std::vector<std::size_t> rows_;
 };
 
-/// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it stands at a known
-/// side of any play; and the force, where one is known, is far enough from zero for the side in contact to be sure.
+/// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it
+/// stands at a known
+/// side of any play; and the force, where one is known, is far enough from zero for the side in contact to be
+/// sure.
 inline void readings::choose_rows() {
     const std::size_t n = link_.rows();
     std::vector<unsigned char> out(n, 0);

@@ -10,7 +10,8 @@ struct one_reversal {
     double at = 0, lost = 0; ///< [m]
 };
 
-/// Each change of the side in contact: the step of the difference over it, from the rows nearest to it, half of a stroke at most.
+/// Each change of the side in contact: the step of the difference over it, from the rows nearest to it, half of
+/// a stroke at most.
 inline std::vector<one_reversal> lost_by_reversal(const readings& r, const fitted& f) {
     struct stroke {
         std::size_t from, to; // of the rows that count

@@ -26,7 +26,8 @@ struct answer {
     bool at_floor = false;         ///< nothing is left beside noise and rounding
 };
 
-/// Finds the terms of a link: greedy, with every earlier term tried again, as the search among the causes of a force.
+/// Finds the terms of a link: greedy, with every earlier term tried again, as the search among the causes of a
+/// force.
 class seeker {
 public:
     seeker(const readings& r, link_model described, std::vector<term> excluded, const rules& limits)
@@ -60,7 +61,8 @@ private:
                          [](const fitted& a, const fitted& b) { return value(a) > value(b); });
         return out;
     }
-    /// One way from each of the best first terms: two that look alike alone (a lag and a play at one speed) lead to different ends.
+    /// One way from each of the best first terms: two that look alike alone (a lag and a play at one speed)
+    /// lead to different ends.
     fitted from_several(const fitted& given) const {
         constexpr std::size_t ways = 3, most = 7;
         fitted best = given;
@@ -152,7 +154,8 @@ private:
         if (t == term::steps) m.steps = best.model.steps;
         return fit_columns(r_, m);
     }
-    /// One law takes a share of a random shape among 13 off by chance, and as many are tried as there are terms (docs/diagnosis.md).
+    /// One law takes a share of a random shape among 13 off by chance, and as many are tried as there are terms
+    /// (docs/diagnosis.md).
     double by_chance(double left) const {
         constexpr double shapes = 13;
         const double share = 1 / (1 + left * left);

@@ -36,7 +36,8 @@ inline bool is_fraction(const readings& r, double p, double turn) {
     return false;
 }
 
-/// The period at which what a model leaves repeats best along the travel; 0: none. Those near a fraction of `but` do not count.
+/// The period at which what a model leaves repeats best along the travel; 0: none. Those near a fraction of
+/// `but` do not count.
 inline double repeating_period(const readings& r, const fitted& from, double but) {
     const auto z = places(r);
     const std::vector<double> left(from.left.data(), from.left.data() + from.left.size());
@@ -59,7 +60,8 @@ template <class Put> fitted refined_period(const readings& r, link_model m, doub
     return fit_columns(r, m);
 }
 
-/// The row that counts before which and behind which the means of `left` differ most, by the energy that it takes; and that energy.
+/// The row that counts before which and behind which the means of `left` differ most, by the energy that it
+/// takes; and that energy.
 inline std::pair<std::size_t, double> best_cut(const Eigen::VectorXd& left) {
     const auto n = static_cast<double>(left.size());
     const double mean = left.mean();

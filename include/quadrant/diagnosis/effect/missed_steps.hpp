@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The motor loses steps, or a coupling slips: the difference of two readings jumps and stays. The rows and sizes stand in
+/// The motor loses steps, or a coupling slips: the difference of two readings jumps and stays. The rows and
+/// sizes stand in
 /// the diagnosis.
 inline constexpr effect missed_steps{
     .name = "missed_steps",
