@@ -66,6 +66,7 @@ struct behind_play {
     std::vector<double> offset; ///< beside the motion that drives it [m]
     std::size_t known_from = 0; ///< row
 };
+/// The same, of a motion x.
 inline behind_play play_of(std::span<const double> x, double width) {
     behind_play out{std::vector<double>(x.size(), 0.0), x.size()};
     if (x.empty()) return out;

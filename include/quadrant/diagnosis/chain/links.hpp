@@ -87,7 +87,7 @@ inline double motor_to_load(const axis_description& axis, const axis_log& log, c
                                     : fmt::format("it would fit {}", what)));
 }
 
-/// A column in other units, and its count in them.
+/// A column in other units.
 inline std::vector<double> scaled(std::span<const double> x, double by) {
     std::vector<double> out(x.begin(), x.end());
     for (double& v : out) v *= by;
