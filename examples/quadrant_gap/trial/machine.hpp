@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "quadrant/diagnosis/own_law.hpp"
+#include "quadrant/diagnosis/machine/own_law.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../axis_words.hpp"
+#include "../text/axis_words.hpp"
 #include "outcome.hpp"
 
 namespace quadrant::diagnosis::chain {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../scales.hpp"
+#include "../fit/scales.hpp"
 
 /// Two positions of one axis, one behind the other: what was asked or counted, and what the scale reads.
 namespace quadrant::diagnosis::chain {

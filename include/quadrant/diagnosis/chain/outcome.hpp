@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../described_numbers.hpp"
+#include "../effect/described_numbers.hpp"
 #include "reversals.hpp"
 
 /// What is said of one link: causes, places, verdict.

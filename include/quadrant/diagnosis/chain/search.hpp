@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../rules.hpp"
-#include "../scoring.hpp"
+#include "../effect/rules.hpp"
+#include "../fit/scoring.hpp"
 #include "start.hpp"
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../rules.hpp"
-#include "../spatial_spectrum.hpp"
+#include "../effect/rules.hpp"
+#include "../fit/spatial_spectrum.hpp"
 #include "fit.hpp"
 
 /// How each term joins a model: where its fit begins.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../result.hpp"
+#include "../result/result.hpp"
 #include "links.hpp"
 #include "search.hpp"
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../effect/effect_list.hpp"
+
+namespace quadrant::diagnosis {
+
+/// What to do about an effect that no feedforward of the reference pays, with the numbers of the corrected
+/// plant `p`; empty: a feedforward pays it.
+inline std::string advice_on(std::string_view effect, const plant_model& p, double resolution,
+                             std::string_view unit) {
+    const auto* known = effect_named(effect);
+    return known && known->advice ? known->advice(p, resolution, unit) : std::string();
+}
+
+} // namespace quadrant::diagnosis
