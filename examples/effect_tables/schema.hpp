@@ -42,9 +42,33 @@ inline void add_drive(axis_kind kind, ordered_json& properties) {
     number("set_point_period_s", "positive", "from one set-point to the next; absent: sample_period_s");
 }
 
+/// Keys of a transmission that belong to no effect.
+inline void add_transmission(axis_kind kind, ordered_json& properties) {
+    const auto number = [&](const char* key, const char* rule, const char* meaning) {
+        properties[key_of(key, kind)] = {{"description", meaning}};
+        properties[key_of(key, kind)].update(reference(rule));
+    };
+    properties["kind"] = {{"description", "what carries the motion"}, {"enum", transmission_kinds}};
+    number("damping_N_s_per_m", "not_negative", "beside the stiffness; absent: none");
+    number("motor_mass_kg", "positive",
+           "the part of the plant's mass on the motor's side, in units of the load");
+}
+
+/// The encoder on the motor.
+inline ordered_json motor_encoder(axis_kind kind) {
+    ordered_json properties = {{"resolution_rad", reference("positive")}};
+    if (kind == axis_kind::linear) properties["resolution_m"] = reference("positive");
+    return {
+        {"description", "beside the scale: one count, in radians of the motor's turn or in units of the load"},
+        {"type", "object"},
+        {"additionalProperties", false},
+        {"properties", properties}};
+}
+
 /// Keys of the box that belong to no effect.
 inline void add_others(std::string_view box, axis_kind kind, ordered_json& properties, ordered_json& together) {
     if (box == "drive") return add_drive(kind, properties);
+    if (box == "transmission") return add_transmission(kind, properties);
     if (box != "actuator") return;
     properties["limit_V"] = {{"description", "the controller's own limit"}};
     properties["limit_V"].update(reference("positive"));
@@ -81,7 +105,6 @@ inline ordered_json box(std::string_view name, axis_kind kind) {
     });
     add_others(name, kind, properties, together);
     ordered_json out{{"type", "object"}, {"additionalProperties", false}};
-    if (name == "drive") needed.push_back("kind");
     if (!needed.empty()) out["required"] = needed;
     if (!either.empty()) out["not"] = {{"required", either}};
     if (!together.empty()) out["dependentRequired"] = together;
@@ -108,8 +131,13 @@ inline ordered_json axis(axis_kind kind) {
         properties[std::string(name)] = reference(definition_of(name, kind));
     for (const std::string_view name : detail::axis_other_keys)
         properties[std::string(name)] = reference(definition_of(name, kind));
+    ordered_json chain = ordered_json::array(); // without a plant: a chain of positions
+    for (const char* box : {"plant", "transmission", "encoder", "motor_encoder"})
+        chain.push_back({{"required", {box}}});
     return {{"type", "object"},
-            {"required", {"plant"}},
+            {"anyOf", chain},
+            {"if", {{"required", {"plant"}}}},
+            {"then", {{"properties", {{"drive", {{"required", {"kind"}}}}}}}},
             {"additionalProperties", false},
             {"properties", properties}};
 }
@@ -122,6 +150,7 @@ inline ordered_json machine_definitions() {
         for (const std::string_view name : detail::boxes_of_effects())
             out[definition_of(name, kind)] = box(name, kind);
         out[definition_of("tolerance", kind)] = tolerance(kind);
+        out[definition_of("motor_encoder", kind)] = motor_encoder(kind);
     }
     return out;
 }

@@ -79,11 +79,7 @@ inline std::string summary_of(const diagnosis_result& d, const cause& c) {
                 2);
     if (c.waveform) text += wrapped(capital(waveform_in_words(d, c)) + ".", 4);
     for (const std::string& line : lines_of(c.parameters, voice)) text += wrapped(line, 4);
-    text +=
-        wrapped(fmt::format("{} gap {}, shrinks by {}", voice("force"),
-                            change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, voice("N")),
-                            percent(c.shrink)),
-                4);
+    text += wrapped(fmt::format("{}, shrinks by {}", gap_of(c, voice), percent(c.shrink)), 4);
     if (!c.confusable_with.empty())
         text += wrapped(fmt::format("cannot be told apart on this record from {}; probability of the group {}",
                                     voice(named(c.confusable_with, "or")), probability(c.group_probability)),

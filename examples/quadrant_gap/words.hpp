@@ -227,20 +227,22 @@ inline std::string claim(const cause& c) {
 
 namespace detail {
 inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {
-    const std::string before = quantity(a.gap.force_rms_N, "N"),
-                      floor = quantity(a.gap.noise_floor_force_rms_N, "N");
+    const std::string before = a.positions_only ? quantity(a.gap.position_rms_m, "m")
+                                                : quantity(a.gap.force_rms_N, "N"),
+                      floor = a.positions_only ? quantity(a.gap.noise_floor_position_rms_m, "m")
+                                               : quantity(a.gap.noise_floor_force_rms_N, "N"),
+                      gap = a.positions_only ? "position gap" : "force gap";
     if (a.verdict == verdict::no_gap)
-        return fmt::format("Simulation and machine agree on axis {}: the force gap is {}, and sensor noise and "
+        return fmt::format("Simulation and machine agree on axis {}: the {} is {}, and sensor noise and "
                            "rounding alone leave {}.",
-                           a.name, before, floor);
+                           a.name, gap, before, floor);
     if (a.verdict == verdict::within_tolerance)
-        return fmt::format(
-            "The force gap of axis {}, {} (floor {}), lies within the tolerances of the machine file: "
-            "calibrate its values, nothing is missing.",
-            a.name, before, floor);
+        return fmt::format("The {} of axis {}, {} (floor {}), lies within the tolerances of the machine file: "
+                           "calibrate its values, nothing is missing.",
+                           gap, a.name, before, floor);
     std::vector<std::string> missing, wrong;
     std::string added; // to a command: the simulation lacks nothing
-    const cause *suspect = nullptr, *first = nullptr, *last = nullptr;
+    const cause *suspect = nullptr, *first = nullptr, *last = nullptr, *last_of_positions = nullptr;
     for (const cause& c : d.causes) {
         if (c.axis != a.name) continue;
         if (claimed(c)) {
@@ -250,6 +252,7 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
                 (c.described ? wrong : missing).push_back(claim(c));
             if (!first) first = &c;
             last = &c;
+            if (c.gap_before_force_rms_N.value == 0) last_of_positions = &c;
         } else if (!suspect) {
             suspect = &c;
         }
@@ -258,10 +261,10 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
         const std::string hint = !suspect ? ""
                                           : fmt::format("; the nearest suspect is {} (probability {})",
                                                         claim(*suspect), probability(suspect->probability));
-        return fmt::format(
-            "{} the gap of axis {}: {} of force remain where sensor noise and rounding leave {}{}.",
-            a.cut ? "The time was up before a known effect explained" : "No known effect explains", a.name,
-            before, floor, hint);
+        return fmt::format("{} the gap of axis {}: {}{} remain where sensor noise and rounding leave {}{}.",
+                           a.cut ? "The time was up before a known effect explained"
+                                 : "No known effect explains",
+                           a.name, before, a.positions_only ? "" : " of force", floor, hint);
     }
     const auto are = [](const auto& names) { return names.size() > 1 ? "are" : "is"; };
     std::string what;
@@ -275,6 +278,12 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
         what = what.empty() ? fmt::format("{} of axis {}", capital(added), a.name)
                             : fmt::format("{}, and {}", what, added);
     // The numbers are those of what is claimed, not of the suspects behind it.
+    if (first->gap_before_force_rms_N.value == 0) // two positions were compared
+        return fmt::format("{}: {} {}, the difference of the positions shrinks from {} to {}{}.", what, "with",
+                           first != last ? "them" : "it", quantity(first->gap_before_position_rms_m.value, "m"),
+                           quantity(last_of_positions->gap_after_position_rms_m.value, "m"),
+                           a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained"
+                                                                  : "");
     return fmt::format("{}: {} {}, the force gap shrinks from {} to {} (floor {}){}.", what,
                        first->waveform ? "without" : "with", first != last ? "them" : "it",
                        quantity(first->gap_before_force_rms_N.value, "N"),
@@ -328,6 +337,15 @@ struct gap_row {
     std::string name, before, after, floor;
 };
 
+/// The gap that a cause takes off, before and after: in force, or where two positions were compared, in position.
+inline std::string gap_of(const cause& c, const axis_voice& voice) {
+    if (c.gap_before_force_rms_N.value == 0 && c.gap_before_position_rms_m.value > 0)
+        return "position gap " +
+               change(c.gap_before_position_rms_m.value, c.gap_after_position_rms_m.value, voice("m"));
+    return voice("force") + " gap " +
+           change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, voice("N"));
+}
+
 /// In the order in which an engineer asks; a row is in the unit of its first number.
 inline std::vector<gap_row> gap_rows(const axis_result& a) {
     const gap_numbers &b = a.gap, &c = a.gap_after;
@@ -337,6 +355,13 @@ inline std::vector<gap_row> gap_rows(const axis_result& a) {
         return gap_row{voice(name), fmt::format("{} {}", number(before * s.factor), s.unit),
                        fmt::format("{} {}", number(after * s.factor), s.unit), ""};
     };
+    if (a.positions_only) {
+        std::vector<gap_row> of_positions{
+            row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")),
+            row("position, peak", b.position_peak_m, c.position_peak_m, voice("m"))};
+        of_positions[0].floor = quantity(b.noise_floor_position_rms_m, voice("m"));
+        return of_positions;
+    }
     std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, voice("N"))};
     rows[0].floor = quantity(b.noise_floor_force_rms_N, voice("N"));
     if (!closed_loop(a)) return rows;
@@ -347,6 +372,9 @@ inline std::vector<gap_row> gap_rows(const axis_result& a) {
 }
 
 inline std::string gap_basis(const axis_result& a) {
+    if (a.positions_only)
+        return fmt::format("Difference of two positions, judged on {}. Nothing is known of forces.",
+                           a.evaluated_on);
     return voice_of(a)("Residual force ") +
            fmt::format(
                "up to {}{}{}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
@@ -356,6 +384,7 @@ inline std::string gap_basis(const axis_result& a) {
 
 inline constexpr std::pair<std::string_view, std::string_view> views[] = {
     {"block", "by box of the loop"},
+    {"readings", "between the two encoders"},
     {"velocity", "by velocity"},
     {"reversal", "at reversals"},
     {"position", "along the travel"},

@@ -45,7 +45,11 @@ inline std::string before_after(const axis_result& a, double before, double afte
 inline std::string axis_charts(chart_book& book, std::size_t index, const axis_result& a) {
     const axis_signals& s = a.signals;
     const axis_voice voice = voice_of(a);
-    const std::string force_unit = voice("N"), length_unit = voice("m");
+    const bool of_positions = a.positions_only;
+    const std::string length_unit = voice("m"), force_unit = of_positions ? length_unit : voice("N");
+    const auto say = [&](const char* of_force, const char* of_two) {
+        return of_positions ? std::string(of_two) : voice(of_force);
+    };
     const auto error = [&](const std::vector<double>& simulated) {
         std::vector<double> e;
         if (simulated.size() == s.position.size())
@@ -60,37 +64,49 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
     const std::string no_loop =
         "the machine file has no controller for this axis, so its closed loop cannot be simulated";
 
-    const std::string force =
-        book.figure(index, {"time", voice("Residual force"),
-                            voice("Force that the machine feels and the simulation does not: ") +
-                                before_after(a, a.gap.force_rms_N, a.gap_after.force_rms_N, force_unit) + ".",
-                            "time", "s", voice("force"), force_unit, s.t, residual, no_residual});
-    const std::string position = book.figure(
-        index, {"time",
-                "Position error of the simulation",
-                "Closed loop, simulated minus logged: " +
-                    before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit) + ".",
-                "time",
-                "s",
-                "position",
-                length_unit,
-                s.t,
-                {{"before", &error_before}, {"after", &error_after}},
-                no_loop});
-    const std::string command = book.figure(
-        index, {"time",
-                "Command",
-                s.command_replayed.empty()
-                    ? "Controller output in the log; no controller is described that could be replayed."
-                    : "Controller output in the log, and the described controller replayed on the logged "
-                      "reference and position.",
-                "time",
-                "s",
-                "command",
-                voice.in_command_unit("V"),
-                s.t,
-                {{"logged", &s.command}, {"replayed", &s.command_replayed}},
-                "the diagnosis holds no command for this axis"});
+    const std::string force = book.figure(
+        index,
+        {"time", say("Residual force", "Difference of the two positions"),
+         say("Force that the machine feels and the simulation does not: ",
+             "What is read behind, less what was asked or counted: ") +
+             (of_positions ? before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit)
+                           : before_after(a, a.gap.force_rms_N, a.gap_after.force_rms_N, force_unit)) +
+             ".",
+         "time", "s", say("force", "difference"), force_unit, s.t, residual, no_residual});
+    const std::string position =
+        of_positions
+            ? ""
+            : book.figure(index,
+                          {"time",
+                           "Position error of the simulation",
+                           "Closed loop, simulated minus logged: " +
+                               before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit) +
+                               ".",
+                           "time",
+                           "s",
+                           "position",
+                           length_unit,
+                           s.t,
+                           {{"before", &error_before}, {"after", &error_after}},
+                           no_loop});
+    const std::string command =
+        of_positions
+            ? ""
+            : book.figure(
+                  index,
+                  {"time",
+                   "Command",
+                   s.command_replayed.empty()
+                       ? "Controller output in the log; no controller is described that could be replayed."
+                       : "Controller output in the log, and the described controller replayed on the logged "
+                         "reference and position.",
+                   "time",
+                   "s",
+                   "command",
+                   voice.in_command_unit("V"),
+                   s.t,
+                   {{"logged", &s.command}, {"replayed", &s.command_replayed}},
+                   "the diagnosis holds no command for this axis"});
     std::vector<double> beyond; // what the log commands beyond the replay
     if (!s.command_added.empty() && s.command_replayed.size() == s.command.size()) {
         std::vector<double> rest(s.command.size());
@@ -117,25 +133,32 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
                            {{"logged minus replayed", &beyond}, {"waveform", &s.command_added}},
                            ""});
     const std::string velocity = book.figure(
-        index, {"scatter", voice("Residual force against velocity"),
-                "Samples as dots, medians as lines: a step at zero is friction.", "velocity", voice("m/s"),
-                voice("force"), force_unit, s.velocity, residual, no_residual, nullptr, &s.t});
+        index, {"scatter", say("Residual force against velocity", "Difference against velocity"),
+                say("Samples as dots, medians as lines: a step at zero is friction.",
+                    "Samples as dots, medians as lines: a step at zero is lost motion, a slope is a lag."),
+                "velocity", voice("m/s"), say("force", "difference"), force_unit, s.velocity, residual,
+                no_residual, nullptr, &s.t});
     const std::string place = book.figure(
-        index, {"scatter", voice("Residual force against position"),
-                "Samples as dots, medians of each direction as lines: a wave is cogging, a slope is a spring.",
-                "position", length_unit, voice("force"), force_unit, s.position, residual, no_residual,
-                &s.velocity, &s.t});
+        index,
+        {"scatter", say("Residual force against position", "Difference against position"),
+         say("Samples as dots, medians of each direction as lines: a wave is cogging, a slope is a spring.",
+             "Samples as dots, medians of each direction as lines: two lines are lost motion, a slope is a "
+             "wrong "
+             "lead, a wave is a pitch error."),
+         "position", length_unit, say("force", "difference"), force_unit, s.position, residual, no_residual,
+         &s.velocity, &s.t});
     const std::string spectrum =
-        book.figure(index, {"spectrum",
-                            voice("Spectrum of the residual force"),
-                            voice("Peaks are resonances or forces periodic in time."),
-                            "frequency",
-                            "Hz",
-                            voice("force"),
-                            voice("N/√Hz"),
-                            s.frequency_Hz,
-                            {{"before", &s.spectrum_before}, {"after", &s.spectrum_after}},
-                            "the record is too short for a spectrum"});
+        of_positions ? ""
+                     : book.figure(index, {"spectrum",
+                                           voice("Spectrum of the residual force"),
+                                           voice("Peaks are resonances or forces periodic in time."),
+                                           "frequency",
+                                           "Hz",
+                                           voice("force"),
+                                           voice("N/√Hz"),
+                                           s.frequency_Hz,
+                                           {{"before", &s.spectrum_before}, {"after", &s.spectrum_after}},
+                                           "the record is too short for a spectrum"});
     return fmt::format(
         "<section><h2>Axis {0}: the gap in pictures</h2>\n"
         "<div class=\"zoom\"><p class=\"hint\">Drag across a chart to zoom (two fingers on a touch screen); "

@@ -64,8 +64,10 @@ inline std::string causes(const diagnosis_result& d) {
     std::string rows;
     for (const cause& c : d.causes) {
         const axis_voice voice = voice_of(d, c.axis);
-        std::vector<std::string> gap{voice("force ") + change(c.gap_before_force_rms_N.value,
-                                                              c.gap_after_force_rms_N.value, voice("N"))};
+        std::vector<std::string> gap;
+        if (c.gap_before_force_rms_N.value > 0 || !(c.gap_before_position_rms_m.value > 0))
+            gap.push_back(voice("force ") +
+                          change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, voice("N")));
         if (c.gap_before_position_rms_m.value > 0)
             gap.push_back("position " + change(c.gap_before_position_rms_m.value,
                                                c.gap_after_position_rms_m.value, voice("m")));

@@ -10,6 +10,19 @@ inline std::string badge(verdict v) {
     return fmt::format("<span class=\"badge {}\">{}</span>", name_of(v), spaced(name_of(v)));
 }
 
+/// A chain of positions as boxes, in the same words.
+inline std::string chain_picture(const axis_result& a, const std::string& boxes, const std::string& text) {
+    return fmt::format(
+        R"svg(<svg class="loop" viewBox="0 0 378 120" role="img" aria-label="Positions of axis {0}: {1}">
+<title>Positions of axis {0}: {1}</title>
+<g class="wire"><path d="M2 62H11"/><path d="M117 62H136"/><path d="M242 62H261"/></g>
+<g class="signal"><text class="left" x="2" y="24">asked or counted</text><text class="right" x="370" y="24">read</text></g>
+{2}</svg>
+<p class="hint loop-says">{3}.</p>
+)svg",
+        escape(a.name), text, boxes, capital(text));
+}
+
 /// The servo loop as boxes, narrow enough for a phone: the share of each box in it, and a box at fault marked by a thick
 /// frame, bold letters and an exclamation mark, so that it is seen without colour too.
 inline std::string loop(const axis_result& a) {
@@ -38,6 +51,12 @@ inline std::string loop(const axis_result& a) {
                 x + 104, y, y + 5);
         return svg + "</g>";
     };
+    if (a.positions_only) {
+        const std::string boxes =
+            box("drive", 12, 34, 56) + box("transmission", 137, 34, 56) + box("sensor", 262, 34, 56);
+        return chain_picture(
+            a, boxes, guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty)));
+    }
     // A drive with loops of its own stands between controller and actuator, and what follows one row lower.
     const int down = a.driven ? 104 : 0;
     const std::string boxes = box("controller", 72, 34, 56) + (a.driven ? box("drive", 246, 34, 56) : "") +

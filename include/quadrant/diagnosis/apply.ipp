@@ -12,7 +12,7 @@ namespace detail {
 class corrector {
 public:
     corrector(const nlohmann::ordered_json& machine, std::string_view file, double at_least)
-        : file_(file), at_least_(at_least) {
+        : file_(file), at_least_(at_least), read_(read_machine(machine.dump(), file)) {
         out_.machine = machine;
     }
 
@@ -36,13 +36,23 @@ public:
                     "{} of axis {} is left out: probability {:.2f}, below {:g}; in the diagnosis it took the "
                     "{}",
                     c.effect, c.axis, std::max(c.probability, c.group_probability), at_least_,
-                    text_of(fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
-                                        c.gap_after_force_rms_N.value),
+                    text_of(c.gap_before_force_rms_N.value > 0 || !(c.gap_before_position_rms_m.value > 0)
+                                ? fmt::format("force from {:.3g} N to {:.3g} N", c.gap_before_force_rms_N.value,
+                                              c.gap_after_force_rms_N.value)
+                                : fmt::format("position from {:.3g} m to {:.3g} m",
+                                              c.gap_before_position_rms_m.value,
+                                              c.gap_after_position_rms_m.value),
                             kind_of(c.axis))));
             else if (std::find(d.own_effects.begin(), d.own_effects.end(), c.effect) != d.own_effects.end())
                 out_.notes.push_back(
                     fmt::format("{} of axis {} is left out: it is an effect of your own, and a machine "
                                 "file has no key for it",
+                                c.effect, c.axis));
+            else if (const effect* e = effect_named(c.effect);
+                     e && e->keys.empty() && c.effect != "controller_mismatch" && !c.parameters.empty())
+                out_.notes.push_back(
+                    fmt::format("{} of axis {} is left out: it is of this record, and a machine file has "
+                                "no key for it",
                                 c.effect, c.axis));
             else if (c.parameters.empty())
                 out_.notes.push_back(fmt::format(
@@ -59,7 +69,8 @@ public:
                                                                                     : a.calibrated;
             join(moved, before["axes"][a.name]);
         }
-        for (const axis_result& a : d.axes) follow(a.name, before["axes"][a.name]["plant"]);
+        for (const axis_result& a : d.axes)
+            if (before["axes"][a.name].contains("plant")) follow(a.name, before["axes"][a.name]["plant"]);
         read_machine(out_.machine.dump(), fmt::format("{} with the diagnosis applied", file_)); // or it throws
         return std::move(out_);
     }
@@ -71,9 +82,9 @@ private:
     static bool claimed(const cause& c) { return c.group_probability >= 0.5; }
 
     axis_kind kind_of(const std::string& axis) const {
-        return out_.machine["axes"][axis]["plant"].contains(key_of("mass_kg", axis_kind::rotary))
-                   ? axis_kind::rotary
-                   : axis_kind::linear;
+        const auto found = std::find_if(read_.axes.begin(), read_.axes.end(),
+                                        [&](const axis_description& a) { return a.name == axis; });
+        return found == read_.axes.end() ? axis_kind::linear : found->kind;
     }
     std::string own_key(const std::string& axis, std::string_view linear) const {
         return key_of(linear, kind_of(axis));
@@ -173,6 +184,7 @@ private:
 
     std::string_view file_;
     double at_least_;
+    machine_description read_; ///< as it was
     applied_diagnosis out_;
 };
 

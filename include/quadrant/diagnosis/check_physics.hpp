@@ -134,7 +134,7 @@ inline void check_physics(imported_log& in, const known_axis& known = {}) {
 inline void check_physics(const machine_description& machine, const machine_log& log) {
     for (const axis_description& axis : machine.axes)
         for (const axis_log& a : log.axes)
-            if (a.name == axis.name && !a.still)
+            if (a.name == axis.name && !a.still && !axis.positions_only)
                 detail::axis_physics(a, log.sample_period_s, log.file,
                                      {axis.plant.mass_kg, axis.plant.force_constant_N_per_V})
                     .refuse_what_cannot_be();

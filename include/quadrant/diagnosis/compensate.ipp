@@ -72,6 +72,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
             throw bad_input(
                 machine.file,
                 fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
+    refuse_positions_only(machine, "a feedforward");
     refuse_driven(machine, "a feedforward");
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "chain/diagnose_chain.hpp"
 #include "effect/effect_list.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
@@ -141,7 +142,46 @@ inline void note_missed(diagnosis_result& out, const axis_case& c) {
     out.notes.push_back(worded("axis %s: the time was up: %s.", c.axis.name.c_str(), what.c_str()));
 }
 
-inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
+/// What two encoders say joins what the force says: their causes come first, being read off, not inferred.
+inline void join_transmission(diagnosis_result& out, axis_result& result, std::vector<cause>& causes,
+                              chain::two_encoders& t) {
+    std::vector<cause> first;
+    t.of_the_guide(result.calibrated);
+    t.of_the_guide(result.calibrated_with_suspects);
+    for (cause& c : causes) {
+        t.of_the_guide(c.parameters);
+        t.of_the_guide(c.with_suspects);
+    }
+    if (result.verdict <= verdict::within_tolerance) causes.clear(); // as where there is one encoder
+    chain::join(result, first, out, std::move(t.found), "readings");
+    causes.insert(causes.begin(), first.begin(), first.end());
+    out.notes.insert(out.notes.end(), t.notes.begin(), t.notes.end());
+}
+
+/// An axis of which nothing but positions is known.
+inline void diagnose_positions(diagnosis_result& out, const axis_description& axis, const axis_log& log,
+                               const machine_description& machine, const std::string& file, const rules& r) {
+    std::vector<cause> causes;
+    axis_result result = chain::diagnose_positions(out, causes, axis, log, machine.sample_period_s, file,
+                                                   machine.excluded_effects, r);
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, causes);
+    out.verdict = std::max(out.verdict, result.verdict);
+    if (result.verdict > verdict::within_tolerance)
+        out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+    const auto unseen = unseen_by(result, causes);
+    out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
+    out.axes.push_back(std::move(result));
+}
+
+/// Whether two encoders are recorded whose difference shows the transmission.
+inline bool shows_transmission(const axis_description& axis, const axis_log& log) {
+    return !log.motor.empty() && (axis.transmission != transmission_description{} || log.motor_unit == "rad");
+}
+
+/// `of_transmission`: what the two encoders of the axis say, where it has two.
+inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encoders* of_transmission = nullptr) {
     axis_result result;
     result.name = c.axis.name;
     result.kind = c.axis.kind;
@@ -174,7 +214,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     how_far(c).measure(result, causes);
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
-    result.verdict = judge(c, causes);
+    const verdict behind = result.verdict = judge(c, causes);
     result.cut = c.models.cut() || !c.models.missed().empty();
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
@@ -184,6 +224,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
             mark_bounds(x.group_probability >= 0.5 ? c.applied() : c.best(), x.parameters);
     mark_bounds(c.applied(), result.calibrated);
     mark_bounds(c.best(), result.calibrated_with_suspects);
+    if (of_transmission) join_transmission(out, result, causes, *of_transmission);
     put_in_words(result.kind, result.where);
     put_in_words(result.kind, result.calibrated);
     put_in_words(result.kind, result.calibrated_with_suspects);
@@ -193,9 +234,10 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
-        describe_rest(out, c, result, causes);
+        if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
-        if (!c.axis.drive.closes() && !c.models.over()) propose(out, c, causes, rivals);
+        if (!c.axis.drive.closes() && !c.models.over() && behind > verdict::within_tolerance)
+            propose(out, c, causes, rivals);
         if (!proposed) {
             out.next.motion = text_of(out.next.motion, c.axis.kind);
             out.next.finding = text_of(out.next.finding, c.axis.kind);
@@ -265,12 +307,27 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
     for (axis_description axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
+        if (axis.positions_only) {
+            tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+            detail::diagnose_positions(out, axis, *logged, machine, log.file,
+                                       detail::for_one_of(r, axes_left--));
+            if (holdout)
+                out.notes.push_back(fmt::format(
+                    "axis {}: the hold-out log is not used where only positions are known.", axis.name));
+            continue;
+        }
         if (logged->command_is == command_origin::measured) axis.actuator.command_is = command_origin::measured;
         if (axis.controller && !axis.drive.closes() && axis.actuator.command_is == command_origin::measured)
             out.notes.push_back(
                 detail::worded("axis %s: the command was measured behind the amplifier; what the controller "
                                "asked for is not in the log, and nothing is said of the controller.",
                                axis.name.c_str()));
+        std::optional<chain::two_encoders> transmission;
+        if (detail::shows_transmission(axis, *logged)) {
+            transmission = chain::diagnose_transmission(axis, *logged, machine.sample_period_s, log.file,
+                                                        machine.excluded_effects, r);
+            logged = &transmission->carried;
+        }
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
         const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
@@ -282,9 +339,13 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s, machine.excluded_effects,
+        std::vector<std::string> excluded = machine.excluded_effects;
+        if (transmission) // the two encoders show these themselves
+            excluded.insert(excluded.end(), {"backlash", "structural_resonance"});
+        const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
+        axis_case c(rigid, coupled, other ? &*other : nullptr, machine.sample_period_s, excluded,
                     detail::for_one_of(r, axes_left--), tell);
-        detail::diagnose_axis(out, detail::need_blocks(c, log.file));
+        detail::diagnose_axis(out, detail::need_blocks(c, log.file), transmission ? &*transmission : nullptr);
     }
     return out;
 }

@@ -39,6 +39,7 @@ inline double noise_beside_rounding(const axis_description& axis, const axis_res
 QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& machine,
                                                  const diagnosis_result& found, const machine_log& motion,
                                                  double at_least) {
+    refuse_positions_only(machine, "a forecast");
     refuse_driven(machine, "a forecast");
     const machine_description corrected = apply(machine, found, at_least);
     forecast_result out;

@@ -45,7 +45,26 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
                            m));
 }
 
+/// Refuses a log with one position only of an axis that is a chain of them.
+inline void check_positions(const axis_description& axis, const axis_log& log, const std::string& file) {
+    const std::string m = key_of("m", axis.kind);
+    if (!log.has_reference && log.motor.empty() && !log.still)
+        throw bad_input(file,
+                        fmt::format("axis {0}: column {0}_ref_{1}, {0}_motor_pos_rad or {0}_motor_pos_{1} is "
+                                    "missing: without a plant two positions are compared",
+                                    axis.name, m));
+}
+
 } // namespace detail
+
+/// Refuses a machine of which nothing but positions is known, for what needs its forces: bad_input.
+inline void refuse_positions_only(const machine_description& machine, std::string_view what) {
+    for (const axis_description& axis : machine.axes)
+        if (axis.positions_only)
+            throw bad_input(
+                machine.file,
+                fmt::format("axes.{}.plant: is missing; {} needs the forces of the axis", axis.name, what));
+}
 
 /// Refuses a machine with a drive that closes loops of its own, for which `what` is not computed yet: bad_input.
 inline void refuse_driven(const machine_description& machine, std::string_view what) {
@@ -75,6 +94,10 @@ inline void check_match(const machine_description& machine, const machine_log& l
         if (logged->kind != axis.kind)
             throw bad_input(log.file, fmt::format("axis {} is {} in the log, {} in {}", axis.name,
                                                   name_of(logged->kind), name_of(axis.kind), machine.file));
+        if (axis.positions_only) {
+            detail::check_positions(axis, *logged, log.file);
+            continue;
+        }
         if (axis.drive.closes()) {
             detail::check_drive(axis, *logged, machine.file, log.file);
             continue;

@@ -198,6 +198,11 @@ private:
             axis.duty = rows.smooth(header_.columns[*at.duty].values);
             axis.duty_step = header_.columns[*at.duty].step.step();
         }
+        if (at.motor) {
+            axis.motor = rows.smooth(header_.columns[*at.motor].values);
+            axis.motor_unit = at.motor_unit;
+            axis.motor_step = header_.columns[*at.motor].step.step();
+        }
         if (!at.effort) return;
         axis.effort = rows.smooth(header_.columns[*at.effort].values);
         axis.effort_unit = at.effort_unit;

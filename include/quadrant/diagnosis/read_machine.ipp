@@ -43,23 +43,47 @@ private:
     axis_description read_axis(const std::string& name, json_node node) {
         refuse_unknown_keys(node, boxes_of_effects(), axis_other_keys);
         axis_description axis;
-        axis.kind = node.kind = kind_of(node.need("plant").object());
+        axis.positions_only = !node.value->contains("plant") && is_chain(node);
+        axis.kind = node.kind =
+            axis.positions_only ? kind_of_chain(node) : kind_of(node.need("plant").object());
         refuse_the_other_kind(node);
         axis.name = name;
         for (const std::string_view box : boxes_of_effects()) {
-            const auto content = box == "plant" ? node.need("plant") : node.find(std::string(box));
+            const bool needed = box == "plant" && !axis.positions_only;
+            const auto content = needed ? node.need("plant") : node.find(std::string(box));
             if (content) read_box(*content, box, axis);
         }
+        if (const auto motor = node.find("motor_encoder")) read_motor_encoder(*motor, axis.motor_encoder);
         if (axis.drive.closes()) settle_drive(node, axis);
         if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
         if (const auto controller = node.find("controller"))
             read_controller(*controller, axis);
+        else if (axis.positions_only)
+            note(axis,
+                 "no plant is described: the axis is a chain of positions, and nothing is said of forces");
         else
             note(axis, axis.drive.takes_position()
                            ? "no controller is described: diagnosed from the drive's set-points onwards"
                            : "no controller is described: diagnosed from the command onwards");
         note_what_is_assumed(axis);
         return axis;
+    }
+
+    /// Whether an axis without a plant is a chain of positions: it says something of a transmission or an encoder, and nothing that
+    /// needs forces.
+    static bool is_chain(const json_node& axis) {
+        const auto has = [&](const char* box) { return axis.value->contains(box); };
+        return (has("transmission") || has("encoder") || has("motor_encoder")) && !has("controller") &&
+               !has("actuator") && !has("process") && !has("payload");
+    }
+    /// Without a plant: rotary where a key of another box is in radians (but for the motor's).
+    static axis_kind kind_of_chain(const json_node& axis) {
+        for (const char* box : {"transmission", "encoder", "drive"})
+            if (const auto content = axis.value->find(box);
+                content != axis.value->end() && content->is_object())
+                for (const auto& [key, value] : content->items())
+                    if (key.ends_with("_rad") && !key.ends_with("phase_rad")) return axis_kind::rotary;
+        return axis_kind::linear;
     }
 
     static axis_kind kind_of(const json_node& plant) {
@@ -105,10 +129,12 @@ private:
 
     void read_box(const json_node& node, std::string_view box, axis_description& axis) {
         effect_keys_reader reader(node, box, axis, [&](const std::string& text) { note(axis, text); });
-        reader.read(box == "actuator" ? key_names(actuator_other_keys)
-                    : box == "drive"  ? key_names(drive_other_keys)
-                                      : key_names());
-        if (box == "drive") {
+        reader.read(box == "actuator"       ? key_names(actuator_other_keys)
+                    : box == "drive"        ? key_names(drive_other_keys)
+                    : box == "transmission" ? key_names(transmission_other_keys)
+                                            : key_names());
+        if (box == "transmission") read_transmission_others(node, axis.transmission);
+        if (box == "drive" && !(axis.positions_only && !node.find("kind"))) {
             read_drive_kind(node, axis.drive);
             read_drive_others(node, out_.sample_period_s, axis.drive);
         }
@@ -197,7 +223,7 @@ private:
         if (!missing.empty())
             note(axis, fmt::format("no tolerance is given for {}: {} is assumed", missing,
                                    tolerance_description::unstated));
-        if (is_force(axis.command_unit) && !axis.drive.closes())
+        if (is_force(axis.command_unit) && !axis.drive.closes() && !axis.positions_only)
             note(axis, text_of("no force constant is given: the command is taken for newtons", axis.kind));
     }
 

@@ -3,6 +3,7 @@
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"
+#include "match.hpp"
 #include "text/bad_input.hpp"
 
 namespace quadrant::diagnosis {
@@ -58,6 +59,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
 
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine,
                                                    const machine_log& as_read) {
+    refuse_positions_only(machine, "a simulation");
     const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
     const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;

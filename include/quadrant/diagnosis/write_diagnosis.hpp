@@ -32,12 +32,15 @@ inline ordered_json parameters_json(const std::vector<parameter_estimate>& param
 }
 
 inline ordered_json gap_json(const gap_numbers& g, axis_kind kind) {
-    return {{key_of("position_rms_m", kind), g.position_rms_m},
-            {key_of("position_peak_m", kind), g.position_peak_m},
-            {"command_rms_V", g.command_rms_V},
-            {key_of("force_rms_N", kind), g.force_rms_N},
-            {key_of("noise_floor_force_rms_N", kind), g.noise_floor_force_rms_N},
-            {"bandwidth_Hz", g.bandwidth_Hz}};
+    ordered_json out = {{key_of("position_rms_m", kind), g.position_rms_m},
+                        {key_of("position_peak_m", kind), g.position_peak_m},
+                        {"command_rms_V", g.command_rms_V},
+                        {key_of("force_rms_N", kind), g.force_rms_N},
+                        {key_of("noise_floor_force_rms_N", kind), g.noise_floor_force_rms_N},
+                        {"bandwidth_Hz", g.bandwidth_Hz}};
+    if (g.noise_floor_position_rms_m > 0)
+        out[key_of("noise_floor_position_rms_m", kind)] = g.noise_floor_position_rms_m;
+    return out;
 }
 
 /// One file that went in: what it is, its name, the SHA-256 of its bytes.
@@ -67,15 +70,17 @@ inline ordered_json place_json(const place& p) {
 inline ordered_json axis_json(const axis_result& a) {
     ordered_json where = ordered_json::array();
     for (const auto& p : a.where) where.push_back(place_json(p));
-    return {{"verdict", name_of(a.verdict)},
-            {"kind", name_of(a.kind)},
-            {"command_unit", a.command_unit},
-            {"gap", gap_json(a.gap, a.kind)},
-            {"gap_after", gap_json(a.gap_after, a.kind)},
-            {"where", where},
-            {"calibrated", parameters_json(a.calibrated)},
-            {"calibrated_with_suspects", parameters_json(a.calibrated_with_suspects)},
-            {"evaluated_on", a.evaluated_on}};
+    ordered_json out = {{"verdict", name_of(a.verdict)},
+                        {"kind", name_of(a.kind)},
+                        {"command_unit", a.command_unit},
+                        {"gap", gap_json(a.gap, a.kind)},
+                        {"gap_after", gap_json(a.gap_after, a.kind)},
+                        {"where", where},
+                        {"calibrated", parameters_json(a.calibrated)},
+                        {"calibrated_with_suspects", parameters_json(a.calibrated_with_suspects)},
+                        {"evaluated_on", a.evaluated_on}};
+    if (a.positions_only) out["positions_only"] = true;
+    return out;
 }
 
 /// What is added to a command. Numbers that the form does not have are left out; the signal itself is in means over

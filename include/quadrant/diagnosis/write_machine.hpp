@@ -65,12 +65,19 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
         if (name == "actuator" && a.actuator.command_is != command_origin::asked)
             content["command_is"] = name_of(a.actuator.command_is);
         if (name == "drive" && a.drive.closes()) content.update(drive_json(a.drive));
+        if (name == "transmission") {
+            content.update(numbers_json(transmission_number_keys, a.transmission));
+            if (a.transmission.kind) content["kind"] = name_of(*a.transmission.kind);
+        }
         box(name, content);
     }
     for (const auto& [key, value] : a.tolerance.given)
         if (key != "force_constant" || !is_force(a.command_unit))
             tolerance[key] = value; // there 0 by definition
     box("tolerance", tolerance);
+    if (a.motor_encoder.resolution_rad)
+        out["motor_encoder"]["resolution_rad"] = *a.motor_encoder.resolution_rad;
+    if (a.motor_encoder.resolution_m) out["motor_encoder"]["resolution_m"] = *a.motor_encoder.resolution_m;
     if (a.controller && !a.controller->own) box("controller", controller_json(*a.controller));
     return out;
 }

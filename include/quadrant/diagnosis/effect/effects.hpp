@@ -23,22 +23,29 @@
 #include "friction_drift.hpp"
 #include "gravity.hpp"
 #include "load_friction.hpp"
+#include "lost_motion.hpp"
 #include "mass.hpp"
 #include "minimum_duty.hpp"
+#include "missed_steps.hpp"
+#include "motor_friction.hpp"
 #include "payload_mass.hpp"
+#include "pitch_error.hpp"
 #include "position_dependent_friction.hpp"
 #include "position_spring.hpp"
 #include "presliding_friction.hpp"
 #include "quadratic_drag.hpp"
 #include "sample_loss.hpp"
+#include "scale_error.hpp"
 #include "set_point_loss.hpp"
 #include "setpoint_rate_limit.hpp"
 #include "stribeck_friction.hpp"
 #include "structural_resonance.hpp"
 #include "supply_voltage.hpp"
 #include "time_delay.hpp"
+#include "travel_error.hpp"
 #include "unlisted.hpp"
 #include "viscous_friction.hpp"
+#include "wind_up.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -79,6 +86,13 @@ inline constexpr std::array listed_effects{
     &suspect::command_delay,
     &suspect::setpoint_rate_limit,
     &suspect::set_point_loss,
+    &suspect::missed_steps,
+    &suspect::lost_motion,
+    &suspect::wind_up,
+    &suspect::pitch_error,
+    &suspect::travel_error,
+    &suspect::scale_error,
+    &suspect::motor_friction,
     &suspect::encoder_quantization,
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,

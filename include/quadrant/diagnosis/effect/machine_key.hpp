@@ -21,6 +21,9 @@ inline actuator_description& box_with(axis_description& a, const actuator_descri
 inline encoder_description& box_with(axis_description& a, const encoder_description*) { return a.encoder; }
 inline process_description& box_with(axis_description& a, const process_description*) { return a.process; }
 inline drive_description& box_with(axis_description& a, const drive_description*) { return a.drive; }
+inline transmission_description& box_with(axis_description& a, const transmission_description*) {
+    return a.transmission;
+}
 inline payload_description& box_with(axis_description& a, const payload_description*) { return a.payload; }
 
 template <class Box, class Value> const Box* box_type(Value Box::*) { return nullptr; }

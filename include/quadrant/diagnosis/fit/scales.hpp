@@ -11,11 +11,12 @@ namespace quadrant::diagnosis {
 /// diagnosis is a multiple of one of these or has no dimension, so that the answer does not depend on the size of the
 /// machine, on its speed or on the unit of its command (docs/diagnosis.md, Scales).
 struct record_scales {
-    double travel = 0;    ///< distance between the ends of the position [m]
-    double speed = 0;     ///< largest velocity, smoothed to `corner_Hz` [m/s]
-    double command = 0;   ///< largest command [V]
-    double count = 0;     ///< step of the reading [m]
-    double corner_Hz = 0; ///< frequency at which the record resolves a hundredth of its force, see scales_of()
+    double travel = 0;     ///< distance between the ends of the position [m]
+    double speed = 0;      ///< largest velocity, smoothed to `corner_Hz` [m/s]
+    double command = 0;    ///< largest command [V]
+    double count = 0;      ///< step of the reading [m]
+    double least_give = 0; ///< of give(), see axis_log::least_give [m]
+    double corner_Hz = 0;  ///< frequency at which the record resolves a hundredth of its force, see scales_of()
 
     /// Time constant of the corner [s].
     double response() const { return 1 / (2 * std::numbers::pi * corner_Hz); }
@@ -27,7 +28,7 @@ struct record_scales {
     double bandwidth_Hz() const { return 5.0 / 3 * corner_Hz; }
     /// Displacement by which every sticking contact gives way: no record shows less than half a count, and a millionth of
     /// the travel matters to nobody [m].
-    double give() const { return std::max(0.5 * count, 1e-6 * travel); }
+    double give() const { return std::max({0.5 * count, 1e-6 * travel, least_give}); }
 };
 
 namespace detail {
@@ -60,6 +61,7 @@ inline record_scales scales_of(const plant_description& plant, const axis_log& l
     const auto n = static_cast<double>(log.position.size());
     const auto [low, high] = std::minmax_element(log.position.begin(), log.position.end());
     out.travel = *high - *low;
+    out.least_give = log.least_give;
     // A number of 64 bits resolves no more of the travel than this.
     out.count = std::max({resolution, log.position_step, 1e-12 * out.travel});
     double mean = 0, variance = 0;

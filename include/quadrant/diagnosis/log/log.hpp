@@ -44,6 +44,13 @@ struct axis_log {
     std::vector<double> effort{}; ///< measured current, force or torque beside a command; empty: not recorded
     std::string effort_unit{};    ///< "A", "N" or "Nm"
     double duty_step = 0, effort_step = 0;
+    std::vector<double> motor{}; ///< a second encoder, on the motor; empty: none
+    std::string motor_unit{};    ///< "rad" of the motor's turn, or "m": in units of the load
+    double motor_step = 0;
+    /// Displacement of a sticking axis that says nothing of its contact: `position` is that of parts that move against each other [m].
+    double least_give = 0;
+    std::vector<double>
+        controller_reads{}; ///< where `position` is not what the controller read: that; else empty
     std::vector<unsigned char> drive_off{}; ///< of each row: 1 where the drive is switched off; empty: never
     /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got, as measured or as the
     /// described drive made it, and this is what the drive received and saw.

@@ -28,6 +28,8 @@ struct log_header {
         std::optional<std::size_t> duty,
             effort; ///< of the drive's bridge; measured behind it, beside a command
         std::string effort_unit;
+        std::optional<std::size_t> motor; ///< a second encoder
+        std::string motor_unit;
         bool command_measured = false; ///< it was taken behind the amplifier
         std::optional<std::size_t> reference_velocity, reference_acceleration, velocity; ///< need not be there
         std::string command_unit;
@@ -51,6 +53,7 @@ enum class column_role {
     torque,
     duty,
     enabled,
+    motor_position,
     not_used_yet
 };
 
@@ -60,8 +63,8 @@ struct column_suffix {
     std::string_view unit = {};
 };
 inline constexpr std::array column_suffixes{
-    column_suffix{"_motor_pos_m", column_role::not_used_yet},
-    column_suffix{"_motor_pos_rad", column_role::not_used_yet},
+    column_suffix{"_motor_pos_m", column_role::motor_position, "m"},
+    column_suffix{"_motor_pos_rad", column_role::motor_position, "rad"},
     column_suffix{"_ref_m", column_role::reference, "m"},
     column_suffix{"_pos_m", column_role::position, "m"},
     column_suffix{"_ref_rad", column_role::reference, "rad"},
@@ -144,6 +147,16 @@ void join_beside(log_header& out, const column_beside& c, log_purpose purpose, R
         axis.command_unit = c.suffix->unit;
         axis.command_at = c.offset;
         axis.command_measured = true;
+        return;
+    }
+    if (c.suffix->role == column_role::motor_position) {
+        if (axis.motor)
+            refuse(c.offset, fmt::format("axis {} has two motor encoders: {} and {}", found->first,
+                                         out.columns[*axis.motor].name, column.name));
+        if (c.suffix->unit == "m" && axis.kind == axis_kind::rotary)
+            refuse(c.offset, fmt::format("{}: axis {} is rotary", in_quotes(column.name), found->first));
+        axis.motor = c.index;
+        axis.motor_unit = c.suffix->unit;
         return;
     }
     (c.suffix->role == column_role::velocity             ? axis.velocity
@@ -239,7 +252,7 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
             continue;
         }
         if (!axis.position) refuse(line.size(), fmt::format("column {}_pos_{} is missing", name, m));
-        if (!axis.command && !axis.reference)
+        if (!axis.command && !axis.reference && !axis.motor)
             refuse(
                 line.size(),
                 fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A, "

@@ -5,6 +5,7 @@
 #include "controller_description.hpp"
 #include "drive_description.hpp"
 #include "own_law.hpp"
+#include "transmission_description.hpp"
 
 #include <map>
 #include <optional>
@@ -99,7 +100,10 @@ struct axis_description {
     actuator_description actuator;
     process_description process;
     payload_description payload{};
-    drive_description drive{}; ///< loops of its own between the command and the motor
+    drive_description drive{};               ///< loops of its own between the command and the motor
+    transmission_description transmission{}; ///< between motor and load
+    motor_encoder_description motor_encoder{};
+    bool positions_only = false; ///< no plant is described: the axis is a chain of positions
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards
     axis_kind kind = axis_kind::linear;

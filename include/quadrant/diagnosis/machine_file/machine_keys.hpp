@@ -2,6 +2,7 @@
 #pragma once
 #include "drive_keys.hpp"
 #include "effect_keys.hpp"
+#include "transmission_keys.hpp"
 
 /// The keys of a machine file that belong to no effect; those of effects follow from their records
 /// (effect_keys.hpp).
@@ -17,7 +18,7 @@ inline constexpr std::array<std::string_view, 4> actuator_other_keys{"limit_V", 
                                                                      "command_is"};
 
 /// Boxes of an axis beside those that hold keys of effects.
-inline constexpr std::array<std::string_view, 2> axis_other_keys{"tolerance", "controller"};
+inline constexpr std::array<std::string_view, 3> axis_other_keys{"tolerance", "controller", "motor_encoder"};
 inline constexpr std::array<std::string_view, 4> machine_file_keys{"schema", "sample_period_s",
                                                                    "excluded_effects", "axes"};
 
@@ -29,6 +30,7 @@ inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind
     };
     if (box == "actuator") add(actuator_other_keys);
     if (box == "drive") add(drive_other_keys);
+    if (box == "transmission") add(transmission_other_keys);
     if (box == "tolerance")
         for (const tolerance_name& t : tolerance_names(all ? axis_kind::rotary : kind))
             out.push_back(key_of(t.name, kind));

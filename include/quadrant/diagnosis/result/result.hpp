@@ -46,6 +46,7 @@ struct gap_numbers {
     double force_rms_N = 0;             ///< residual force, zero-phase filtered to bandwidth_Hz on both sides
     double noise_floor_force_rms_N = 0; ///< what sensor and rounding alone leave in the residual force
     double bandwidth_Hz = 0;
+    double noise_floor_position_rms_m = 0; ///< of two positions that are compared without any force; else 0
 };
 
 /// One place of the gap. Shares of one view sum to one with its remainder, never across views.
@@ -119,6 +120,9 @@ struct axis_result {
     axis_kind kind = axis_kind::linear;
     std::string command_unit = "V"; ///< of the command gaps
     bool cut = false;               ///< the time was up before the search had ended (rules::until)
+    /// Two positions are compared, and nothing is known of forces: the gap is that of the positions, and the residual signals are
+    /// differences of them [m].
+    bool positions_only = false;
     bool driven = false; ///< its drive closes loops of its own: a box between controller and actuator
 };
 

@@ -54,7 +54,8 @@ struct loop_columns {
                 .velocity = of(velocity)};
     }
     static loop_columns of(const axis_log& log) {
-        return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
+        const auto& reads = log.controller_reads.empty() ? log.position : log.controller_reads;
+        return {log.reference, reads,       log.command, log.reference_velocity, log.reference_acceleration,
                 log.velocity,  log.left_out};
     }
     /// The rows from one on.

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../fit/scales.hpp"
+
+/// Two positions of one axis, one behind the other: what was asked or counted, and what the scale reads.
+namespace quadrant::diagnosis::chain {
+
+/// One link of the chain, both readings in units of the load.
+struct position_link {
+    double period = 0;
+    std::vector<double> first{}; ///< asked, counted, or read on the motor [m]
+    std::vector<double> last{};  ///< read behind it [m]
+    double first_count = 0, last_count = 0;
+    std::vector<unsigned char> left_out{}; ///< of each row; empty: every row counts
+    /// Whether the first is what was asked, so that the last may follow it late.
+    bool asked = false;
+    /// Whether gears lie between the two: play, pitch and spring.
+    bool geared = true;
+    double turn = 0; ///< travel of one turn of the motor; 0: not known [m]
+    /// Force behind the motor's mass, before the motor's friction [N], and the direction of the motor, both as
+    /// smooth as the
+    /// difference; empty: no force is known.
+    std::vector<double> force{}, motor_direction{};
+    double force_band_Hz = 0; ///< to which force and difference are smoothed; 0: they are not
+
+    std::size_t rows() const { return first.size(); }
+    double travel() const {
+        const auto [low, high] = std::minmax_element(first.begin(), first.end());
+        return *high - *low;
+    }
+    double middle() const {
+        const auto [low, high] = std::minmax_element(first.begin(), first.end());
+        return (*high + *low) / 2;
+    }
+    /// Rounding of the difference; what was asked is asked as it stands [m].
+    double rounding() const { return asked ? last_count : std::hypot(first_count, last_count); }
+    /// Noise of the difference of two right readings: rounding, or what no smooth motion explains; where the
+    /// first stands still often
+    /// enough, what is left there, since at a low rate an error that repeats along the travel looks like noise
+    /// [m].
+    double noise() const {
+        constexpr std::size_t enough = 32;
+        std::vector<double> d(rows());
+        for (std::size_t k = 0; k < rows(); ++k) d[k] = last[k] - first[k];
+        const double moving = detail::reading_noise(d, rounding());
+        double sum = 0;
+        std::size_t still = 0;
+        for (std::size_t k = 0; k + 3 < rows(); ++k) {
+            if (first[k] != first[k + 1] || first[k] != first[k + 2] || first[k] != first[k + 3]) continue;
+            const double e = d[k + 3] - d[k] + 3 * (d[k + 1] - d[k + 2]);
+            sum += e * e / 20;
+            ++still;
+        }
+        if (still < enough) return moving;
+        return std::min(moving,
+                        std::max(std::sqrt(sum / static_cast<double>(still)), rounding() / std::sqrt(12.0)));
+    }
+    /// The coarser of the counts that are readings [m].
+    double count() const { return asked ? last_count : std::max(first_count, last_count); }
+};
+
+/// What lies behind a play of this width, held by friction, and whether it is known yet: before the first drive
+/// through the whole
+/// play it may stand anywhere in it.
+struct behind_play {
+    std::vector<double> offset; ///< beside the motion that drives it [m]
+    std::size_t known_from = 0; ///< row
+};
+/// The same, of a motion x.
+inline behind_play play_of(std::span<const double> x, double width) {
+    behind_play out{std::vector<double>(x.size(), 0.0), x.size()};
+    if (x.empty()) return out;
+    double at = x[0], low = x[0], high = x[0];
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        at = std::clamp(at, x[k] - width / 2, x[k] + width / 2);
+        out.offset[k] = at - x[k];
+        low = std::min(low, x[k]);
+        high = std::max(high, x[k]);
+        if (out.known_from == x.size() && high - low > width) out.known_from = k;
+    }
+    return out;
+}
+
+/// How a drive follows what it is asked for.
+enum class following { at_once, delayed, first_order };
+
+/// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 /
+/// lag).
+inline std::vector<double> followed(std::span<const double> x, double period, following how, double lag) {
+    std::vector<double> out(x.begin(), x.end());
+    if (how == following::at_once || !(lag > 0)) return out;
+    if (how == following::delayed) {
+        const double rows = lag / period, whole = std::floor(rows), part = rows - whole;
+        const auto at = [&](std::ptrdiff_t k) {
+            return x[static_cast<std::size_t>(std::max<std::ptrdiff_t>(k, 0))];
+        };
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const auto from = static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(whole);
+            out[k] = (1 - part) * at(from) + part * at(from - 1);
+        }
+        return out;
+    }
+    // The exact answer to straight lines between the samples.
+    const double q = period / lag, keeps = std::exp(-q), mean = (1 - keeps) / q;
+    for (std::size_t k = 1; k < x.size(); ++k)
+        out[k] = keeps * out[k - 1] + (mean - keeps) * x[k - 1] + (1 - mean) * x[k];
+    return out;
+}
+
+} // namespace quadrant::diagnosis::chain
