@@ -29,6 +29,17 @@ inline std::vector<double> reaction_to_reading(const plant_model& described, con
     return out;
 }
 
+/// The integral of a velocity loop inside a position loop adds up the noise of the position reading: each row adds an independent
+/// step to the replayed force, which drifts as far as the record is long. Below the frequency w where this drift exceeds the noise
+/// that the reading itself makes of a mass,
+///   M w^2 = position_gain velocity_integral / w,
+/// no force can be distinguished from it. Returns the pole of the filter that takes the drift out of the innovations; 1: no drift.
+inline double drift_pole_of(const plant_model& described, double period) {
+    const drive_model& d = described.drive;
+    if (d.kind != drive_kind::position || !d.has_integral() || !(d.position_gain > 0)) return 1;
+    return std::exp(-period * std::cbrt(d.position_gain * d.velocity_integral / described.mass));
+}
+
 namespace detail {
 
 /// The innovations that this wrong reading leaves in an observer around a free mass.

@@ -108,16 +108,31 @@ struct driven_motion {
         const auto fine = in_parts(d);
         replay out{row_means(fine), {}};
         if (tapped()) {
-            out.beside = beside(fine, d.reading_age / period);
+            out.beside = beside(fine, (d.reading_age + d.tap_lateness) / period);
             const auto last = static_cast<double>(measured.size() - 1);
             for (std::size_t k = 0; k < out.command.size(); ++k) {
                 if (is_off(k)) continue;
-                const double at = static_cast<double>(k) + 0.5 - d.reading_age / period;
+                const double at = static_cast<double>(k) + 0.5 - (d.reading_age + d.tap_lateness) / period;
                 out.command[k] += between(out.beside, std::clamp(at, 0.0, last));
             }
         }
         out.command = to_actuator(d, std::move(out.command));
         return out;
+    }
+    /// The drive with the best of seven moments each for the readings of position and tap within a row. A set-point that arrives between
+    /// two moments makes a step, which no slope sees: a fit has to begin on the right side of it.
+    drive_model with_timing(drive_model d) const {
+        drive_model best = d;
+        double least = drive_model::none;
+        for (int i = 0; i < 49; ++i) {
+            d.reading_age = (i / 7 - 3) * period / 4;
+            d.tap_lateness = (i % 7 - 3) * period / 4;
+            double sum = 0;
+            for (double e : run(d).beside) sum += e * e;
+            if (sum < least) best = d;
+            least = std::min(least, sum);
+        }
+        return best;
     }
     /// What this drive gives less what was measured, as the force that it would have made on the axis [N]; `force_constant`: of the
     /// plant.
@@ -137,7 +152,7 @@ private:
         for (std::size_t i = 0; i < fine.size(); ++i) out[i / parts] += fine[i] / parts;
         return out;
     }
-    /// At the moments of the tap's readings, `age` rows behind those of the position.
+    /// At the moments of the tap's readings, `age` rows after those of the position.
     std::vector<double> beside(const std::vector<double>& fine, double age) const {
         const auto last = static_cast<double>(fine.size() - 1);
         std::vector<double> out(measured.size(), 0.0);
