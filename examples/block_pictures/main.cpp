@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(folder);
     int written = 0;
     for (const auto& members : {filters, signals, supervision, memories, frictions, laws, polynomial_laws,
-                                feedforwards, plants, observers, force_and_friction, loops, published_machines})
+                                feedforwards, plants, drives, observers, force_and_friction, loops, published_machines})
         for (const entry& e : members()) {
             if (argc == 3 && std::string(argv[2]) != e.block) continue;
             std::ofstream file(folder / (std::string(e.block) + ".svg"), std::ios::binary);

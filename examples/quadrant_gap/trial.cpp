@@ -26,6 +26,7 @@ struct trial_options {
     std::size_t machines = 200;
     std::uint64_t seed = 1;
     std::string json, report, keep, program;
+    std::string population = populations.front();
     std::vector<std::size_t> only;
     unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
     double limit_s = 300;
@@ -102,7 +103,10 @@ void run_trial(trial_options o) {
     outputs files;
     check_folders(o, files);
     if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
-    const auto planned_machines = plan(o.seed, o.machines);
+    const auto named = std::find(populations.begin(), populations.end(), o.population);
+    const auto of = static_cast<population>(named - populations.begin());
+    o.no_forecast = o.no_forecast || of != population::current; // of current drives only
+    const auto planned_machines = plan(o.seed, o.machines, of);
     std::vector<std::size_t> chosen(o.machines);
     for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
     if (!o.only.empty()) chosen = o.only;
@@ -166,6 +170,8 @@ void add_trial(CLI::App& app) {
     command->add_option("--machines", o->machines, "how many")->check(CLI::Range(1, 100000));
     command->add_option("--seed", o->seed, "another seed, another population; the same seed, the same result")
         ->check(CLI::NonNegativeNumber);
+    command->add_option("--population", o->population, "the machines' drives")
+        ->check(CLI::IsMember(std::vector<std::string>(populations.begin(), populations.end())));
     command->add_option("--only", o->only, "of that population, these machines alone")
         ->delimiter(',')
         ->check(CLI::NonNegativeNumber);

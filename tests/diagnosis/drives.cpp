@@ -153,6 +153,37 @@ TEST_CASE("position drive: nobody is blamed on a healthy machine") {
     m.position_gain = 40;
     CHECK(blames_nobody(diagnosed(linear(coulomb, of_position), recorded(takes::set_points, m))));
 }
+TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times") {
+    auto m = pi_drive;
+    m.off_from = 4.3;
+    m.off_until = 4.8;
+    auto r = recorded(takes::volts, m);
+    r.holdout = recorded(takes::volts, pi_drive).holdout; // it happened in the log only
+    const auto d = diagnosed(linear(coulomb, of_pi), r);
+    const cause* dropout = only_claim(d, "drive_dropout");
+    REQUIRE(dropout);
+    CHECK(value_of(*dropout, "off_from_s") == doctest::Approx(4.3).epsilon(0.005));
+    CHECK(value_of(*dropout, "off_until_s") == doctest::Approx(4.8).epsilon(0.005));
+    CHECK(d.axes[0].where[0].block == "drive");
+}
+TEST_CASE("velocity drive: where a column says that it was off, nobody is blamed") {
+    auto m = pi_drive;
+    m.off_from = 4.3;
+    m.off_until = 4.8;
+    m.enabled_column = true;
+    CHECK(blames_nobody(diagnosed(linear(coulomb, of_pi), recorded(takes::volts, m))));
+}
+TEST_CASE("position drive: a clock that runs 100 ppm slow is found") {
+    auto m = p_drive;
+    m.position_gain = 40;
+    m.clock_slip = 1e-4;
+    const std::string held =
+        R"("kind": "position", "velocity_gain_N_s_per_m": 25132.741, "position_gain_per_s": 40, "interpolation": "linear")";
+    const auto d = diagnosed(linear(coulomb, held), recorded(takes::set_points, m));
+    const cause* slip = only_claim(d, "clock_slip");
+    REQUIRE(slip);
+    CHECK(value_of(*slip, "drive.clock_slip") == doctest::Approx(1e-4).epsilon(0.1));
+}
 TEST_CASE("position servo: nobody is blamed on a healthy machine, with a measured duty or without") {
     CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo))));
     CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo, true))));

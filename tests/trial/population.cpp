@@ -101,3 +101,23 @@ TEST_CASE(
     }
     CHECK(tried > 0);
 }
+
+TEST_CASE(
+    "population: machines of every drive are read without complaint, with the columns that their drive takes") {
+    for (const population of :
+         {population::velocity_p, population::velocity_pi, population::position, population::position_servo}) {
+        CAPTURE(populations[static_cast<std::size_t>(of)]);
+        const auto singles = withheld_effects(drive_of(of));
+        CHECK(std::any_of(singles.begin(), singles.end(), [](const auto* e) { return e->box == "drive"; }));
+        for (const planned& p : plan(5, 20, of)) {
+            CHECK_FALSE(p.two_axes);
+            for (const std::string& e : p.effects) CHECK(fits(*effect_named(e), drive_of(of)));
+        }
+        const drawn_machine m = draw(3, 4, {kind::single, {"drive_gain"}, false, false, of});
+        const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(), "machine.json");
+        CHECK(machine.axes[0].drive.kind == drive_of(of));
+        std::istringstream text(log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed)));
+        CHECK_NOTHROW(check_match(machine, quadrant::diagnosis::read_log(text, "log.csv")));
+        CHECK(m.effects.at(0).size > 0.1);
+    }
+}

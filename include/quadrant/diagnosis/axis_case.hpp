@@ -85,6 +85,7 @@ public:
     /// differ by from one another.
     bool calibrated_within_tolerances() const {
         const candidate& m = path.front();
+        if (m.stops_at_a_tolerance()) return false; // it would have left them
         if (!models.within_tolerances(m.fit.ms, record.score, noise)) return false;
         if (!second) return true;
         fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};

@@ -16,7 +16,9 @@ public:
     set_point_clock(const drive_model& d, std::span<const double> values, double period)
         : values_(values), line_(d.between), loss_(std::clamp(d.loss, 0.0, 1.0)),
           delay_((d.delay + d.reading_age) / period),
-          every_(d.set_point_period > 0 ? d.set_point_period / period : 1), state_(line_state::at(values[0])) {}
+          every_((d.set_point_period > 0 ? d.set_point_period / period : 1) *
+                 (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
+          state_(line_state::at(values[0])) {}
 
     /// Mean of the set-point and of its velocity [a row] from `begin` to `end`, in rows; call with rising times.
     struct stretch {
@@ -42,8 +44,9 @@ private:
     using line_state = set_point_line<>::state;
 
     void arrive() {
+        // The newest row: one comes twice, or never, where the two clocks differ.
         const auto row =
-            static_cast<std::size_t>(std::max(0.0, std::round(static_cast<double>(next_) * every_)));
+            static_cast<std::size_t>(std::max(0.0, std::floor(static_cast<double>(next_) * every_ + 1e-6)));
         const double x = values_[std::min(row, values_.size() - 1)];
         // A lost set-point repeats the one before; on average a share of them does.
         line_.arrive(state_, x + loss_ * (state_.last[0] - x));
@@ -143,6 +146,12 @@ struct driven_motion {
     }
 
 private:
+    /// Share of a part of a row in which this drive is on.
+    double share_on(const drive_model& d, std::size_t part) const {
+        const double length = period / parts, begin = static_cast<double>(part) * length;
+        const double silent = std::min(begin + length, d.off_until) - std::max(begin, d.off_from);
+        return 1 - std::clamp(silent / length, 0.0, 1.0);
+    }
     static double between(const std::vector<double>& x, double at) {
         const auto k = std::min(static_cast<std::size_t>(at), x.size() - 2);
         return x[k] + (at - static_cast<double>(k)) * (x[k + 1] - x[k]);
@@ -182,10 +191,11 @@ private:
         const position_servo<> law(d.servo_numbers(), period / parts, already_checked());
         auto s = position_servo<>::state::at(set_point[0]);
         each_part(d, [&](std::size_t k, std::size_t at, double r, double, double x, double) {
-            if (is_off(k))
+            const double on = share_on(d, at);
+            if (is_off(k) || on == 0)
                 s = position_servo<>::state::at(x);
             else
-                out[at] = law(s, r, x);
+                out[at] = on * law(s, r, x);
         });
         return out;
     }
@@ -196,10 +206,12 @@ private:
         const double scale = in_volts ? d.velocity_per_V : 1;
         auto s = velocity_loop<>::state::at(velocity[0], d.start_force);
         each_part(d, [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {
-            if (is_off(k))
+            const double on = share_on(d, at);
+            if (is_off(k) || on == 0)
                 s = velocity_loop<>::state::at(v);
             else
-                out[at] = d.kind == drive_kind::velocity ? inner(s, scale * r, v) : law(s, r, slope, x, v);
+                out[at] =
+                    on * (d.kind == drive_kind::velocity ? inner(s, scale * r, v) : law(s, r, slope, x, v));
         });
         return out;
     }

@@ -7,6 +7,7 @@
 #include "effect/arm_length.hpp"
 #include "effect/asymmetric_friction.hpp"
 #include "effect/backlash.hpp"
+#include "effect/clock_slip.hpp"
 #include "effect/cogging.hpp"
 #include "effect/command_delay.hpp"
 #include "effect/constant_force.hpp"
@@ -14,6 +15,7 @@
 #include "effect/coulomb_friction.hpp"
 #include "effect/cross_coupling.hpp"
 #include "effect/cutting_force.hpp"
+#include "effect/drive_dropout.hpp"
 #include "effect/drive_gain.hpp"
 #include "effect/drive_limit.hpp"
 #include "effect/encoder_cyclic_error.hpp"
@@ -79,6 +81,8 @@ inline constexpr std::array listed_effects{
     &suspect::command_delay,
     &suspect::setpoint_rate_limit,
     &suspect::set_point_loss,
+    &suspect::clock_slip,
+    &suspect::drive_dropout,
     &suspect::encoder_quantization,
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,
