@@ -20,6 +20,9 @@ struct machine {
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
     bool enabled_column = false;
+    bool stock_pid =
+        false; ///< in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
+    double ff1 = 0, ff2 = 0;
 };
 enum class takes { volts, set_points, servo };
 
@@ -55,7 +58,11 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
-        const double volts = std::clamp((20 * (reference[k] - read) + speed) / m.velocity_per_V, -10.0, 10.0);
+        const auto ago = [&](std::size_t back) { return reference[k > back ? k - back : 0]; };
+        const double sum = m.stock_pid ? 1000 * (reference[k] - read) + m.ff1 * (ago(0) - ago(1)) / period +
+                                             m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period)
+                                       : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
+        const double volts = std::clamp(sum, -10.0, 10.0);
         command.push_back(kind == takes::volts ? volts : reference[k]);
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
         if (kind == takes::volts) out << ',' << volts;

@@ -111,9 +111,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
                             excess() < unexplained; // more flexible and no better: no second reading
         const bool equivalent = may_be_one(*r.name, *own) &&
                                 excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
-        const double ratio = r.name->prior.odds / own->prior.odds, odds = std::min(1.0, ratio);
+        const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within)
-            r.weight = std::max(r.weight, ratio * std::exp(-excess() / unexplained) * out.front().weight);
+            r.weight = std::max(r.weight, odds * std::exp(-excess() / unexplained) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
         sum += r.weight;

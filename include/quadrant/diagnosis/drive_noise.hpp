@@ -18,7 +18,6 @@ inline std::vector<double> reaction_to_reading(const plant_model& described, con
     rest.period = of.period;
     rest.in_volts = of.in_volts;
     rest.constant = of.constant;
-    rest.band_Hz = of.band_Hz;
     const std::size_t n = of.position.size();
     rest.set_point.assign(n, 0.0);
     rest.position.assign(n, 0.0);

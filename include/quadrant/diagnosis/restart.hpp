@@ -11,8 +11,10 @@ namespace quadrant::diagnosis {
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
     if (plant.drive.has_integral()) {
-        plant.drive.start_force = 0;
-        plant = fitter(record.observer, record.score).fit(plant, {start_of_drive(record.scale)}, 4).plant;
+        plant.drive.start_force = -plant.static_force(record.position[0]); // what a drive at rest holds
+        // What drifts says nothing of where it began.
+        if (record.observer.drift_pole == 1)
+            plant = fitter(record.observer, record.score).fit(plant, {start_of_drive(record.scale)}, 4).plant;
     }
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);

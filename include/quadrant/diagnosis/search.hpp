@@ -275,7 +275,7 @@ public:
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m" && !is_of_record(p))
+                if (p.key != "presliding_length_m" && !is_of_record(p) && !is_of_feedback(p))
                     p.of(plants[j]) = p.from_fit(low + share * (high - low));
             }
         std::vector<std::vector<double>> e(plants.size());
@@ -426,6 +426,12 @@ public:
     }
 
 private:
+    /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its path does not depend on them; only a
+    /// replay of the logged motion with another gain differs, by far more than two machines would.
+    bool is_of_feedback(const parameter& p) const {
+        const drive_kind kind = given_.fit.plant.drive.kind;
+        return p.key.starts_with("drive.") && kind != drive_kind::position_servo;
+    }
     /// Mean square of a channel above what it sees of the noise [m^2].
     static double left_in(const std::vector<double>& ms, const channel& c, double sigma) {
         return mean_of(ms) - square(c.noise_gain * sigma);
