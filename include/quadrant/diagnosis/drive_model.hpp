@@ -31,8 +31,8 @@ struct drive_model {
     /// How old a reading of the position is beside what the drive received and what was measured behind it, which other
     /// registers hold: no file can know it [s].
     double reading_age = 0;
-    /// How long after the row's stamp what is measured behind the drive was read: before or after the drive took the row's set-point,
-    /// which no file can know either [s].
+    /// How long before what is measured behind the drive was read the drive took the set-point of its row, beside its delay: registers are read
+    /// before or after the goal is written, which no file can know either [s].
     double tap_lateness = 0;
 
     drive_model() = default;

@@ -114,11 +114,11 @@ struct driven_motion {
         const auto fine = in_parts(d);
         replay out{row_means(fine), {}};
         if (tapped()) {
-            out.beside = beside(fine, (d.reading_age + d.tap_lateness) / period);
+            out.beside = beside(seen_by_tap(d, fine), d.reading_age / period);
             const auto last = static_cast<double>(measured.size() - 1);
             for (std::size_t k = 0; k < out.command.size(); ++k) {
                 if (is_off(k)) continue;
-                const double at = static_cast<double>(k) + 0.5 - (d.reading_age + d.tap_lateness) / period;
+                const double at = static_cast<double>(k) + 0.5 - d.reading_age / period;
                 out.command[k] += between(out.beside, std::clamp(at, 0.0, last));
             }
         }
@@ -154,6 +154,12 @@ private:
         const double length = period / parts, begin = static_cast<double>(part) * length;
         const double silent = std::min(begin + length, d.off_until) - std::max(begin, d.off_from);
         return 1 - std::clamp(silent / length, 0.0, 1.0);
+    }
+    /// What the law gives at the moments of the tap: with the set-point that the drive had then.
+    std::vector<double> seen_by_tap(drive_model d, const std::vector<double>& fine) const {
+        if (d.tap_lateness == 0) return fine;
+        d.delay -= d.tap_lateness;
+        return in_parts(d);
     }
     static double between(const std::vector<double>& x, double at) {
         const auto k = std::min(static_cast<std::size_t>(at), x.size() - 2);
