@@ -7,8 +7,8 @@
 // claimed for what is behind the command; with it the cover is named and its number found.
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
-#include <quadrant/diagnosis/own_controller.hpp>
-#include <quadrant/diagnosis/own_effect.hpp>
+#include <quadrant/diagnosis/effect/own_effect.hpp>
+#include <quadrant/diagnosis/machine/own_controller.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 

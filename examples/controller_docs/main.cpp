@@ -4,7 +4,7 @@
 #include "page.hpp"
 #include "schema.hpp"
 
-#include <quadrant/diagnosis/read/text.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
 
 #include <fstream>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "quadrant/diagnosis/read/machine_keys.hpp"
+#include "quadrant/diagnosis/machine_file/machine_keys.hpp"
 
 /// What the JSON schemas say of effects: definitions that follow from the records of the list.
 namespace effect_tables {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "quadrant/diagnosis/read/effect_keys.hpp"
+#include "quadrant/diagnosis/machine_file/effect_keys.hpp"
 
 #include <filesystem>
 

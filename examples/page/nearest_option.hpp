@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/read/json_node.hpp>
+#include <quadrant/diagnosis/text/json_node.hpp>
 
 #include <CLI/CLI.hpp>
 

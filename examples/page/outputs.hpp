@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/output_file.hpp>
+#include <quadrant/diagnosis/text/output_file.hpp>
 
 #include <cstdio>
 #include <string>

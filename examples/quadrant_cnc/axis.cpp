@@ -4,7 +4,7 @@
 
 #include "drive_side.hpp"
 
-#include <quadrant/diagnosis/controller_box.hpp>
+#include <quadrant/diagnosis/where/controller_box.hpp>
 
 namespace quadrant_cnc {
 

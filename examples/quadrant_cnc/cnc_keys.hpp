@@ -2,7 +2,7 @@
 #pragma once
 #include "cnc_file.hpp"
 
-#include <quadrant/diagnosis/read/machine_keys.hpp>
+#include <quadrant/diagnosis/machine_file/machine_keys.hpp>
 
 /// The keys of a machine's file. A new one is a line here and in docs/schema/cnc.schema.json.
 namespace quadrant_cnc {

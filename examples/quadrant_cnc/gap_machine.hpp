@@ -2,7 +2,7 @@
 #pragma once
 #include "cnc_file.hpp"
 
-#include <quadrant/diagnosis/machine.hpp>
+#include <quadrant/diagnosis/machine/machine.hpp>
 
 #include <algorithm>
 #include <cmath>

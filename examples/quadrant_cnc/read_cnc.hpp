@@ -4,7 +4,7 @@
 #include "law_of_drive.hpp"
 
 #include <quadrant/diagnosis/controller/json.hpp>
-#include <quadrant/diagnosis/read/text.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
 
 namespace quadrant_cnc {
 

@@ -4,8 +4,8 @@
 #include "sha256.hpp"
 
 #include <quadrant/diagnosis/apply.hpp>
-#include <quadrant/diagnosis/read/text.hpp>
 #include <quadrant/diagnosis/read_diagnosis.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <memory>

@@ -7,9 +7,9 @@
 #include <quadrant/diagnosis/circle/find_circles.hpp>
 #include <quadrant/diagnosis/circle/read_radius.hpp>
 #include <quadrant/diagnosis/circle/write_circle.hpp>
-#include <quadrant/diagnosis/read/text.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <memory>

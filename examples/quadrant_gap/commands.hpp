@@ -2,7 +2,7 @@
 #pragma once
 #include "../page/outputs.hpp"
 
-#include <quadrant/diagnosis/bad_input.hpp>
+#include <quadrant/diagnosis/text/bad_input.hpp>
 #include <quadrant/error.hpp>
 
 #include <CLI/CLI.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 #include "sha256.hpp"
 
-#include <quadrant/diagnosis/read/text.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
 
 namespace quadrant_gap {
 

@@ -2,7 +2,7 @@
 // quadrant-gap import: another program's log in the columns and units of FORMAT.md.
 #include "commands.hpp"
 
-#include <quadrant/diagnosis/import/check_physics.hpp>
+#include <quadrant/diagnosis/check_physics.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <iostream>

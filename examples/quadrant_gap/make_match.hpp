@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/at_period.hpp>
-#include <quadrant/diagnosis/import/check_physics.hpp>
+#include <quadrant/diagnosis/check_physics.hpp>
+#include <quadrant/diagnosis/log/at_period.hpp>
 #include <quadrant/diagnosis/match.hpp>
 
 #include <fmt/format.h>

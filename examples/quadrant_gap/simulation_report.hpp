@@ -3,7 +3,7 @@
 #include "report.hpp"
 #include "simulation_summary.hpp"
 
-#include <quadrant/diagnosis/log.hpp>
+#include <quadrant/diagnosis/log/log.hpp>
 
 /// What a simulation leaves, as one HTML file that needs no network: the page of a diagnosis without causes.
 namespace quadrant_gap {

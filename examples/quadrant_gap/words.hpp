@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "quadrant/diagnosis/added/words.hpp"
-#include "quadrant/diagnosis/effect_list.hpp"
-#include "quadrant/diagnosis/result.hpp"
-#include "quadrant/diagnosis/scoring.hpp"
+#include "quadrant/diagnosis/effect/effect_list.hpp"
+#include "quadrant/diagnosis/fit/scoring.hpp"
+#include "quadrant/diagnosis/result/result.hpp"
+#include "quadrant/diagnosis/result/words.hpp"
 
 /// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
 namespace quadrant_gap {

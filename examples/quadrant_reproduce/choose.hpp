@@ -2,7 +2,7 @@
 #pragma once
 #include "row.hpp"
 
-#include <quadrant/diagnosis/read/json_node.hpp>
+#include <quadrant/diagnosis/text/json_node.hpp>
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/axis_words.hpp>
 #include <quadrant/diagnosis/init.hpp>
+#include <quadrant/diagnosis/text/axis_words.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -8,9 +8,9 @@
 #include "quadrant_cnc/read_cnc.hpp"
 #include "quadrant_cnc/simulate.cpp"
 
-#include <quadrant/diagnosis/controller_mismatch.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/where/controller_mismatch.hpp>
 #include <quadrant/diagnosis/write_machine.hpp>
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 // A signal that is added to the command: found with its form and its times, and never taken for a gain.
 #include "workshop.hpp"
 
-#include <quadrant/diagnosis/added/words.hpp>
+#include <quadrant/diagnosis/result/words.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #include "workshop.hpp"
 
 #include <quadrant/diagnosis/compensate.hpp>
-#include <quadrant/diagnosis/compensation_result.hpp>
+#include <quadrant/diagnosis/compensate/compensation_result.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/closed_loop.hpp>
-#include <quadrant/diagnosis/controller_mismatch.hpp>
-#include <quadrant/diagnosis/read/text.hpp>
+#include <quadrant/diagnosis/how_far/closed_loop.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/text/text.hpp>
+#include <quadrant/diagnosis/where/controller_mismatch.hpp>
 
 #include <cmath>
 #include <numbers>

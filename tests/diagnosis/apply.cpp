@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
-#include "quadrant/diagnosis/plant_model.hpp"
-#include "quadrant/diagnosis/read/machine_keys.hpp"
+#include "quadrant/diagnosis/machine_file/machine_keys.hpp"
+#include "quadrant/diagnosis/model/plant_model.hpp"
 #include "quadrant/diagnosis/read_diagnosis.hpp"
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_diagnosis.hpp"

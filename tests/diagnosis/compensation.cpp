@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "quadrant/diagnosis/advice.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/compensate.hpp"
-#include "quadrant/diagnosis/effect_list.hpp"
+#include "quadrant/diagnosis/compensate/advice.hpp"
+#include "quadrant/diagnosis/effect/effect_list.hpp"
 #include "quadrant/diagnosis/write_compensation.hpp"
 #include "workshop.hpp"
 
@@ -173,7 +173,8 @@ TEST_CASE("compensate: an effect without a feedforward gets advice and no gain, 
     CHECK(!a.compensations[0].claimed);      // the integral pays it already
     for (const effect* e : every_effect()) { // either a feedforward or advice, for every name
         CAPTURE(e->name);
-        CHECK((advice_on(e->name, plant_model(file.axes[0], 2e-7), 1e-7, "V").empty() == !e->compensation.empty()));
+        CHECK((advice_on(e->name, plant_model(file.axes[0], 2e-7), 1e-7, "V").empty() ==
+               !e->compensation.empty()));
         CHECK(!e->remedy.empty());
     }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 
-#include <quadrant/diagnosis/blind_spots.hpp>
-#include <quadrant/diagnosis/effect_list.hpp>
+#include <quadrant/diagnosis/effect/effect_list.hpp>
+#include <quadrant/diagnosis/next/blind_spots.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 using namespace workshop;

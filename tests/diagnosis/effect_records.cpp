@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "quadrant/diagnosis/described_numbers.hpp"
-#include "quadrant/diagnosis/plant_model.hpp"
+#include "quadrant/diagnosis/effect/described_numbers.hpp"
+#include "quadrant/diagnosis/model/plant_model.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "quadrant/diagnosis/causes.hpp"
+#include "quadrant/diagnosis/which/causes.hpp"
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>

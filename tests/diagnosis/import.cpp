@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "quadrant/diagnosis/import/check_physics.hpp"
+#include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "workshop.hpp"
 

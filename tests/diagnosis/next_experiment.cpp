@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 
-#include <quadrant/diagnosis/next_experiment.hpp>
+#include <quadrant/diagnosis/next/next_experiment.hpp>
 
 using namespace workshop;
 

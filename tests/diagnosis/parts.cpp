@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "workshop.hpp"
 
-#include <quadrant/diagnosis/causes.hpp>
-#include <quadrant/diagnosis/closed_loop.hpp>
 #include <quadrant/diagnosis/controller/cascade_p_pi.hpp>
-#include <quadrant/diagnosis/places.hpp>
+#include <quadrant/diagnosis/how_far/closed_loop.hpp>
+#include <quadrant/diagnosis/where/places.hpp>
+#include <quadrant/diagnosis/which/causes.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 

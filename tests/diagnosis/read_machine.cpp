@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/read_machine.hpp"
+#include "quadrant/diagnosis/machine_file/machine_keys.hpp"
 #include "quadrant/diagnosis/match.hpp"
-#include "quadrant/diagnosis/plant_model.hpp"
-#include "quadrant/diagnosis/read/machine_keys.hpp"
-#include "quadrant/diagnosis/read/text.hpp"
+#include "quadrant/diagnosis/model/plant_model.hpp"
+#include "quadrant/diagnosis/text/text.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
 
 #include <doctest/doctest.h>

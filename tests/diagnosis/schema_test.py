@@ -35,7 +35,7 @@ def validator(name):
 
 def keys_of_the_reader():
     """Box of the machine file -> keys of the controller that read/machine_keys.hpp knows. Those of effects are generated (docs.effects)."""
-    text = (root / "include/quadrant/diagnosis/read/machine_keys.hpp").read_text(encoding="utf-8")
+    text = (root / "include/quadrant/diagnosis/machine_file/machine_keys.hpp").read_text(encoding="utf-8")
     tables = {}
     return {box: {key for table in names for key in re.findall(r'"(\w+)"', re.search(rf"\b{table}\{{(.*?)\n?\}};", text, re.S)[1])}
             for box, names in tables.items()}

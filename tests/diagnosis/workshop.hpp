@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/log.hpp>
-#include <quadrant/diagnosis/machine.hpp>
-#include <quadrant/diagnosis/scales.hpp>
+#include <quadrant/diagnosis/fit/scales.hpp>
+#include <quadrant/diagnosis/log/log.hpp>
+#include <quadrant/diagnosis/machine/machine.hpp>
 
 #include <cmath>
 #include <functional>

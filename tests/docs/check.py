@@ -136,7 +136,7 @@ def options(program, subcommand):
     for names in re.findall(r"(?:add_option|add_flag|set_version_flag)\(\s*\"([^\"]*)\"", text):
         found.update(n for n in names.split(",") if n.startswith("--"))
     if program == "quadrant-gap" and subcommand == "init":  # its options are a table, with other names for a rotary axis
-        table = (root / "include/quadrant/diagnosis/init_fields.hpp").read_text()
+        table = (root / "include/quadrant/diagnosis/machine_file/init_fields.hpp").read_text()
         for name in re.findall(r"init_field\{\"([\w-]+)\"", table):
             found.update({f"--{name}", "--" + name.replace("mass", "inertia").replace("force-", "torque-")})
     return found

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "diagnosis/claims.hpp"
 
-#include <quadrant/diagnosis/search.hpp>
+#include <quadrant/diagnosis/which/search.hpp>
 
 using namespace workshop;
 

@@ -3,7 +3,7 @@
 #include "quadrant_gap/words.hpp"
 
 #include <quadrant/diagnosis/apply.hpp>
-#include <quadrant/diagnosis/plant_model.hpp>
+#include <quadrant/diagnosis/model/plant_model.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 #include <quadrant/diagnosis/write_machine.hpp>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "quadrant/diagnosis/result.hpp"
+#include "quadrant/diagnosis/result/result.hpp"
 
 /// Made-up diagnoses for the tests of the report: an axis like EMPS, 24 s at 1 kHz.
 namespace sample {

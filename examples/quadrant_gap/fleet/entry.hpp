@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/bad_input.hpp>
+#include <quadrant/diagnosis/text/bad_input.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -2,7 +2,7 @@
 #pragma once
 #include "chart.hpp"
 
-#include "quadrant/diagnosis/signals.hpp"
+#include "quadrant/diagnosis/log/signals.hpp"
 
 /// One axis in pictures: its charts, and where the gap sits.
 namespace quadrant_gap {

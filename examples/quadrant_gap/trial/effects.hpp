@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "machine.hpp"
-#include "quadrant/diagnosis/effect_list.hpp"
+#include "quadrant/diagnosis/effect/effect_list.hpp"
 #include "random.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "quadrant/diagnosis/effect_list.hpp"
+#include "quadrant/diagnosis/effect/effect_list.hpp"
 
 #include <algorithm>
 #include <cmath>

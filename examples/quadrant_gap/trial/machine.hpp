@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "quadrant/diagnosis/drive_description.hpp"
-#include "quadrant/diagnosis/own_law.hpp"
+#include "quadrant/diagnosis/machine/drive_description.hpp"
+#include "quadrant/diagnosis/machine/own_law.hpp"
 
 #include <cstdint>
 #include <string>

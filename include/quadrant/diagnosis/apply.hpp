@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "machine.hpp"
-#include "result.hpp"
-#include "separate_compilation.hpp"
+#include "machine/machine.hpp"
+#include "result/result.hpp"
+#include "text/separate_compilation.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -36,5 +36,5 @@ QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& mac
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/apply.hpp"
+#    include "apply.ipp"
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "compensation_result.hpp"
-#include "log.hpp"
-#include "separate_compilation.hpp"
+#include "compensate/compensation_result.hpp"
+#include "log/log.hpp"
+#include "text/separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -17,5 +17,5 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/compensate.hpp"
+#    include "compensate.ipp"
 #endif

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "log.hpp"
-#include "machine.hpp"
-#include "result.hpp"
-#include "rules.hpp"
-#include "separate_compilation.hpp"
+#include "effect/rules.hpp"
+#include "log/log.hpp"
+#include "machine/machine.hpp"
+#include "result/result.hpp"
+#include "text/separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -21,5 +21,5 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/diagnose.hpp"
+#    include "diagnose.ipp"
 #endif

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "log.hpp"
-#include "machine.hpp"
-#include "result.hpp"
-#include "separate_compilation.hpp"
+#include "log/log.hpp"
+#include "machine/machine.hpp"
+#include "result/result.hpp"
+#include "text/separate_compilation.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -39,5 +39,5 @@ QUADRANT_DIAGNOSIS_DECL nlohmann::ordered_json to_json(const forecast_result& f)
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/forecast.hpp"
+#    include "forecast.ipp"
 #endif

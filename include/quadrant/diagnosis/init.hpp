@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "fit/regression.hpp"
 #include "import/units.hpp"
-#include "init_fields.hpp"
+#include "log/sensor_box.hpp"
+#include "machine_file/init_fields.hpp"
 #include "read_machine.hpp"
-#include "regression.hpp"
-#include "sensor_box.hpp"
 #include "write_machine.hpp"
 
 #include <map>

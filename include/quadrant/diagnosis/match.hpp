@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "bad_input.hpp"
-#include "log.hpp"
-#include "machine.hpp"
+#include "log/log.hpp"
+#include "machine/machine.hpp"
+#include "text/bad_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "result.hpp"
-#include "separate_compilation.hpp"
+#include "result/result.hpp"
+#include "text/separate_compilation.hpp"
 
 #include <filesystem>
 #include <string_view>
@@ -15,5 +15,5 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result read_diagnosis(const std::filesystem::p
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/read_diagnosis.hpp"
+#    include "read_diagnosis.ipp"
 #endif

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "log.hpp"
-#include "read/log_header.hpp"
-#include "read/log_rows.hpp"
-#include "sensor_box.hpp"
+#include "log/log.hpp"
+#include "log/log_header.hpp"
+#include "log/log_rows.hpp"
+#include "log/sensor_box.hpp"
 
 namespace quadrant::diagnosis {
 

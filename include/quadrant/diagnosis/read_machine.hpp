@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "machine.hpp"
-#include "separate_compilation.hpp"
+#include "machine/machine.hpp"
+#include "text/separate_compilation.hpp"
 
 #include <filesystem>
 #include <string_view>
@@ -15,5 +15,5 @@ QUADRANT_DIAGNOSIS_DECL machine_description read_machine(const std::filesystem::
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/read_machine.hpp"
+#    include "read_machine.ipp"
 #endif

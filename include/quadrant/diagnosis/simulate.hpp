@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "log.hpp"
-#include "machine.hpp"
-#include "result.hpp"
-#include "separate_compilation.hpp"
+#include "log/log.hpp"
+#include "machine/machine.hpp"
+#include "result/result.hpp"
+#include "text/separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 
@@ -37,5 +37,5 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "impl/simulate.hpp"
+#    include "simulate.ipp"
 #endif

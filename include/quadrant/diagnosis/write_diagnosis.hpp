@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "added/words.hpp"
-#include "bad_input.hpp"
-#include "output_file.hpp"
-#include "result.hpp"
+#include "result/result.hpp"
+#include "result/words.hpp"
+#include "text/bad_input.hpp"
+#include "text/output_file.hpp"
 
 #include <nlohmann/json.hpp>
 

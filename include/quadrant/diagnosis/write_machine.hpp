@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "controller/json.hpp"
-#include "read/machine_keys.hpp"
+#include "machine_file/machine_keys.hpp"
 
 namespace quadrant::diagnosis {
 

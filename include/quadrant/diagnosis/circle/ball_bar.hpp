@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../bad_input.hpp"
+#include "../text/bad_input.hpp"
 #include "joint_fit.hpp"
 #include "left_over.hpp"
 #include "name_left_over.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../bad_input.hpp"
-#include "../log.hpp"
+#include "../log/log.hpp"
+#include "../text/bad_input.hpp"
 #include "run.hpp"
 
 #include <algorithm>

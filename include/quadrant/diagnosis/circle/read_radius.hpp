@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/csv_cells.hpp"
-#include "../read/decimal.hpp"
-#include "../read/sample_clock.hpp"
-#include "../read/text.hpp"
+#include "../log/sample_clock.hpp"
+#include "../text/csv_cells.hpp"
+#include "../text/decimal.hpp"
+#include "../text/text.hpp"
 #include "run.hpp"
 
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 #include "../../compose/cascade_p_pi.hpp"
 #include "../../filter/two_sample_derivative.hpp"
-#include "../own_controller.hpp"
+#include "../machine/own_controller.hpp"
 #include "kind.hpp"
 
 #include <type_traits>

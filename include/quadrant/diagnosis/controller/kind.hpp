@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../machine.hpp"
-#include "../read/json_keys.hpp"
+#include "../machine/machine.hpp"
+#include "../text/json_keys.hpp"
 #include "running.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../separate_compilation.hpp"
+#include "../text/separate_compilation.hpp"
 #include "kind.hpp"
 
 namespace quadrant::diagnosis {
@@ -26,5 +26,5 @@ inline const controller_kind& kind_of(const controller_description& c) {
 } // namespace quadrant::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-#    include "../impl/controllers.hpp"
+#    include "kinds.ipp"
 #endif

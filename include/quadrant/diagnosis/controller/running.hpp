@@ -2,7 +2,7 @@
 #pragma once
 #include "../../control/axis_law.hpp"
 #include "../../in_si.hpp"
-#include "description.hpp"
+#include "../machine/controller_description.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../record.hpp"
+#include "../fit/record.hpp"
 #include "effect_record.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../key_value.hpp"
+#include "../text/key_value.hpp"
 #include "machine_key.hpp"
 #include "trial_machine.hpp"
 

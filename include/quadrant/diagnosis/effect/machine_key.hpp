@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../key_unit.hpp"
-#include "../machine.hpp"
-#include "../read/number_rule.hpp"
+#include "../machine/machine.hpp"
+#include "../text/key_unit.hpp"
+#include "../text/number_rule.hpp"
 
 #include <concepts>
 #include <variant>

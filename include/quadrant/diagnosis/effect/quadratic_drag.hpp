@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../own_effect.hpp"
+#include "own_effect.hpp"
 
 namespace quadrant::diagnosis::detail {
 

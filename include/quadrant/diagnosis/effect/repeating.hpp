@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../spatial_spectrum.hpp"
+#include "../fit/spatial_spectrum.hpp"
 #include "effect.hpp"
 
 #include <complex>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../rules.hpp"
 #include "effect.hpp"
+#include "rules.hpp"
 
 namespace quadrant::diagnosis::detail {
 

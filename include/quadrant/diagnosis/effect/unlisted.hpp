@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../own_effect.hpp"
+#include "own_effect.hpp"
 
 /// What no list names: a force of any smooth form over one quantity. Never a cause; a rival to the causes. Where such a form
 /// predicts held-out motion better than a name does, the name is the nearest of a list, not the effect.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/decimal.hpp"
-#include "../read/text.hpp"
+#include "../text/decimal.hpp"
+#include "../text/text.hpp"
 #include "map.hpp"
 
 namespace quadrant::diagnosis::detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/json_node.hpp"
-#include "../read/row_clock.hpp"
+#include "../log/row_clock.hpp"
+#include "../text/json_node.hpp"
 #include "foreign_lines.hpp"
 
 namespace quadrant::diagnosis::detail {

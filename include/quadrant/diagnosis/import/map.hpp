@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../machine.hpp"
+#include "../machine/machine.hpp"
 #include "units.hpp"
 
 #include <optional>

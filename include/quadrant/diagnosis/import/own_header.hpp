@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/axis_name.hpp"
+#include "../text/axis_name.hpp"
 #include "foreign_lines.hpp"
 
 namespace quadrant::diagnosis {

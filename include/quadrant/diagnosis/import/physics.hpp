@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../log.hpp"
-#include "../scales.hpp"
+#include "../fit/scales.hpp"
+#include "../log/log.hpp"
 
 #include <Eigen/Dense>
 

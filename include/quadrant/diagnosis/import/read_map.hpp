@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../read/json_keys.hpp"
+#include "../text/json_keys.hpp"
 #include "map.hpp"
 
 namespace quadrant::diagnosis {

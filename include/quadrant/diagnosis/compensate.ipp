@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "apply.hpp"
+#include "compensate/advice.hpp"
+#include "compensate/tracking_forecast.hpp"
+#include "compensate/velocity_drive_feedforward.hpp"
+#include "fit/neighbour.hpp"
+#include "fit/with_drives.hpp"
+#include "match.hpp"
+
+#include <random>
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// A diagnosis with every fitted value elsewhere: place() says where, -1 and 1 at the ends of its interval. Values are moved
+/// independently, since a diagnosis does not say how they go together.
+template <class Place> diagnosis_result moved(diagnosis_result d, Place place) {
+    const auto move = [&](std::vector<parameter_estimate>& parameters) {
+        for (parameter_estimate& p : parameters) {
+            const bool shares = p.key == "gms_weights", stiffness = p.key == "gms_stiffness_N_per_m";
+            double sum = 0;
+            for (estimate& e : p.values) {
+                const double z = place(), was = e.value;
+                e.value += z * std::max(0.0, z > 0 ? e.high - e.value : e.value - e.low);
+                if (shares || stiffness) e.value = std::max(e.value, 0.1 * was);
+                sum += e.value;
+            }
+            for (estimate& e : p.values)
+                if (shares) e.value /= sum;
+        }
+    };
+    for (cause& c : d.causes) move(c.parameters);
+    for (axis_result& a : d.axes) move(a.calibrated);
+    return d;
+}
+
+/// Machines of which the diagnosis may be: one drawn half of the intervals apart, the other at their ends.
+struct drawn_machines {
+    std::vector<machine_description> inside, at_ends;
+
+    drawn_machines(const machine_description& machine, const diagnosis_result& d, double at_least) {
+        constexpr std::size_t drawn = 16, ends = 8, tries = 20;
+        std::mt19937_64 random(20080901);
+        const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
+        const auto normal = [&] { // a standard deviation is 1/1.96 of half an interval
+            return std::sqrt(-2 * std::log(uniform())) * std::cos(2 * std::numbers::pi * uniform()) / 1.96;
+        };
+        const auto end = [&] { return uniform() < 0.5 ? -1.0 : 1.0; };
+        const auto fill = [&](std::vector<machine_description>& out, std::size_t count, auto place) {
+            for (std::size_t i = 0; i < count * tries && out.size() < count; ++i) try {
+                    out.push_back(apply(machine, moved(d, place), at_least));
+                } catch (const bad_input&) { // values that no machine has: drawn again
+                }
+        };
+        fill(inside, drawn, normal);
+        fill(at_ends, ends, end);
+    }
+};
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description& machine,
+                                                       const diagnosis_result& d, const machine_log& as_read,
+                                                       double at_least) {
+    const machine_log log = with_drives(machine, as_read);
+    constexpr double shortest_s = 0.5;
+    const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;
+    if (seconds < shortest_s)
+        throw bad_input(log.file, fmt::format("{} samples are {:.3g} s: a forecast needs at least {} s",
+                                              log.samples, seconds, shortest_s));
+    for (const axis_description& axis : machine.axes)
+        if (axis.kind == axis_kind::rotary)
+            throw bad_input(
+                machine.file,
+                fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
+    refuse_driven(machine, "a feedforward", drive_kind::velocity);
+    const machine_description corrected = apply(machine, d, at_least);
+    const detail::drawn_machines drawn(machine, d, at_least);
+    compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
+    for (std::size_t i = 0; i < corrected.axes.size(); ++i) {
+        const axis_description& axis = corrected.axes[i];
+        const auto logged = std::find_if(log.axes.begin(), log.axes.end(),
+                                         [&](const axis_log& l) { return l.name == axis.name && !l.still; });
+        if (logged == log.axes.end()) continue;
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s,
+                                                        bandwidth_of(axis, *logged, machine.sample_period_s));
+        const detail::tracking_forecast forecast(axis, coupled, machine.sample_period_s);
+        compensated_axis& a = out.axes.emplace_back();
+        a.name = axis.name;
+        a.command_unit = axis.command_unit;
+        std::vector<std::string> causes;
+        for (const cause& c : d.causes) {
+            if (c.axis != axis.name || c.probability < at_least) continue;
+            const std::string text =
+                advice_on(c.effect, forecast.plant(), axis.encoder.resolution_m, axis.command_unit);
+            if (!text.empty())
+                a.others.push_back({c.effect, text});
+            else if (!c.parameters.empty())
+                causes.push_back(c.effect);
+        }
+        const controller_description controller = axis.controller.value_or(controller_description());
+        if (axis.drive.closes()) {
+            if (axis.controller)
+                a.compensations =
+                    detail::for_velocity_drive(forecast.plant(), controller, machine.sample_period_s,
+                                               coupled.drive->in_volts, std::move(causes));
+        } else {
+            detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s,
+                                          std::move(causes));
+            a.compensations = ways.take();
+            for (const std::string& effect : ways.without_key())
+                a.others.push_back(
+                    {effect,
+                     fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
+        }
+        if (!axis.controller) {
+            out.notes.push_back(
+                fmt::format("axis {}: no controller is described: nothing is forecast", a.name));
+            continue;
+        }
+        std::vector<const axis_description*> inside, at_ends;
+        for (const auto& m : drawn.inside) inside.push_back(&m.axes[i]);
+        for (const auto& m : drawn.at_ends) at_ends.push_back(&m.axes[i]);
+        if (inside.empty()) throw bad_input(machine.file, "the intervals of the diagnosis hold no machine");
+        forecast.run(a, inside, at_ends);
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "effect/effect_list.hpp"
+#include "fit/neighbour.hpp"
+#include "fit/with_drives.hpp"
+#include "how_far/how_far.hpp"
+#include "next/blind_spots.hpp"
+#include "next/next_experiment.hpp"
+#include "text/bad_input.hpp"
+#include "which/as_applied.hpp"
+#include "which/block_places.hpp"
+#include "which/calibrated.hpp"
+#include "which/causes.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
+    if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
+        const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
+        // Suspects for what calibration leaves are no finding where that is immaterial.
+        const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
+                                               c.models.immaterial(c.path.front()));
+        if (!silent)
+            return std::all_of(causes.begin(), causes.end(), claimed) || c.claims_suffice()
+                       ? verdict::explained
+                       : verdict::partly_explained;
+        const auto& given = c.models.given();
+        const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
+                              c.models.structure(given, c.noise) < c.limits.structure;
+        return as_given ? verdict::no_gap : verdict::within_tolerance;
+    }
+    const bool blamed =
+        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.group_probability >= 0.5; });
+    if (!blamed && !c.count_unnamed && !c.controller_open() && c.calibrated_within_tolerances())
+        return verdict::within_tolerance;
+    const bool helps =
+        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.shrink.value > 0.2; });
+    return helps ? verdict::partly_explained : verdict::unexplained;
+}
+
+/// What is left when every cause is added: how large, and in which regimes.
+inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_result& result,
+                          const std::vector<cause>& causes) {
+    const double floor = square(c.floor_force());
+    double before = std::max(0.0, square(result.gap.force_rms_N) - floor);
+    double after = c.at_floor() ? 0 : std::max(0.0, square(result.gap_after.force_rms_N) - floor);
+    if (c.count_unnamed)
+        before = after = std::max(before, floor); // finer steps are missing, and no suspect gives them
+    std::string text = "axis " + c.axis.name + ": ";
+    if (c.controller_differs()) {
+        before += square(rms(c.command_difference(c.log, *c.axis.controller)));
+        after += square(rms(c.command_left()));
+        if (c.controller_open())
+            text += std::string("the controller that ran is not the one described") +
+                    (c.controller_unnamed ? ", which the machine file excludes; "
+                                          : " and no single key of it mends the replay; ");
+    }
+    if (c.count_unnamed)
+        text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,
+                       c.axis.encoder.resolution_m);
+    if (c.at_floor()) {
+        text += worded("%.3g N rms behind the command (floor %.3g N), which does not matter",
+                       result.gap_after.force_rms_N, c.floor_force());
+    } else {
+        text += worded("%.3g N rms behind the command (floor %.3g N)", result.gap_after.force_rms_N,
+                       c.floor_force());
+        auto views = regimes(c.models.held_out_residual(c.best()), c.record);
+        std::erase_if(views, [](const place& v) { // an even spread over time says nothing
+            return v.view == "time" && v.share.value > 0.35 && v.share.value < 0.65;
+        });
+        std::stable_sort(views.begin(), views.end(),
+                         [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
+        for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
+            text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
+        const auto with_form =
+            c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+        for (std::size_t i = 0; i < with_form.size(); ++i)
+            if (const double share = c.takes_off(with_form[i], c.best());
+                share > 0.5 && c.models.pays(with_form[i], c.best()))
+                text += worded("; a force that follows %s and is in no list takes %.0f %% off",
+                               std::string(unlisted::curves[i]->name).c_str(), 100 * share);
+        for (const cause& x : causes)
+            if (!x.better_form.empty())
+                text += worded("; a force that follows %s and is in no list predicts better than %s",
+                               x.better_form.c_str(), x.effect.c_str());
+    }
+    out.share_unexplained =
+        std::max(out.share_unexplained, before > 0 ? std::clamp(after / before, 0.0, 1.0) : 0);
+    out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + text_of(text, c.axis.kind);
+}
+
+/// Keys and sentences as the axis' own kind has them.
+inline void put_in_words(axis_kind kind, std::vector<parameter_estimate>& parameters) {
+    for (auto& p : parameters) {
+        const machine_key* key = key_named(p.key);
+        p.key = key ? key->name_for(kind) : key_of(p.key, kind);
+    }
+}
+inline void put_in_words(axis_kind kind, std::vector<place>& places) {
+    for (place& p : places) p.finding = text_of(p.finding, kind);
+}
+inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
+    for (cause& x : causes) {
+        put_in_words(kind, x.parameters);
+        put_in_words(kind, x.with_suspects);
+        for (reading& r : x.readings) put_in_words(kind, r.parameters);
+        x.exciting_motion = text_of(x.exciting_motion, kind);
+    }
+}
+
+/// One block and no hold-out log: nothing is left to test a cause on that was not fitted.
+inline bool untested(const axis_case& c) { return !c.second && c.record.segments < 2; }
+/// A cause that nothing has tested is a suspect, as one of a controller that the replay does not confirm.
+inline void to_suspects(std::vector<cause>& causes) {
+    constexpr double guess = 0.4;
+    for (cause& x : causes) {
+        x.probability = std::min(x.probability, guess);
+        x.group_probability = std::min(x.group_probability, guess);
+    }
+}
+
+/// A value that the tolerance stopped: either the tolerance is too narrow, or something else acts.
+inline void note_bounds(diagnosis_result& out, const axis_result& result) {
+    for (const parameter_estimate& p : result.calibrated)
+        if (p.on_bound)
+            out.notes.push_back(
+                worded("axis %s: the calibrated %s stops at the end of its tolerance: the tolerance "
+                       "is too narrow, or an effect acts that is not named.",
+                       result.name.c_str(), p.key.c_str()));
+}
+
+inline void diagnose_axis(diagnosis_result& out, axis_case& c) {
+    axis_result result;
+    result.name = c.axis.name;
+    result.kind = c.axis.kind;
+    result.command_unit = c.axis.command_unit;
+    result.driven = c.axis.drive.closes();
+    auto rivals = rivals_by_weight(c);
+    auto causes = plant_causes(c, rivals);
+    const bool guess = untested(c);
+    if (guess) to_suspects(causes);
+    put_as_applied(c, causes, rivals);
+    if (guess) {
+        out.notes.push_back(
+            worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
+                   "samples that it was not fitted to; record more, or give a hold-out log.",
+                   c.axis.name.c_str()));
+    } else if (!c.second && c.motions < 2)
+        out.notes.push_back(
+            worded("axis %s: the record holds one motion, which is cut into %zu pieces to test what was "
+                   "fitted to the others: an effect that shows in another motion only is not seen.",
+                   c.axis.name.c_str(), c.record.segments));
+    if (auto of_controller = controller_cause(c)) { // the first explains most
+        const double command = rms(c.command_difference(c.log, *c.axis.controller));
+        const bool first = command > rms(c.models.residual(c.models.given()));
+        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
+    }
+    if (auto of_count = count_cause(c)) {
+        const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
+        causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
+    }
+    how_far(c).measure(result, causes);
+    result.calibrated = calibrated(c, c.applied(), causes);
+    if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
+    result.verdict = judge(c, causes);
+    if (result.verdict == verdict::within_tolerance && !c.at_floor())
+        out.notes.push_back(
+            worded("axis %s: what is left has structure that no cause explains; it is smaller than "
+                   "what machines inside the tolerances differ by.",
+                   c.axis.name.c_str()));
+    result.where = block_places(c);
+    const auto views = regimes(c.models.residual(c.models.given()), c.record);
+    result.where.insert(result.where.end(), views.begin(), views.end());
+    for (cause& x : causes)
+        if (x.effect != "controller_mismatch")
+            mark_bounds(x.group_probability >= 0.5 ? c.applied() : c.best(), x.parameters);
+    mark_bounds(c.applied(), result.calibrated);
+    mark_bounds(c.best(), result.calibrated_with_suspects);
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, result.calibrated_with_suspects);
+    put_in_words(result.kind, causes);
+    note_bounds(out, result);
+    out.verdict = std::max(out.verdict, result.verdict);
+    if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
+        out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+        describe_rest(out, c, result, causes);
+        const bool proposed = !out.next.motion.empty();
+        if (!c.axis.drive.closes()) propose(out, c, causes, rivals);
+        if (!proposed) {
+            out.next.motion = text_of(out.next.motion, c.axis.kind);
+            out.next.finding = text_of(out.next.finding, c.axis.kind);
+        }
+    }
+    const auto unseen = unseen_by(result, causes);
+    out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
+    out.axes.push_back(std::move(result));
+}
+
+/// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
+inline axis_case& need_blocks(axis_case& c, const std::string& file) {
+    if (c.record.score.channels.front().segment_of_block.empty())
+        throw bad_input(file,
+                        worded("%zu samples of axis %s: a diagnosis needs at least %zu, one block to start "
+                               "the observer and one to score",
+                               c.log.position.size(), c.axis.name.c_str(),
+                               c.record.score.skip + c.record.score.block));
+    return c;
+}
+
+/// Effects of the caller's own have names of their own.
+inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
+    const auto& own = axis.own_effects;
+    for (auto e = own.begin(); e != own.end(); ++e) {
+        const auto refuse = [&](const std::string& why) {
+            throw std::invalid_argument(fmt::format("own_effects of axis {}: {}", axis.name, why));
+        };
+        if (!*e || !(*e)->starts || !(*e)->read) refuse("one is null, or has no starts or no reading");
+        const std::string_view name = (*e)->name;
+        if (effect_named(name)) refuse(fmt::format("{} is a name of the list", name));
+        if (std::any_of(own.begin(), e, [&](const effect* before) { return before->name == name; }))
+            refuse(fmt::format("{} is there twice", name));
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+    }
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine,
+                                                  const machine_log& as_read, const machine_log* as_read_too,
+                                                  const progress& tell, const rules& r) {
+    diagnosis_result out;
+    const machine_log log = with_drives(machine, as_read);
+    std::optional<machine_log> second;
+    if (as_read_too) second = with_drives(machine, *as_read_too);
+    const machine_log* const holdout = second ? &*second : nullptr;
+    out.machine_file = machine.file;
+    out.log_file = log.file;
+    if (holdout) out.holdout_file = holdout->file;
+    out.notes = machine.notes;
+    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+    if (holdout) out.notes.insert(out.notes.end(), holdout->notes.begin(), holdout->notes.end());
+    for (const axis_description& axis : machine.axes) {
+        const axis_log* logged = detail::named(log.axes, axis.name);
+        if (!logged || logged->still) continue;
+        const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
+        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
+        std::optional<axis_log> other;
+        if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
+            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s, band);
+        detail::add_own_effects(out.own_effects, axis);
+        if (axis.controller && axis.controller->own) // its file's kind is known after all
+            std::erase_if(out.notes, [&](const std::string& note) {
+                return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
+            });
+        tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+        axis_case c(axis, coupled, other ? &*other : nullptr, machine.sample_period_s, machine.excluded_effects,
+                    r, tell);
+        detail::diagnose_axis(out, detail::need_blocks(c, log.file));
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

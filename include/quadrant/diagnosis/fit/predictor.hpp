@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../model/driven_motion.hpp"
+#include "../model/sample_loss.hpp"
+#include "pass.hpp"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// The passes to use: those of this translation unit's instruction set; in a program that has more of them, those of the best set
+/// that the processor has.
+#ifdef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+const pass_table& passes();
+#else
+inline const pass_table& passes() { return passes_of<>; }
+#endif
+
+/// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what the
+/// correction had to be. One pass, no drift of the double integrator, and a right model leaves only the encoder's
+/// rounding: the innovation
+///   e[k] = y[k] - reading(x(t_k));  x += L1 e, v += L2 e;  then one period of the plant
+/// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
+/// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
+struct predictor {
+    /// e'[k] = e[k] - e[k-1] + pole e'[k-1]: makes a drift of independent steps a signal of one size.
+    static void take_drift_out(std::vector<double>& e, double pole) {
+        double before = e.empty() ? 0 : e.front(), out = 0;
+        for (double& x : e) {
+            out = pole * out + x - before;
+            before = std::exchange(x, out);
+        }
+    }
+
+    static constexpr std::size_t abreast = 8; ///< plants in one pass
+    double period;                            ///< T [s]
+    double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
+    std::span<const double> position, command;
+    std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
+    double resolution = 0;                        ///< step of the position [m]
+    std::size_t substeps = 1;                     ///< of a period, see substeps_of()
+    const driven_motion* drive =
+        nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
+    double drift_pole =
+        1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
+
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from
+    /// the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the second difference of the
+    /// model's positions around each row, over the square of the period [m/s^2].
+    double run(const plant_model& plant, std::vector<double>& innovation,
+               std::vector<double>* acceleration = nullptr) const {
+        const std::span one(&plant, 1);
+        const std::span into(&innovation, 1);
+        if (plant.loss > 0) {
+            pass(one, command, into, nullptr);
+            const auto held =
+                commands_with_loss(plant, innovation, {.probability = plant.loss, .learned = true});
+            pass(one, held.applied, into, acceleration);
+            return held.choices;
+        }
+        pass(one, command, into, acceleration);
+        return 0;
+    }
+    /// The same for several plants, some at a time side by side: a third of the time and less. One list of innovations a plant, of
+    /// accelerations where they are asked for, and of choices likewise.
+    void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
+             std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const {
+        for (std::size_t i = 0; i < plants.size();) {
+            std::vector<double>* const a = acceleration.empty() ? nullptr : &acceleration[i];
+            std::size_t n = 0;
+            while (i + n < plants.size() && n < abreast && plants[i + n].loss == 0) ++n;
+            if (n > 0)
+                pass(plants.subspan(i, n), command, innovation.subspan(i, n), a);
+            else if (const double chosen = run(plants[i], innovation[i], a); !choices.empty())
+                choices[i] = chosen;
+            i += std::max<std::size_t>(1, n);
+        }
+    }
+
+    /// Rows of the innovations: those of the position, and behind them, where something was measured behind the drive, what the
+    /// drive gives otherwise.
+    std::size_t rows() const { return position.size() * (drive && drive->tapped() ? 2 : 1); }
+
+    /// Both poles of the observer.
+    double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
+
+    /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss tell it.
+    lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
+                                      const loss_assumption& a) const {
+        return lost_commands::find(command, innovation, loss_response(plant), whole_periods(plant.delay),
+                                   resolution / std::sqrt(12.0), a);
+    }
+
+private:
+    std::size_t whole_periods(double delay) const {
+        return static_cast<std::size_t>(std::max(0.0, delay) / period);
+    }
+    double l1() const { return 1 - pole() * pole(); }
+    double l2() const { return (1 - pole()) * (1 - pole()) / period; }
+
+    /// Innovations after one volt too much in one period, on a free axis, until the observer has forgotten it.
+    std::vector<double> loss_response(const plant_model& plant) const {
+        const double to_position = l1(), to_velocity = l2();
+        const double late =
+            std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
+        const double per_volt = plant.force_constant / plant.moving_mass();
+        std::vector<double> out;
+        double x = 0, v = 0;
+        const auto rows = static_cast<std::size_t>(6 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
+        for (std::size_t k = 0; k <= rows; ++k) {
+            if (k > 0) out.push_back(x);
+            const double e = x, length = k == 0   ? period - late
+                                         : k == 1 ? late
+                                                  : 0; // of the volt in this period
+            x -= to_position * e;
+            v -= to_velocity * e;
+            const double rise = per_volt * length;
+            x += period * v + (k == 0 ? 0.5 * length : period - 0.5 * length) * rise;
+            v += rise;
+        }
+        return out;
+    }
+
+    /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share its replay.
+    void drive_each(std::span<const plant_model> plants, std::array<std::vector<double>, abreast>& own,
+                    std::array<const double*, abreast>& command_of,
+                    std::span<std::vector<double>> innovation) const {
+        const auto n = static_cast<std::ptrdiff_t>(position.size());
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            std::size_t same = 0;
+            while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
+            if (same == i) {
+                auto replay = drive->run(plants[i].drive);
+                own[i] = std::move(replay.command);
+                for (std::size_t k = 0; k < replay.beside.size(); ++k)
+                    innovation[i][position.size() + k] = drive->to_position * replay.beside[k];
+            } else if (drive->tapped()) {
+                std::copy(innovation[same].begin() + n, innovation[same].end(), innovation[i].begin() + n);
+            }
+            command_of[i] = own[same].data();
+        }
+    }
+
+    /// Several plants side by side in the lanes of one number.
+    void pass(std::span<const plant_model> plants, std::span<const double> u,
+              std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
+        std::array<double*, abreast> e{}, a{};
+        std::array<pass_input::plant, abreast> each;
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            each[i] = {axis_parameters(plants[i]), plants[i].delay};
+            innovation[i].resize(rows());
+            e[i] = innovation[i].data();
+            if (!acceleration) continue;
+            acceleration[i].resize(position.size());
+            a[i] = acceleration[i].data();
+        }
+        std::array<std::vector<double>, abreast> own;
+        std::array<const double*, abreast> command_of{};
+        if (drive) drive_each(plants, own, command_of, innovation);
+        pass_all({.period = period,
+                  .substeps = substeps,
+                  .rows = position.size(),
+                  .position = position.data(),
+                  .command = u.data(),
+                  .command_of = drive ? command_of.data() : nullptr,
+                  .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
+                  .to_position = l1(),
+                  .to_velocity = l2(),
+                  .plants = plants.size(),
+                  .plant_of = each.data(),
+                  .innovation = e.data(),
+                  .acceleration = acceleration ? a.data() : nullptr},
+                 passes());
+        if (drift_pole < 1)
+            for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);
+    }
+};
+
+} // namespace quadrant::diagnosis

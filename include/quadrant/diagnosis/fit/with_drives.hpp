@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../model/driven_motion.hpp"
+#include "scales.hpp"
+
+#include <fmt/format.h>
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// What was measured behind the drive, in the unit of what its law gives; empty: nothing. `step`: of the column, in that unit.
+inline std::vector<double> measured_behind(const axis_description& axis, const axis_log& log, double& step) {
+    const bool servo = axis.drive.kind == drive_kind::position_servo;
+    const auto scaled = [&](const std::vector<double>& x, double by, double written) {
+        std::vector<double> out = x;
+        for (double& v : out) v *= by;
+        step = std::abs(by) * written;
+        return out;
+    };
+    if (servo) {
+        if (!log.duty.empty()) return scaled(log.duty, 1, log.duty_step);
+        if (log.command_unit == "duty") return scaled(log.command, 1, log.command_step);
+        if (log.command_unit == "V") return scaled(log.command, 1 / *axis.drive.supply_V, log.command_step);
+        return {};
+    }
+    const double constant = axis.plant.force_constant_N_per_V;
+    const auto force = [&](const std::vector<double>& x, const std::string& unit, double written) {
+        const bool known = is_force(unit) || unit == axis.command_unit;
+        return known ? scaled(x, is_force(unit) ? 1 : constant, written) : std::vector<double>{};
+    };
+    if (log.command_is == command_origin::measured)
+        return force(log.command, log.command_unit, log.command_step);
+    return log.effort.empty() ? std::vector<double>{} : force(log.effort, log.effort_unit, log.effort_step);
+}
+
+/// The log of an axis whose drive closes loops of its own, made ready: its command is what the actuator got.
+inline axis_log with_drive(const axis_description& axis, const axis_log& log, double period) {
+    axis_log out = log;
+    const drive_description& d = axis.drive;
+    auto motion = std::make_shared<driven_motion>();
+    motion->period = period;
+    motion->constant = axis.plant.force_constant_N_per_V;
+    const bool command_in_m = log.command_unit == key_of("m", axis.kind);
+    motion->set_point = d.kind == drive_kind::velocity || command_in_m ? log.command : log.reference;
+    motion->in_volts = log.command_unit == "V";
+    motion->position = log.position;
+    motion->off = log.drive_off;
+    for (std::size_t k = 0; k < log.drive_off.size() && k < out.left_out.size(); ++k)
+        if (log.drive_off[k]) out.left_out[k] = 0; // the mechanics go on
+    double step = 0;
+    motion->measured = measured_behind(axis, log, step);
+    out.asked = log.command;
+    out.command_unit = axis.command_unit;
+    out.command_step = 0;
+    out.command_is = command_origin::asked;
+    const drive_model model(d);
+    const double count = std::max(
+        {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
+    motion->find_velocity();
+    const driven_motion::replay replay = motion->run(model);
+    out.command = replay.command;
+    if (motion->tapped()) {
+        double most = 0;
+        for (double u : motion->measured) most = std::max(most, std::abs(u));
+        motion->to_position =
+            reading_noise(log.position, count) / reading_noise(replay.beside, std::max(step, 1e-12 * most));
+    }
+    out.drive = std::move(motion);
+    return out;
+}
+
+} // namespace detail
+
+/// The log with the axes of such drives made ready; the others stay as they are. A note names columns that only a drive would use.
+inline machine_log with_drives(const machine_description& machine, machine_log log) {
+    for (axis_log& logged : log.axes)
+        for (const axis_description& axis : machine.axes) {
+            if (axis.name != logged.name || logged.still) continue;
+            if (axis.drive.closes())
+                logged = detail::with_drive(axis, logged, machine.sample_period_s);
+            else if (!logged.duty.empty() || !logged.effort.empty())
+                log.notes.push_back(
+                    fmt::format("{}: axis {}: what was measured beside the command is used only "
+                                "where axes.{}.drive describes a drive with loops of its own.",
+                                log.file, axis.name, axis.name));
+        }
+    return log;
+}
+
+} // namespace quadrant::diagnosis

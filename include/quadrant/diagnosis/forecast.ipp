@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "apply.hpp"
+#include "match.hpp"
+#include "simulate.hpp"
+#include "write_diagnosis.hpp"
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// A motion as the corrected machine would record it: its closed loop on the reference, the position with the white noise
+/// and the count that the diagnosis found. One step a period: that is the model whose values were fitted.
+inline axis_log recorded(const axis_description& axis, const axis_log& motion, double period, double noise) {
+    axis_log out = motion;
+    std::mt19937_64 random(20081121);
+    std::normal_distribution<double> white(0, noise);
+    std::vector<double> errors(motion.reference.size());
+    if (noise > 0)
+        for (double& e : errors) e = white(random);
+    const auto [low, high] = std::minmax_element(motion.reference.begin(), motion.reference.end());
+    const record_scales scale{.travel = *high - *low, .count = axis.encoder.resolution_m};
+    const plant_model plant(axis, scale.give());
+    const auto run = simulate_closed_loop(*axis.controller, axis, plant, period, motion, errors, 1);
+    out.position = run.position;
+    out.command = run.command;
+    return out;
+}
+
+/// White noise of an axis' position beside its rounding, from the floor that the diagnosis says.
+inline double noise_beside_rounding(const axis_description& axis, const axis_result& found, double period) {
+    const double floor = residual_force_floor(axis.plant.mass_kg, 1, period, found.gap_after.bandwidth_Hz);
+    const double all = found.gap_after.noise_floor_force_rms_N / floor, count = axis.encoder.resolution_m;
+    return std::sqrt(std::max(0.0, all * all - count * count / 12));
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& machine,
+                                                 const diagnosis_result& found, const machine_log& motion,
+                                                 double at_least) {
+    refuse_driven(machine, "a forecast");
+    const machine_description corrected = apply(machine, found, at_least);
+    forecast_result out;
+    out.machine_file = machine.file;
+    out.motion_file = motion.file;
+    machine_log expected = motion;
+    for (axis_log& planned : expected.axes)
+        if (const auto axis = detail::named(corrected.axes, planned.name); axis && !axis->controller) {
+            out.notes.push_back(
+                fmt::format("axis {}: without a controller its motion cannot be forecast.", planned.name));
+            planned.still = true;
+        }
+    for (int round = 0; round < 2; ++round) { // in the second, coupled axes see each other as they really move
+        const machine_log before = expected;
+        for (axis_log& planned : expected.axes) {
+            const auto axis = detail::named(corrected.axes, planned.name);
+            const auto was = detail::named(found.axes, planned.name);
+            if (!axis || !was || planned.still) continue;
+            axis_log motion_of = *detail::named(motion.axes, planned.name);
+            motion_of =
+                detail::with_neighbour(before, motion_of, machine.sample_period_s, was->gap_after.bandwidth_Hz);
+            planned = detail::recorded(*axis, motion_of, machine.sample_period_s,
+                                       detail::noise_beside_rounding(*axis, *was, machine.sample_period_s));
+        }
+    }
+    const auto before = simulate(machine, expected), after = simulate(corrected, expected);
+    for (std::size_t i = 0; i < after.axes.size(); ++i) {
+        forecast_axis a{before.axes[i].name, before.axes[i].gap, after.axes[i].gap, 0, after.axes[i].kind};
+        const gap_numbers& left = detail::named(found.axes, a.name)->gap_after;
+        const double rest =
+            std::sqrt(std::max(0.0, left.force_rms_N * left.force_rms_N -
+                                        left.noise_floor_force_rms_N * left.noise_floor_force_rms_N));
+        a.before.force_rms_N = std::hypot(a.before.force_rms_N, rest);
+        a.after.force_rms_N = std::hypot(a.after.force_rms_N, rest);
+        if (a.before.force_rms_N > 0) a.shrink = 1 - a.after.force_rms_N / a.before.force_rms_N;
+        out.axes.push_back(a);
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL nlohmann::ordered_json to_json(const forecast_result& f) {
+    nlohmann::ordered_json axes = nlohmann::ordered_json::object();
+    for (const forecast_axis& a : f.axes)
+        axes[a.name] = {{"kind", name_of(a.kind)},
+                        {"gap_before", detail::gap_json(a.before, a.kind)},
+                        {"gap_after", detail::gap_json(a.after, a.kind)},
+                        {"shrink", a.shrink}};
+    return {{"schema", "quadrant.forecast/1"}, {"axes", axes}, {"notes", f.notes}};
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../../plant/harmonic_series.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// sum of cosine_i cos(2 pi i z / period) + sine_i sin(2 pi i z / period), i = 1, 2, ...: what repeats along z, a
+/// position or a time. In the files size_i sin(2 pi i z / period + phase_i).
+struct harmonics {
+    static constexpr std::size_t most = 8;
+    double period = 0;     ///< in the unit of z
+    std::size_t count = 0; ///< 0: none
+    std::array<double, most> cosine{}, sine{};
+
+    harmonics() = default;
+    harmonics(double period_, const std::vector<double>& size, const std::vector<double>& phase)
+        : period(period_), count(period_ > 0 ? std::min(size.size(), most) : 0) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double angle = i < phase.size() ? phase[i] : 0;
+            cosine[i] = size[i] * std::sin(angle);
+            sine[i] = size[i] * std::cos(angle);
+        }
+    }
+    double at(double z) const {
+        return count == 0
+                   ? 0
+                   : quadrant::detail::harmonic_series<most, double, double>{cosine, sine, count}(z / period);
+    }
+    /// Up to the last harmonic that has a size.
+    std::vector<double> sizes() const {
+        std::vector<double> out;
+        for (std::size_t i = 0; i < used(); ++i) out.push_back(std::hypot(sine[i], cosine[i]));
+        return out;
+    }
+    std::vector<double> phases() const {
+        std::vector<double> out;
+        for (std::size_t i = 0; i < used(); ++i) out.push_back(std::atan2(cosine[i], sine[i]));
+        return out;
+    }
+
+private:
+    std::size_t used() const {
+        std::size_t n = count;
+        while (n > 1 && sine[n - 1] == 0 && cosine[n - 1] == 0) --n;
+        return n;
+    }
+};
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../how_far/closed_loop.hpp"
+#include "../which/causes.hpp"
+#include "standard_motions.hpp"
+
+namespace quadrant::diagnosis {
+
+/// One of the names that a record does not tell apart: its effect, and the model of the whole axis under this name.
+struct confusable {
+    const effect* name = nullptr;
+    candidate model;
+
+    bool equivalent(const confusable& other) const { return may_be_one(*name, *other.name); }
+};
+
+/// Where a motion is tried before the machine drives it: the axis as described, under the controller that runs it or a
+/// stand-in, with the noise and the steps of the encoder that its log had.
+class proving_ground {
+public:
+    /// `scale`: of that log.
+    proving_ground(const axis_description& axis, double period, double resolution, double noise,
+                   const record_scales& scale)
+        : axis_(axis), period_(period), resolution_(resolution), scale_(scale),
+          sigma_(std::sqrt(std::max(0.0, noise * noise - resolution * resolution / 12))) {
+        axis_.encoder.resolution_m = resolution;
+        if (!axis_.controller) axis_.controller = stand_in(axis.plant);
+    }
+
+    /// A record of the motion as a machine with this plant would leave it, one step a period as in the fits; empty when it does
+    /// not follow.
+    axis_log record(const plant_model& plant, const planned_motion& m) const {
+        axis_log log;
+        log.name = axis_.name;
+        log.reference = m.reference;
+        const double start = m.reference[0];
+        const double held = -(plant.static_force(start) + plant.cutting_mean) / plant.force_constant;
+        log.position.assign(m.reference.size(), start);
+        log.command.assign(m.reference.size(), held);
+        auto run =
+            simulate_closed_loop(*axis_.controller, axis_, plant, period_, log, noise(m.reference.size()), 1);
+        const auto [low, high] = std::minmax_element(m.reference.begin(), m.reference.end());
+        const double far = std::max(*high - *low, 1000 * resolution_);
+        for (double y : run.position)
+            if (!(y > *low - far && y < *high + far)) return {};
+        log.position = std::move(run.position);
+        log.command = std::move(run.command);
+        return log;
+    }
+
+    /// Log-score by which a record of the motion tells the truth from the other name: both fitted again to a machine that
+    /// has the truth's plant, the calibration inside its tolerance too, and judged as in every diagnosis on motion that was not
+    /// fitted. `whole`: the other name also fitted anew from the machine file, as the diagnosis of that record would. Two names
+    /// of one model (gap/FORMAT.md) are told apart only where their forces are, as there.
+    double gain(const planned_motion& m, const confusable& truth, const confusable& other, bool whole) const {
+        const axis_log log = record(truth.model.fit.plant, m);
+        if (log.position.empty()) return 0;
+        const axis_record r = for_machine(
+            prepare(log, period_, resolution_, scales_of(axis_.plant, log, period_, resolution_)), axis_);
+        const candidate own = refitted(r, truth.model, whole ? 30 : first_look);
+        candidate best = refitted(r, other.model, whole ? 30 : first_look);
+        if (whole) {
+            const search anew(r, axis_, {}, {.threads = 1}, [](const std::string&) {});
+            if (auto c = anew.with(other.model.effects); c.total > best.total) best = std::move(c);
+            const auto energy = [&](const candidate& c) {
+                const double force = rms(anew.held_out_residual(c));
+                return force * force;
+            };
+            if (truth.equivalent(other) && energy(best) < (1 + detail::alike) * energy(own)) return 0;
+        }
+        return std::isfinite(own.total - best.total) ? own.total - best.total : 0;
+    }
+
+private:
+    static constexpr int first_look = 6; ///< steps of a fit
+
+    /// P and PI of the velocity for an axis whose controller is not described, with the crossover that its dead time allows and
+    /// the feedforward of its mass and its viscous friction.
+    controller_description stand_in(const plant_description& p) const {
+        const double dead_time = p.delay_s + axis_.actuator.lag_s.value_or(0) + 1.5 * period_;
+        const double crossover = std::min(0.5 / scale_.response(), 0.35 / dead_time);
+        const double gain = crossover * p.mass_kg / p.force_constant_N_per_V;
+        controller_description c;
+        c.set("position_gain_per_s", crossover / 4);
+        c.set("velocity_gain_V_s_per_m", gain);
+        c.set("velocity_integral_V_per_m", gain * crossover / 5);
+        c.set("velocity_filter_Hz", std::min(0.25 / period_, 8 * crossover / (2 * std::numbers::pi)));
+        c.set("velocity_feedforward", 1);
+        c.set("acceleration_feedforward_V_s2_per_m", p.mass_kg / p.force_constant_N_per_V);
+        c.set("viscous_feedforward_V_s_per_m", p.viscous_N_s_per_m / p.force_constant_N_per_V);
+        return c;
+    }
+
+    static candidate refitted(const axis_record& r, const candidate& model, int steps) {
+        candidate c{.effects = model.effects};
+        c.fit = fitter(r.observer, r.score).fit(model.fit.plant, resumed(model.fit), steps);
+        c.total = -std::numeric_limits<double>::infinity();
+        judge(r, c);
+        return c;
+    }
+    /// White, the same for every motion of one length (Box and Muller: the same on every library).
+    std::vector<double> noise(std::size_t rows) const {
+        std::mt19937_64 random(20080901);
+        const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
+        std::vector<double> out(rows);
+        for (double& v : out) {
+            const double radius = std::sqrt(-2 * std::log(uniform()));
+            v = sigma_ * radius * std::cos(2 * std::numbers::pi * uniform());
+        }
+        return out;
+    }
+
+    axis_description axis_;
+    double period_, resolution_;
+    record_scales scale_;
+    double sigma_;
+};
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../../result/waveform.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace quadrant::diagnosis::detail {
+
+/// What the log commands beyond the replay.
+struct added_signal {
+    std::vector<double> values;  ///< logged less replayed, from the first row that is compared [V]
+    double noise = 0;            ///< that rounding leaves in a row, rms [V]
+    double period = 0;           ///< of the samples [s]
+    std::size_t first_row = 0;   ///< of `values`, in the log
+    bool offset_unknown = false; ///< the controller's first integral is unknown, and with it a constant
+
+    double time(std::size_t row) const { return period * static_cast<double>(row + first_row); }
+};
+
+/// One form that the signal may have: what is linear in it as columns, what is not as numbers.
+struct waveform_candidate {
+    added_waveform form;
+    std::vector<std::vector<double>> columns;
+    std::size_t numbers = 0; ///< that were chosen beside the sizes of the columns
+};
+
+} // namespace quadrant::diagnosis::detail

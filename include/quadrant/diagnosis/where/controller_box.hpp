@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../controller/kinds.hpp"
+#include "../log/log.hpp"
+#include "../log/signals.hpp"
+#include "../machine/own_controller.hpp"
+
+#include <span>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// A controller of the user's own, behind it the limit and the DAC that the machine file describes.
+struct own_loop {
+    running_loop loop;
+    output_stage out;
+
+    double step(double reference, double measured) { return out(loop(nullptr, reference, measured)); }
+    void settle(const loop_start& row) { loop(&row, 0, 0); }
+    bool remembers() const { return true; }
+    bool limited() const { return false; }
+    bool faulted() const { return false; }
+};
+
+} // namespace detail
+
+/// The controller that is described, as new: of the machine file's kind, or the user's own.
+inline std::unique_ptr<running_controller> made(const controller_description& c, const actuator_description& a,
+                                                double period) {
+    if (c.own)
+        return std::make_unique<detail::positions_only<detail::own_loop>>(
+            detail::own_loop{c.own->made(), detail::stage_of(a)});
+    const controller_kind& kind = kind_of(c);
+    return kind.make(given_values(kind, c), a, period);
+}
+
+/// What a controller saw and did: columns of a log, of one length. Those that are empty are differences of the
+/// positions.
+struct loop_columns {
+    std::span<const double> reference, position, command;
+    std::span<const double> reference_velocity{}, reference_acceleration{}, velocity{};
+    std::span<const unsigned char> left_out{}; ///< of every row, as axis_log::left_out; empty: none
+
+    /// Some rows of them, as if all counted.
+    loop_columns part(std::size_t first, std::size_t rows) const {
+        const auto of = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(first, rows); };
+        return {.reference = of(reference),
+                .position = of(position),
+                .command = of(command),
+                .reference_velocity = of(reference_velocity),
+                .reference_acceleration = of(reference_acceleration),
+                .velocity = of(velocity)};
+    }
+    static loop_columns of(const axis_log& log) {
+        return {log.reference, log.position, log.command, log.reference_velocity, log.reference_acceleration,
+                log.velocity,  log.left_out};
+    }
+    /// The rows from one on.
+    loop_columns from(std::size_t row) const {
+        const auto part = [&](std::span<const double> x) { return x.empty() ? x : x.subspan(row); };
+        return {part(reference),
+                part(position),
+                part(command),
+                part(reference_velocity),
+                part(reference_acceleration),
+                part(velocity)};
+    }
+};
+
+/// The inputs of a controller row by row. Before row 0 both motions were even, as from row 0 to row 1.
+class loop_inputs {
+public:
+    loop_inputs(const loop_columns& columns, double period) : c_(columns), period_(period) {}
+
+    axis_motion<> asked(std::ptrdiff_t k) const {
+        return {in_si(along(c_.reference, k)), in_si(reference_velocity(k)), in_si(reference_acceleration(k))};
+    }
+    /// The position that was read, and the velocity that was measured or follows from it.
+    axis_measurement<> measured(std::ptrdiff_t k) const {
+        const double v = c_.velocity.empty() ? difference(c_.position, k) : c_.velocity[row(k)];
+        return {in_si(along(c_.position, k)), in_si(v)};
+    }
+    loop_start start(double command) const {
+        return {.reference = c_.reference[0],
+                .measured = c_.position[0],
+                .reference_velocity = (c_.reference[1] - c_.reference[0]) / period_,
+                .measured_velocity = (c_.position[1] - c_.position[0]) / period_,
+                .command = command};
+    }
+    std::ptrdiff_t rows() const { return static_cast<std::ptrdiff_t>(c_.reference.size()); }
+
+private:
+    std::size_t row(std::ptrdiff_t k) const { return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, k)); }
+    double along(std::span<const double> x, std::ptrdiff_t k) const {
+        return k >= 0 ? x[row(k)] : x[0] + static_cast<double>(k) * (x[1] - x[0]);
+    }
+    double difference(std::span<const double> x, std::ptrdiff_t k) const {
+        return k > 0 ? (x[row(k)] - x[row(k - 1)]) / period_ : (x[1] - x[0]) / period_;
+    }
+    double reference_velocity(std::ptrdiff_t k) const {
+        return c_.reference_velocity.empty() ? difference(c_.reference, k) : c_.reference_velocity[row(k)];
+    }
+    double reference_acceleration(std::ptrdiff_t k) const {
+        if (!c_.reference_acceleration.empty()) return k < 0 ? 0 : c_.reference_acceleration[row(k)];
+        return k > 0 ? (reference_velocity(k) - reference_velocity(k - 1)) / period_ : 0;
+    }
+
+    loop_columns c_;
+    double period_;
+};
+
+/// Puts a controller into the middle of a motion, as new: row 0 of a log is its past, and `command` is what it
+/// gave there. One that has to run first is run through an even motion that ends at row 0, twice: the second
+/// time with what the first missed.
+inline std::unique_ptr<running_controller> begun(const running_controller& fresh, const loop_inputs& in,
+                                                 double command) {
+    auto loop = fresh.copy();
+    if (loop->past() == 0) {
+        loop->settle(in.start(command));
+        return loop;
+    }
+    const auto ahead = static_cast<std::ptrdiff_t>(loop->lead());
+    const auto from = -static_cast<std::ptrdiff_t>(loop->past());
+    double asked = command;
+    for (int round = 0; round < 2; ++round) {
+        loop = fresh.copy();
+        const double x = in.measured(from).position.value();
+        loop->settle({.reference = x, .measured = x, .command = asked});
+        double last = asked;
+        for (std::ptrdiff_t k = from; k <= 0; ++k)
+            last = loop->show(in.asked(std::min(k + ahead, in.rows() - 1)), in.measured(k), asked);
+        if (std::isfinite(last)) asked += command - last;
+    }
+    return loop;
+}
+
+/// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it
+/// puts out what the described controller would have commanded. Row 0 is taken from the log. What went before
+/// it is unknown, at rest too: the noise of the encoder is in the first command by way of the velocity. What
+/// that leaves open of the initial integral is a constant offset of the replay, which a second pass takes from
+/// the whole record. A law that follows from what it applied is told so by the log. Rows that a controller is
+/// only shown, and those whose look-ahead ends behind the log, are the logged ones.
+inline std::vector<double> replay_stretch(const controller_description& c, const actuator_description& a,
+                                          double period, const loop_columns& log) {
+    const auto fresh = made(c, a, period);
+    const loop_inputs in(log, period);
+    const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
+    const std::size_t shown = fresh->past() > 0 ? fresh->past() - fresh->lead() : 0;
+    std::vector<double> out(log.command.begin(), log.command.end());
+    const auto pass = [&](double offset) {
+        const auto loop = begun(*fresh, in, log.command[0] + offset);
+        for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k) {
+            const auto row = static_cast<std::size_t>(k);
+            if (row < shown) {
+                const bool missing = row + 1 == shown || !loop->fixed_by_last_row();
+                loop->show(in.asked(k + ahead), in.measured(k), log.command[row] + (missing ? offset : 0));
+                continue;
+            }
+            out[row] = loop->step(in.asked(k + ahead), in.measured(k));
+            loop->applied(log.command[row]);
+        }
+    };
+    pass(0);
+    if (fresh->remembers()) {
+        std::vector<double> offset(out.size());
+        for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
+        pass(quantile(offset, 0.5));
+    }
+    return out;
+}
+
+/// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are
+/// left out, those behind them in which the controller forgets what was filled in, and stretches too short to
+/// begin in are the logged ones.
+inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
+                                             double period, const loop_columns& log) {
+    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
+    constexpr std::size_t bridged = 4, forgets = 64, least = 8; // rows
+    std::vector<double> out(log.command.begin(), log.command.end());
+    const std::size_t rows = out.size();
+    const auto gap_from = [&](std::size_t k) { // how many rows are left out from here on
+        std::size_t end = k;
+        while (end < rows && log.left_out[end]) ++end;
+        return end - k;
+    };
+    for (std::size_t first = 0; first < rows;) {
+        std::size_t last = first, gap = 0;
+        while (last < rows && (gap = gap_from(last)) <= bridged) last += std::max<std::size_t>(1, gap);
+        last = std::min(last, rows);
+        if (last - first >= least) {
+            const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
+            std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+        first = last + std::max<std::size_t>(1, gap);
+    }
+    for (std::size_t k = 0, since = forgets; k < rows; ++k) {
+        since = log.left_out[k] ? 0 : since + 1;
+        if (since < forgets) out[k] = log.command[k];
+    }
+    return out;
+}
+inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
+                                             double period, std::span<const double> reference,
+                                             std::span<const double> position,
+                                             std::span<const double> command) {
+    return replay_controller(c, a, period, loop_columns{reference, position, command});
+}
+
+} // namespace quadrant::diagnosis
