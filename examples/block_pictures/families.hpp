@@ -12,6 +12,7 @@ family laws();
 family polynomial_laws();
 family feedforwards();
 family plants();
+family drives();
 family observers();
 family force_and_friction();
 family loops();

@@ -18,8 +18,9 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
     int written = 0;
-    for (const auto& members : {filters, signals, supervision, memories, frictions, laws, polynomial_laws,
-                                feedforwards, plants, observers, force_and_friction, loops, published_machines})
+    for (const auto& members :
+         {filters, signals, supervision, memories, frictions, laws, polynomial_laws, feedforwards, plants,
+          drives, observers, force_and_friction, loops, published_machines})
         for (const entry& e : members()) {
             if (argc == 3 && std::string(argv[2]) != e.block) continue;
             std::ofstream file(folder / (std::string(e.block) + ".svg"), std::ios::binary);

@@ -26,7 +26,8 @@ inline std::string settings(const std::vector<key_value>& keys) {
 }
 
 inline std::string sentence(const compensation& c, const compensated_axis& a) {
-    std::string text = fmt::format("{} (against {}): ", c.name, named(c.effects, "and"));
+    std::string text =
+        c.effects.empty() ? c.name + ": " : fmt::format("{} (against {}): ", c.name, named(c.effects, "and"));
     if (a.forecast && c.claimed)
         text +=
             fmt::format("takes the error from {} to {} rms, {} off; with every fitted value at an end of its "

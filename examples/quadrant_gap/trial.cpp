@@ -26,6 +26,7 @@ struct trial_options {
     std::size_t machines = 200;
     std::uint64_t seed = 1;
     std::string json, report, keep, program, how = "plain";
+    std::string population = populations.front();
     std::vector<std::size_t> only;
     unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
     double limit_s = 300;
@@ -102,7 +103,13 @@ void run_trial(trial_options o) {
     outputs files;
     check_folders(o, files);
     if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
-    const auto planned_machines = plan(o.seed, o.machines, *logs_named(o.how));
+    const auto named = std::find(populations.begin(), populations.end(), o.population);
+    const auto of = static_cast<population>(named - populations.begin());
+    const logs how = *logs_named(o.how);
+    if (of != population::current && how != logs::plain)
+        throw bad_input("--logs", "other logs than plain ones are drawn of current drives only");
+    o.no_forecast = o.no_forecast || of != population::current; // of current drives only
+    const auto planned_machines = plan(o.seed, o.machines, of, how);
     std::vector<std::size_t> chosen(o.machines);
     for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
     if (!o.only.empty()) chosen = o.only;
@@ -171,6 +178,8 @@ void add_trial(CLI::App& app) {
         ->add_option("--logs", o->how,
                      "how the machines are logged: plain, coarse, measured, gaps, jitter, no_reference")
         ->check(CLI::IsMember(std::vector<std::string>(names_of_logs.begin(), names_of_logs.end())));
+    command->add_option("--population", o->population, "the machines' drives")
+        ->check(CLI::IsMember(std::vector<std::string>(populations.begin(), populations.end())));
     command->add_option("--only", o->only, "of that population, these machines alone")
         ->delimiter(',')
         ->check(CLI::NonNegativeNumber);

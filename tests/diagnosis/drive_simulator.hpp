@@ -17,6 +17,12 @@ struct machine {
     double velocity_per_V = 0.02, gain = 0, integral = 0;           ///< velocity loop
     double position_gain = 0, duty_gain = 0, supply = 12, kt = 0.1; ///< position loop; position servo
     double minimum_duty = 0, rate_limit = 1e9, delay = 0, count = 1e-6;
+    double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
+    double clock_slip = 0;              ///< its clock's period is longer by this share
+    bool enabled_column = false;
+    bool stock_pid =
+        false; ///< in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
+    double ff1 = 0, ff2 = 0;
 };
 enum class takes { volts, set_points, servo };
 
@@ -48,17 +54,24 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     std::ostringstream out;
     out.precision(10);
     out << "t_s,q_ref_" << unit << ",q_pos_" << unit << (kind == takes::volts ? ",q_cmd_V" : "")
-        << (tap ? ",q_duty" : "") << "\n";
+        << (tap ? ",q_duty" : "") << (m.enabled_column ? ",q_enabled" : "") << "\n";
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
-        const double volts = std::clamp((20 * (reference[k] - read) + speed) / m.velocity_per_V, -10.0, 10.0);
+        const auto ago = [&](std::size_t back) { return reference[k > back ? k - back : 0]; };
+        const double sum = m.stock_pid ? 1000 * (reference[k] - read) + m.ff1 * (ago(0) - ago(1)) / period +
+                                             m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period)
+                                       : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
+        const double volts = std::clamp(sum, -10.0, 10.0);
         command.push_back(kind == takes::volts ? volts : reference[k]);
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
         if (kind == takes::volts) out << ',' << volts;
         for (int i = 0; i < steps; ++i) {
             const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
-            const auto row = static_cast<std::size_t>(std::max(0.0, at));
+            const double tick = std::floor(at / (1 + m.clock_slip)); // of the drive's clock
+            const auto row = static_cast<std::size_t>(std::max(0.0, tick * (1 + m.clock_slip) + 1e-9));
+            const double now = (static_cast<double>(k) + (i + 0.5) / steps) * period;
+            const bool off = now >= m.off_from && now < m.off_until;
             double force = 0;
             if (kind == takes::servo) {
                 followed += std::clamp(command[row] - followed, -m.rate_limit * h, m.rate_limit * h);
@@ -67,18 +80,24 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 if (tap && i == 0) out << ',' << duty;
                 force = duty * m.supply * m.kt;
             } else {
-                const double part = at - static_cast<double>(row), before = command[row > 0 ? row - 1 : 0];
+                const double part = at / (1 + m.clock_slip) - tick, before = command[row > 0 ? row - 1 : 0];
                 const double asked = kind == takes::volts
                                          ? m.velocity_per_V * command[row]
                                          : m.position_gain * (before + part * (command[row] - before) - x);
                 force = m.gain * (asked - v) + integral;
                 integral += h * m.integral * (asked - v);
             }
+            if (off) {
+                force = integral = 0;
+                followed = x;
+            }
             v += h * (force - m.viscous * v) / m.mass;
             const double stop = h * m.coulomb / m.mass;
             v -= std::clamp(v, -stop, stop);
             x += h * v;
         }
+        const double t = static_cast<double>(k) * period;
+        if (m.enabled_column) out << ',' << (t >= m.off_from && t < m.off_until ? 0 : 1);
         out << "\n";
     }
     return out.str();

@@ -3,6 +3,9 @@
 #include <quadrant/drive/position_loop.hpp>
 #include <quadrant/drive/position_servo.hpp>
 #include <quadrant/drive/set_point_line.hpp>
+#include <quadrant/lanes.hpp>
+
+#include <vector>
 
 using namespace quadrant;
 
@@ -75,4 +78,56 @@ TEST_CASE("drives: what no drive has is refused by name") {
                       "velocity_loop.gain = -1: must be finite and not below 0");
     CHECK_THROWS_WITH(position_loop<>({.gain = 1, .velocity = {.limit = 0}}, 1e-3),
                       "velocity_loop.limit = 0: must be above 0 (infinite: no limit)");
+}
+TEST_CASE("drives: a step that no clock has is refused by name") {
+    CHECK_THROWS_WITH(position_servo<>({}, 0), "position_servo.step = 0: must be finite and above 0");
+    CHECK_THROWS_WITH(velocity_loop<>({.gain = 1}, -1e-3),
+                      "velocity_loop.step = -0.001: must be finite and above 0");
+    CHECK_THROWS_WITH(position_loop<>({.gain = 1}, std::numeric_limits<double>::infinity()),
+                      "position_loop.step = inf: must be finite and above 0");
+}
+TEST_CASE("drives: four abreast in lanes are four alone, to the last bit") {
+    using four = lanes<4>;
+    const double h = 1e-3;
+    typename position_loop<four>::parameters p;
+    typename position_servo<four>::parameters q;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto n = static_cast<double>(i + 1);
+        set_lane(p.gain, i, 10 * n);
+        set_lane(p.velocity.gain, i, 50 * n);
+        set_lane(p.velocity.integral, i, 200 * n);
+        set_lane(p.velocity.filter_Hz, i, 40 * n);
+        set_lane(p.velocity.limit, i, 3 * n);
+        set_lane(q.gain, i, n);
+        set_lane(q.rate, i, 0.2 * n);
+    }
+    const position_loop<four> loop(p, four(h));
+    const position_servo<four> servo(q, four(h));
+    position_loop<four>::state s;
+    auto t = position_servo<four>::state::at(four(0.0));
+    std::array<std::vector<double>, 4> forces, duties;
+    const auto asked = [&](int k) { return 0.05 * std::sin(0.1 * k); };
+    for (int k = 0; k < 200; ++k) {
+        const auto f = loop(s, four(asked(k)), four(0.0), four(0.01), four(0.002 * k)).each();
+        const auto d = servo(t, four(asked(k)), four(0.01)).each();
+        for (std::size_t i = 0; i < 4; ++i) {
+            forces[i].push_back(f[i]);
+            duties[i].push_back(d[i]);
+        }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        const position_loop<> alone({.gain = lane(p.gain, i),
+                                     .velocity = {.gain = lane(p.velocity.gain, i),
+                                                  .integral = lane(p.velocity.integral, i),
+                                                  .filter_Hz = lane(p.velocity.filter_Hz, i),
+                                                  .limit = lane(p.velocity.limit, i)}},
+                                    h);
+        const position_servo<> one({.gain = lane(q.gain, i), .rate = lane(q.rate, i)}, h);
+        position_loop<>::state own;
+        auto follower = position_servo<>::state::at(0);
+        for (int k = 0; k < 200; ++k) {
+            CHECK(alone(own, asked(k), 0, 0.01, 0.002 * k) == forces[i][static_cast<std::size_t>(k)]);
+            CHECK(one(follower, asked(k), 0.01) == duties[i][static_cast<std::size_t>(k)]);
+        }
+    }
 }

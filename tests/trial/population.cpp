@@ -106,7 +106,7 @@ TEST_CASE("population: logs of every kind are read without complaint, and are of
     for (std::size_t n = 0; n < names_of_logs.size(); ++n) {
         const auto how = static_cast<logs>(n);
         CAPTURE(names_of_logs[n]);
-        const drawn_machine m = draw(17, 3, {kind::none, {}, false, false, how});
+        const drawn_machine m = draw(17, 3, {kind::none, {}, false, false, population::current, how});
         const auto text = log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed);
         const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(2), "machine.json");
         std::istringstream stream(text);
@@ -132,8 +132,28 @@ TEST_CASE("population: logs of every kind are read without complaint, and are of
 }
 
 TEST_CASE("plan: logs that cannot show an effect do not hold it") {
-    for (const planned& p : plan(3, 100, logs::measured))
+    for (const planned& p : plan(3, 100, population::current, logs::measured))
         for (const std::string& e : p.effects) CHECK(shows(logs::measured, *effect_named(e)));
-    for (const planned& p : plan(3, 100, logs::no_reference))
+    for (const planned& p : plan(3, 100, population::current, logs::no_reference))
         for (const std::string& e : p.effects) CHECK(e != "controller_mismatch");
+}
+TEST_CASE(
+    "population: machines of every drive are read without complaint, with the columns that their drive takes") {
+    for (const population of :
+         {population::velocity_p, population::velocity_pi, population::position, population::position_servo}) {
+        CAPTURE(populations[static_cast<std::size_t>(of)]);
+        const auto singles = withheld_effects(drive_of(of));
+        CHECK(std::any_of(singles.begin(), singles.end(), [](const auto* e) { return e->box == "drive"; }));
+        for (const planned& p : plan(5, 20, of)) {
+            CHECK_FALSE(p.two_axes);
+            for (const std::string& e : p.effects) CHECK(fits(*effect_named(e), drive_of(of)));
+        }
+        const drawn_machine m = draw(3, 4, {kind::single, {"drive_gain"}, false, false, of});
+        const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(), "machine.json");
+        CHECK(machine.axes[0].drive.kind == drive_of(of));
+        std::istringstream text(
+            log_file(m, run(m.truth, m.log_reference, m.period, m.noise_seed), m.noise_seed));
+        CHECK_NOTHROW(check_match(machine, quadrant::diagnosis::read_log(text, "log.csv")));
+        CHECK(m.effects.at(0).size > 0.1);
+    }
 }

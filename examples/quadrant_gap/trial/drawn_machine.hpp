@@ -11,6 +11,9 @@ struct tolerances {
     double mass = 0.02, force_constant = 0.01, viscous = 0.1, coulomb = 0.05, at_rest = 0.05;
 };
 
+/// Of a drive's own numbers.
+inline constexpr double tolerance_of_gains = 0.01, tolerance_of_supply = 0.02, tolerance_of_delay = 0.05;
+
 struct drawn_effect {
     std::string name;
     double size = 0; ///< command gap that it alone makes [in the 95th percentile of the tolerance cloud]
@@ -98,18 +101,67 @@ inline axis_truth drawn_axis(double period, const std::string& name, dice& rando
     return a;
 }
 
+/// Makes the drive of this axis one with loops of its own, with a bandwidth and delays as such drives have.
+inline void give_loops(axis_truth& a, population of, double period, dice& random) {
+    drive_truth& d = a.drive;
+    d.kind = drive_of(of);
+    a.actuator.delay = 0;
+    a.encoder.resolution = random.one_of(std::vector<double>{5e-8, 1e-7, 2.5e-7, 5e-7, 1e-6});
+    a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 1);
+    const double peak = a.actuator.force_constant * a.controller.limit / a.mechanics.mass;
+    d.delay = written(period * random.uniform(0.3, 2));
+    if (of == population::position_servo) {
+        const double inertia = a.mechanics.mass = written(random.log_uniform(2e-3, 2e-2));
+        a.controller.limit = d.supply = random.one_of(std::vector<double>{6, 7.4, 12, 24});
+        a.actuator.force_constant = written(inertia * peak / d.supply);
+        const double corner = random.uniform(15, 40), share = inertia * peak;
+        d.duty_gain = written(inertia * corner * corner / share);
+        a.friction.viscous = written(inertia * corner * random.uniform(0.8, 1.6));
+        if (a.friction.coulomb > 0) a.friction.coulomb = written(share * random.log_uniform(0.01, 0.06));
+        if (a.friction.level_at_rest > 0)
+            a.friction.level_at_rest = written(a.friction.coulomb * random.uniform(1.15, 1.9));
+        a.encoder.resolution = random.one_of(std::vector<double>{2e-5, 1e-4, 3e-4});
+        a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 0.5);
+        d.tapped = random.chance(0.5);
+        return;
+    }
+    const double bandwidth = 2 * std::numbers::pi * random.uniform(20, std::min(60.0, 0.06 / period));
+    d.velocity_gain = written(a.mechanics.mass * bandwidth);
+    if (of == population::velocity_pi || (of == population::position && random.chance(0.7)))
+        d.velocity_integral = written(d.velocity_gain * bandwidth * random.uniform(0.1, 0.3));
+    if (of == population::position) {
+        d.position_gain = written(bandwidth * random.uniform(0.12, 0.3));
+        d.linear = random.chance(0.5);
+    } else {
+        d.velocity_per_V = written(random.uniform(0.05, 0.12));
+        a.controller.position_gain = written(bandwidth * random.uniform(0.08, 0.2));
+    }
+    a.controller.limit = written(a.mechanics.mass * peak);
+    a.actuator.force_constant = 1;
+    if (random.chance(0.5)) d.force_limit = a.controller.limit;
+}
+
 inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
     const auto moved = [&](double& value, double relative) {
         value *= 1 + random.uniform(-relative, relative);
     };
     moved(a.mechanics.mass, t.mass);
-    moved(a.actuator.force_constant, t.force_constant);
+    if (a.drive.kind == drive_truth::drive_kind::current || a.drive.supply > 0)
+        moved(a.actuator.force_constant, t.force_constant);
     moved(a.friction.viscous, t.viscous);
     moved(a.friction.coulomb, t.coulomb);
     moved(a.friction.level_at_rest, t.at_rest);
     if (a.friction.level_at_rest > 0)
         a.friction.level_at_rest = std::max(a.friction.level_at_rest, a.friction.coulomb);
     moved(a.friction.stribeck_velocity, 0.05);
+    if (drive_truth& d = a.drive; d.closes()) {
+        for (double* gain :
+             {&d.velocity_per_V, &d.velocity_gain, &d.velocity_integral, &d.position_gain, &d.duty_gain})
+            moved(*gain, tolerance_of_gains);
+        moved(d.supply, tolerance_of_supply);
+        moved(d.delay, tolerance_of_delay);
+        return;
+    }
     const double delay = std::min(2e-5, 0.05 * a.actuator.delay);
     a.actuator.delay += random.uniform(-delay, delay);
 }

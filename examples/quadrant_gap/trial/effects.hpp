@@ -50,6 +50,19 @@ inline double* number_in(axis_truth& a, std::string_view key) {
         {"encoder.cyclic_period_m", &a.encoder.cyclic.period},
         {"process.fundamental_Hz", &a.process.fundamental},
         {"process.mean_N", &a.process.mean},
+        {"drive.velocity_per_V", &a.drive.velocity_per_V},
+        {"drive.velocity_gain_N_s_per_m", &a.drive.velocity_gain},
+        {"drive.velocity_integral_N_per_m", &a.drive.velocity_integral},
+        {"drive.position_gain_per_s", &a.drive.position_gain},
+        {"drive.position_gain_per_m", &a.drive.duty_gain},
+        {"drive.force_limit_N", &a.drive.force_limit},
+        {"drive.maximum_duty", &a.drive.maximum_duty},
+        {"drive.minimum_duty", &a.drive.minimum_duty},
+        {"drive.supply_V", &a.drive.supply},
+        {"drive.setpoint_rate_limit_m_per_s", &a.drive.rate_limit},
+        {"drive.command_delay_s", &a.drive.delay},
+        {"drive.set_point_loss", &a.drive.loss},
+        {"drive.clock_slip", &a.drive.clock_slip},
     };
     for (const auto& [name, place] : all)
         if (name == key) return place;
@@ -170,11 +183,25 @@ inline void insertion::change_controller() {
     parameters[std::string("controller.") + chosen.name] = *chosen.value;
 }
 
-/// The effects that a trial withholds, in the order of the list.
-inline std::vector<const quadrant::diagnosis::effect*> withheld_effects() {
+/// Whether a machine with this kind of drive can have the effect. Behind a drive that closes loops of its own there is one axis, and
+/// its encoder is the motor's: no play, no error of a scale, no neighbour, and the limits and delays are the drive's.
+inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::drive_kind kind) {
+    using enum quadrant::diagnosis::drive_kind;
+    if (kind == current) return e.box != "drive";
+    if (e.box == "process" || e.name == "force_constant") return e.box == "process" || kind == position_servo;
+    if (e.box == "mechanics") return e.name != "backlash" && e.name != "cross_coupling";
+    if (e.box != "drive") return false;
+    if (e.name == "drive_gain" || e.name == "drive_limit" || e.name == "command_delay") return true;
+    if (e.name == "set_point_loss" || e.name == "clock_slip") return kind != velocity;
+    return kind == position_servo;
+}
+
+/// The effects that a trial withholds from machines with such drives, in the order of the list.
+inline std::vector<const quadrant::diagnosis::effect*>
+withheld_effects(quadrant::diagnosis::drive_kind kind = quadrant::diagnosis::drive_kind::current) {
     std::vector<const quadrant::diagnosis::effect*> out;
     for (const auto* e : quadrant::diagnosis::every_effect())
-        if (e->trial.into) out.push_back(e);
+        if (e->trial.into && fits(*e, kind)) out.push_back(e);
     return out;
 }
 

@@ -14,6 +14,42 @@ namespace quadrant_gap::trial {
 
 using nlohmann::ordered_json;
 
+/// An axis whose drive closes loops of its own. Its controller, if there is one, is not described: the set-points are logged.
+inline ordered_json driven_axis(const drawn_machine& m, const axis_truth& a, ordered_json plant) {
+    const drive_truth& d = a.drive;
+    const tolerances& t = m.tolerance;
+    ordered_json drive{{"kind", quadrant::diagnosis::name_of(d.kind)}, {"command_delay_s", d.delay}},
+        tolerance{{"mass", t.mass},
+                  {"viscous", t.viscous},
+                  {"coulomb", t.coulomb},
+                  {"static", t.at_rest},
+                  {"command_delay", tolerance_of_delay}};
+    const auto gain = [&](const char* key, double value, const char* known) {
+        if (value <= 0) return;
+        drive[key] = value;
+        tolerance[known] = tolerance_of_gains;
+    };
+    gain("velocity_per_V", d.velocity_per_V, "velocity");
+    gain("velocity_gain_N_s_per_m", d.velocity_gain, "velocity_gain");
+    gain("velocity_integral_N_per_m", d.velocity_integral, "velocity_integral");
+    gain("position_gain_per_s", d.position_gain, "position_gain");
+    gain("position_gain_per_m", d.duty_gain, "position_gain");
+    if (d.force_limit > 0) drive["force_limit_N"] = d.force_limit;
+    if (d.linear) drive["interpolation"] = "linear";
+    plant.erase("delay_s");
+    if (d.supply > 0) {
+        drive["supply_V"] = d.supply;
+        tolerance["supply"] = tolerance_of_supply;
+        tolerance["force_constant"] = t.force_constant;
+    } else {
+        plant.erase("force_constant_N_per_V");
+    }
+    return {{"plant", plant},
+            {"tolerance", tolerance},
+            {"encoder", {{"resolution_m", a.encoder.resolution}}},
+            {"drive", drive}};
+}
+
 inline ordered_json machine_file(const drawn_machine& m) {
     ordered_json axes = ordered_json::object();
     for (const axis_truth& a : m.described) {
@@ -25,6 +61,10 @@ inline ordered_json machine_file(const drawn_machine& m) {
         if (a.friction.level_at_rest > 0) {
             plant["static_N"] = a.friction.level_at_rest;
             plant["stribeck_velocity_m_per_s"] = a.friction.stribeck_velocity;
+        }
+        if (a.drive.closes()) {
+            axes[a.name] = driven_axis(m, a, plant);
+            continue;
         }
         const tolerances& t = m.tolerance;
         ordered_json drive{{"limit_V", a.controller.limit}};
@@ -71,9 +111,14 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
     const auto kept = rows_kept(m.how, axes[0].position.size(), m.period, dice(seed, 12));
     const bool with_reference = m.how != logs::no_reference;
     std::string out = "t_s";
+    const auto in_volts = [](const drive_truth& d) {
+        return !d.closes() || d.kind == drive_truth::drive_kind::velocity;
+    };
     for (const axis_truth& a : m.described)
-        out += fmt::format("{1}{0}_pos_m,{0}_cmd_V", a.name,
-                           with_reference ? fmt::format(",{}_ref_m,", a.name) : ",");
+        out +=
+            fmt::format("{3}{0}_pos_m{1}{2}", a.name, in_volts(a.drive) ? fmt::format(",{}_cmd_V", a.name) : "",
+                        a.drive.tapped ? fmt::format(",{}_duty", a.name) : "",
+                        with_reference ? fmt::format(",{}_ref_m,", a.name) : ",");
     out += '\n';
     char text[128];
     for (std::size_t k = 0; k < axes[0].position.size(); ++k) {
@@ -82,13 +127,17 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
         std::snprintf(text, sizeof text, "%.*f", off == 0 ? time_digits : 7,
                       static_cast<double>(k) * m.period + off);
         out += text;
-        for (const axis_record& a : axes) {
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            const axis_record& a = axes[i];
+            const drive_truth& d = m.described[i].drive;
             if (with_reference) out += fmt::format(",{:.12f}", a.reference[k]);
             const double command =
                 m.how != logs::measured
                     ? a.command[k]
-                    : a.acting[k] + 0.002 * m.described[0].controller.limit * random.normal();
-            out += fmt::format(",{:.9f},{:.6f}", a.position[k], command);
+                    : a.acting[k] + 0.002 * m.described[i].controller.limit * random.normal();
+            out += fmt::format(",{:.9f}", a.position[k]);
+            if (in_volts(d)) out += fmt::format(",{:.6f}", command);
+            if (d.tapped) out += fmt::format(",{:.5f}", a.duty[k]);
         }
         out += '\n';
     }

@@ -8,11 +8,13 @@ namespace quadrant_gap::trial {
 
 namespace detail {
 
-/// Of the force that the controller asks for, below some 60 Hz.
+/// Of the force that the controller, or a drive with loops of its own, asks for, below some 60 Hz.
 inline std::vector<double> asked_force(const axis_record& r, double force_constant, double period) {
     const auto half = static_cast<std::size_t>(std::max(0.0, std::round(0.004 / period)));
+    const bool closes = !r.force.empty(); // the drive asks for it
     std::vector<double> sum(r.command.size() + 1, 0.0), out(r.command.size());
-    for (std::size_t k = 0; k < r.command.size(); ++k) sum[k + 1] = sum[k] + force_constant * r.command[k];
+    for (std::size_t k = 0; k < r.command.size(); ++k)
+        sum[k + 1] = sum[k] + (closes ? r.force[k] : force_constant * r.command[k]);
     for (std::size_t k = 0; k < out.size(); ++k) {
         const std::size_t a = k > half ? k - half : 0, b = std::min(out.size(), k + half + 1);
         out[k] = (sum[b] - sum[a]) / static_cast<double>(b - a);
@@ -46,7 +48,9 @@ public:
         for (std::size_t k = 0; k < other[0].position.size(); ++k)
             away = std::max(away, std::abs(other[0].position[k] - baseline_[0].position[k]));
         const double gap = detail::rms_of_difference(asked(other), asked_);
-        return away > 0.02 ? HUGE_VAL : gap;
+        const drive_truth& d = m_.described[0].drive;
+        const double farthest = d.supply > 0 ? 1 : 0.02; // a servo that is too weak stays behind
+        return away > farthest ? HUGE_VAL : gap;
     }
     const axis_record& baseline() const { return baseline_[0]; }
     bool runs() const { return !std::isnan(baseline_[0].position.back()); }
@@ -75,8 +79,13 @@ inline surroundings around(const drawn_machine& m, const gap_meter& meter) {
     }
     const auto& a = m.described[0];
     s.peak_force = s.peak_command * a.actuator.force_constant;
+    if (a.drive.closes()) {
+        s.peak_force = 0;
+        for (double f : r.force) s.peak_force = std::max(s.peak_force, std::abs(f));
+    }
     s.seconds = static_cast<double>(r.command.size()) * m.period;
-    s.crossover = a.controller.velocity_gain * a.actuator.force_constant / a.mechanics.mass;
+    s.crossover = a.drive.closes() ? a.drive.velocity_gain / a.mechanics.mass
+                                   : a.controller.velocity_gain * a.actuator.force_constant / a.mechanics.mass;
     return s;
 }
 

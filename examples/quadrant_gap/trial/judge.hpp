@@ -43,7 +43,9 @@ inline bool same_model(const std::string& said, const std::string& true_name) {
     const auto pair = [&](const char* a, const char* b) {
         return (said == a && true_name == b) || (said == b && true_name == a);
     };
-    return pair("mass", "force_constant") || pair("constant_force", "asymmetric_friction");
+    return pair("mass", "force_constant") || pair("constant_force", "asymmetric_friction") ||
+           pair("drive_gain", "supply_voltage") || pair("drive_gain", "force_constant") ||
+           pair("supply_voltage", "force_constant");
 }
 
 inline std::string_view box_of(const std::string& effect) {
@@ -55,7 +57,7 @@ namespace detail {
 
 struct cause_view {
     std::string axis, effect;
-    double probability = 1;
+    double probability = 1, group_probability = 1;
     std::vector<std::string> confusable;
     const ordered_json* whole = nullptr;
 };
@@ -64,6 +66,7 @@ inline std::vector<cause_view> causes_of(const ordered_json& d) {
     std::vector<cause_view> out;
     for (const ordered_json& c : d.value("causes", ordered_json::array()))
         out.push_back({c.value("axis", "x"), c.value("effect", ""), c.value("probability", 1.0),
+                       c.value("group_probability", c.value("probability", 1.0)),
                        c.value("confusable_with", std::vector<std::string>{}), nullptr});
     if (const auto list = d.find("causes"); list != d.end())
         for (std::size_t k = 0; k < out.size(); ++k) out[k].whole = &(*list)[k];
@@ -126,7 +129,10 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
         std::snprintf(text, sizeof text, " %s %.2f", c.effect.c_str(), c.probability);
         j.said += text;
         if (c.axis != "x") j.said += " on " + c.axis;
-        if (c.probability >= 0.5) claims.push_back(c);
+        // A group whose names are one model is a claim as a whole.
+        const bool one_model = std::all_of(c.confusable.begin(), c.confusable.end(),
+                                           [&](const std::string& n) { return same_model(c.effect, n); });
+        if (c.probability >= 0.5 || (one_model && c.group_probability >= 0.5)) claims.push_back(c);
     }
     std::vector<detail::cause_view> wrong;
     for (const auto& c : claims)

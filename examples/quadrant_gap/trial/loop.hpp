@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "drive.hpp"
 #include "plant.hpp"
 
 #include <deque>
@@ -95,6 +96,7 @@ private:
 struct axis_record {
     std::vector<double> reference, position, command;
     std::vector<double> acting{}; ///< mean command behind the amplifier, over the period that follows the row
+    std::vector<double> force, duty; ///< of a drive with loops of its own: mean over each row; as a row begins
 };
 
 /// Log without rounding and noise: what the equations alone make of a motion.
@@ -103,6 +105,19 @@ inline axis_truth ideal(axis_truth a) {
     a.controller.dac_bits = 0;
     return a;
 }
+
+namespace detail {
+
+/// What a drive with loops of its own gets in row k: the reference, or for a velocity drive the volts of a P loop with velocity feedforward.
+inline double set_point(const axis_truth& a, const std::vector<double>& reference, std::size_t k, double y,
+                        double period) {
+    if (a.drive.kind != drive_truth::drive_kind::velocity) return reference[k];
+    const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
+    const double volts = (a.controller.position_gain * (reference[k] - y) + speed) / a.drive.velocity_per_V;
+    return std::clamp(volts, -10.0, 10.0);
+}
+
+} // namespace detail
 
 /// The axes of a machine under their references, at least 20 fine steps a period and none above 25 us. A run that leaves
 /// the travel has a NaN as its last position.
@@ -120,6 +135,7 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
         mechanics body;
         encoder scale;
         laws_of_effects laws;
+        inner_loops inner;
         double displaced = 0; ///< of the reading, by laws of the transmission and of the reading
     };
     std::deque<one> all;
@@ -128,17 +144,24 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
         all.push_back({cascade(axes[i].controller, period),
                        actuator(axes[i].actuator, period, dice(seed, 2 * i)),
                        mechanics(axes[i], static_cast<double>(samples) * period),
-                       encoder(axes[i].encoder, dice(seed, 2 * i + 1)), laws_of_effects(axes[i].laws)});
+                       encoder(axes[i].encoder, dice(seed, 2 * i + 1)), laws_of_effects(axes[i].laws),
+                       inner_loops(axes[i].drive, period, dice(seed, 100 + i))});
         out[i].reference = references[i];
     }
     for (std::size_t k = 0; k < samples; ++k) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
             const double y = all[i].scale(all[i].body.seen() + all[i].displaced);
-            const double u = all[i].control(references[i][k], y);
-            all[i].drive.command(u);
+            const drive_truth& d = axes[i].drive;
+            const double u = d.closes() ? detail::set_point(axes[i], references[i], k, y, period)
+                                        : all[i].control(references[i][k], y);
+            if (d.closes())
+                all[i].inner.set_point(u);
+            else
+                all[i].drive.command(u);
             out[i].position.push_back(y);
             out[i].command.push_back(u);
             out[i].acting.push_back(0);
+            if (d.closes()) out[i].force.push_back(0);
             if (!(std::abs(y) < farthest)) {
                 out[i].position.back() = std::nan("");
                 return out;
@@ -149,6 +172,18 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
             for (std::size_t i = 0; i < axes.size(); ++i) {
                 const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
                 one& a = all[i];
+                if (axes[i].drive.closes()) {
+                    double push = a.inner.force(t, h, a.body.position(), a.body.velocity());
+                    if (axes[i].drive.supply > 0) {
+                        if (f == 0) out[i].duty.push_back(a.inner.duty());
+                        push = a.drive.force(axes[i].drive.supply * push, a.body.position());
+                    }
+                    out[i].force.back() += push / static_cast<double>(fine);
+                    const auto law = [&](joint where) { return a.laws(where, a.body, push, t, h); };
+                    a.body.step(push * (1 + law(joint::motor_gain)) + law(joint::force), t, h, other,
+                                law(joint::friction));
+                    continue;
+                }
                 double acting = a.drive.acting(t, h);
                 out[i].acting.back() += acting / static_cast<double>(fine);
                 const auto law = [&](joint where) { return a.laws(where, a.body, acting, t, h); };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "quadrant/diagnosis/machine/drive_description.hpp"
 #include "quadrant/diagnosis/machine/own_law.hpp"
 
 #include <cstdint>
@@ -78,6 +79,19 @@ struct controller_truth {
     int dac_bits = 16; ///< 0: no rounding
 };
 
+/// A drive with loops of its own. It closes them on the motor, in the fine steps.
+struct drive_truth {
+    using drive_kind = quadrant::diagnosis::drive_kind;
+    drive_kind kind = drive_kind::current;
+    double velocity_per_V = 0, velocity_gain = 0, velocity_integral = 0, force_limit = 0; ///< limit 0: none
+    double position_gain = 0;                                                             ///< [1/s]
+    double duty_gain = 0, supply = 0, minimum_duty = 0, maximum_duty = 1, rate_limit = 0; ///< rate 0: none
+    double delay = 0, loss = 0, clock_slip = 0;
+    bool linear = false, tapped = false; ///< set-points drawn as a line; the duty in the log
+
+    bool closes() const { return kind != drive_kind::current; }
+};
+
 /// The law of an effect of the list, with its true numbers.
 struct law_truth {
     const quadrant::diagnosis::own_law* law = nullptr;
@@ -93,6 +107,7 @@ struct axis_truth {
     process_truth process{};
     stranger unknown{};
     controller_truth controller{};
+    drive_truth drive{};
     std::vector<law_truth> laws{};
 };
 

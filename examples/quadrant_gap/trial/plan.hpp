@@ -3,10 +3,23 @@
 #include "effects.hpp"
 #include "logs.hpp"
 
+#include <array>
 #include <string>
 
 /// Which machines a trial holds: kinds in fixed shares, effects in turn, so that a population of any size is balanced.
 namespace quadrant_gap::trial {
+
+/// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format), or with drives that close
+/// loops of their own.
+enum class population { current, velocity_p, velocity_pi, position, position_servo };
+inline constexpr std::array<const char*, 5> populations{"current", "velocity_p", "velocity_pi", "position",
+                                                        "position_servo"};
+inline quadrant::diagnosis::drive_kind drive_of(population p) {
+    using quadrant::diagnosis::drive_kind;
+    constexpr std::array kinds{drive_kind::current, drive_kind::velocity, drive_kind::velocity,
+                               drive_kind::position, drive_kind::position_servo};
+    return kinds[static_cast<std::size_t>(p)];
+}
 
 enum class kind { none, single, pair, unknown, removed, poor };
 constexpr const char* name_of(kind k) {
@@ -30,6 +43,7 @@ struct planned {
     kind what = kind::none;
     std::vector<std::string> effects{};
     bool two_axes = false, slow_only = false;
+    population machines_of = population::current;
     logs how = logs::plain;
 };
 
@@ -41,6 +55,9 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
         {"coulomb_friction", "stribeck_friction", "presliding_friction", "asymmetric_friction",
          "position_dependent_friction", "friction_drift", "load_friction"},
         {"constant_force", "asymmetric_friction", "position_spring"},
+        {"drive_gain", "supply_voltage", "force_constant"},
+        {"command_delay", "set_point_loss", "clock_slip"},
+        {"minimum_duty", "coulomb_friction"},
         {"cogging", "force_ripple", "encoder_cyclic_error", "position_dependent_friction"}};
     for (const auto& f : families)
         if (std::find(f.begin(), f.end(), a) != f.end() && std::find(f.begin(), f.end(), b) != f.end())
@@ -51,19 +68,21 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
 /// Names that are one model on any motion (gap/FORMAT.md): with one of them out of the candidates the other is no lie.
 inline bool has_a_twin(std::string_view effect) {
     return effect == "mass" || effect == "force_constant" || effect == "constant_force" ||
-           effect == "asymmetric_friction";
+           effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain";
 }
 
 /// Of every 20 machines: 6 without an effect (one with slow strokes only), 6 with one, 3 with two, 2 with something that is in no
 /// list, 2 with an effect that the machine file excludes from the candidates, 1 with slow strokes only. One in ten has two axes, and
 /// all with cross-coupling.
-inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, logs how = logs::plain) {
+inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, population of = population::current,
+                                 logs how = logs::plain) {
     using enum kind;
+    const auto withheld = withheld_effects(drive_of(of));
     dice random(seed, 1);
     std::vector<std::string> turn, slow_turn, removed_turn;
     const auto next = [&](std::vector<std::string>& bag, auto&& may) {
         if (bag.empty()) {
-            for (const auto* e : withheld_effects())
+            for (const auto* e : withheld)
                 if (shows(how, *e) && may(*e)) bag.emplace_back(e->name);
             random.shuffle(bag);
         }
@@ -78,7 +97,7 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, logs 
         random.shuffle(twenty);
         bool slow_none = true;
         for (const kind k : twenty) {
-            planned p{k, {}, random.chance(0.1), k == poor, how};
+            planned p{k, {}, random.chance(0.1) && of == population::current, k == poor, of, how};
             if (k == none && slow_none) slow_none = false, p.slow_only = true;
             if (k == single) p.effects = {next(turn, [](const auto&) { return true; })};
             if (k == poor) p.effects = {next(slow_turn, [](const auto& e) { return e.trial.slow_shows_it; })};
@@ -86,7 +105,7 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, logs 
                 p.effects = {next(removed_turn, [](const auto& e) { return !has_a_twin(e.name); })};
             if (k == pair) {
                 std::vector<std::string> all;
-                for (const auto* e : withheld_effects())
+                for (const auto* e : withheld)
                     if (shows(how, *e)) all.emplace_back(e->name);
                 p.effects = {random.one_of(all)};
                 while (p.effects.size() < 2)

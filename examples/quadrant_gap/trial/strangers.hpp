@@ -11,7 +11,8 @@ inline void put_stranger(insertion& i) {
     const double force = i.amplitude * i.around.peak_force;
     auto& u = i.truth.unknown;
     u.seed = static_cast<std::uint64_t>(i.random.uniform() * 1e15);
-    const int which = i.random.whole(0, 7);
+    // The last two are amplifiers of a command in volts of force.
+    const int which = i.random.whole(0, i.truth.drive.closes() ? 5 : 7);
     const char* name = "";
     switch (which) {
     case 0:

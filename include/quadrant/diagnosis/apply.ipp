@@ -48,12 +48,12 @@ public:
                     fmt::format("{} of axis {} is left out: it is an effect of your own, and a machine "
                                 "file has no key for it",
                                 c.effect, c.axis));
-            else if (const effect* e = effect_named(c.effect);
-                     e && e->keys.empty() && c.effect != "controller_mismatch" && !c.parameters.empty())
-                out_.notes.push_back(
-                    fmt::format("{} of axis {} is left out: it is of this record, and a machine file has "
-                                "no key for it",
-                                c.effect, c.axis));
+            else if (const effect* known = effect_named(c.effect); known && known->keys.empty() &&
+                                                                   c.effect != "controller_mismatch" &&
+                                                                   (known->starts || !c.parameters.empty()))
+                out_.notes.push_back(fmt::format("{} of axis {} is left out: it happened in this record, and a "
+                                                 "machine file has no key for it",
+                                                 c.effect, c.axis));
             else if (c.parameters.empty())
                 out_.notes.push_back(fmt::format(
                     "{} of axis {} is left out: the diagnosis gives no value for it", c.effect, c.axis));

@@ -3,7 +3,9 @@
 #include "apply.hpp"
 #include "compensate/advice.hpp"
 #include "compensate/tracking_forecast.hpp"
+#include "compensate/velocity_drive_feedforward.hpp"
 #include "fit/neighbour.hpp"
+#include "fit/with_drives.hpp"
 #include "match.hpp"
 
 #include <random>
@@ -60,8 +62,9 @@ struct drawn_machines {
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description& machine,
-                                                       const diagnosis_result& d, const machine_log& log,
+                                                       const diagnosis_result& d, const machine_log& as_read,
                                                        double at_least) {
+    const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
     const double seconds = static_cast<double>(log.samples) * machine.sample_period_s;
     if (seconds < shortest_s)
@@ -73,7 +76,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 machine.file,
                 fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
     refuse_positions_only(machine, "a feedforward");
-    refuse_driven(machine, "a feedforward");
+    refuse_driven(machine, "a feedforward", drive_kind::velocity);
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
     compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
@@ -99,11 +102,20 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 causes.push_back(c.effect);
         }
         const controller_description controller = axis.controller.value_or(controller_description());
-        detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s, std::move(causes));
-        a.compensations = ways.take();
-        for (const std::string& effect : ways.without_key())
-            a.others.push_back({effect, fmt::format("a feedforward, for which controller kind {} has no key",
-                                                    controller.kind)});
+        if (axis.drive.closes()) {
+            if (axis.controller)
+                a.compensations =
+                    detail::for_velocity_drive(forecast.plant(), controller, machine.sample_period_s,
+                                               coupled.drive->in_volts, std::move(causes));
+        } else {
+            detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s,
+                                          std::move(causes));
+            a.compensations = ways.take();
+            for (const std::string& effect : ways.without_key())
+                a.others.push_back(
+                    {effect,
+                     fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
+        }
         if (!axis.controller) {
             out.notes.push_back(
                 fmt::format("axis {}: no controller is described: nothing is forecast", a.name));

@@ -32,6 +32,10 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
                               c.models.structure(given, c.noise) < c.limits.structure;
         return as_given ? verdict::no_gap : verdict::within_tolerance;
     }
+    const bool blamed =
+        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.group_probability >= 0.5; });
+    if (!blamed && !c.count_unnamed && !c.controller_open() && c.calibrated_within_tolerances())
+        return verdict::within_tolerance;
     const bool helps =
         std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.shrink.value > 0.2; });
     return helps ? verdict::partly_explained : verdict::unexplained;
@@ -216,6 +220,11 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
     const verdict behind = result.verdict = judge(c, causes);
     result.cut = c.models.cut() || !c.models.missed().empty();
+    if (behind == verdict::within_tolerance && !c.at_floor())
+        out.notes.push_back(
+            worded("axis %s: what is left has structure that no cause explains; it is smaller than "
+                   "what machines inside the tolerances differ by.",
+                   c.axis.name.c_str()));
     result.where = block_places(c);
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
     result.where.insert(result.where.end(), views.begin(), views.end());

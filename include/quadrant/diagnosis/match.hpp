@@ -66,14 +66,17 @@ inline void refuse_positions_only(const machine_description& machine, std::strin
                 fmt::format("axes.{}.plant: is missing; {} needs the forces of the axis", axis.name, what));
 }
 
-/// Refuses a machine with a drive that closes loops of its own, for which `what` is not computed yet: bad_input.
-inline void refuse_driven(const machine_description& machine, std::string_view what) {
+/// Refuses a machine with a drive that closes loops of its own, other than of the kind `but`, for which `what` is not computed: bad_input.
+inline void refuse_driven(const machine_description& machine, std::string_view what,
+                          drive_kind but = drive_kind::current) {
     for (const axis_description& axis : machine.axes)
-        if (axis.drive.closes())
-            throw bad_input(machine.file,
-                            fmt::format("axes.{}.drive.kind: is {}; {} is computed for drives of kind "
-                                        "current only (apply the diagnosis and simulate instead)",
-                                        axis.name, name_of(axis.drive.kind), what));
+        if (axis.drive.closes() && axis.drive.kind != but)
+            throw bad_input(
+                machine.file,
+                fmt::format("axes.{}.drive.kind: is {}; {} is computed for drives of kind current{} only "
+                            "(apply the diagnosis and simulate instead)",
+                            axis.name, name_of(axis.drive.kind), what,
+                            but == drive_kind::current ? "" : fmt::format(" or {}", name_of(but))));
 }
 
 /// Refuses a log that cannot be of the machine described: bad_input.

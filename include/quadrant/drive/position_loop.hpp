@@ -27,7 +27,7 @@ public:
     };
     using state = typename velocity_loop<Real>::state; ///< of the velocity loop
 
-    position_loop(const parameters& p, Real h) : position_loop(checked(p), h, already_checked()) {
+    position_loop(const parameters& p, Real h) : position_loop(checked(p, h), h, already_checked()) {
         (void)velocity_loop<Real>(p.velocity, h);
     }
     position_loop(const parameters& p, Real h, already_checked) noexcept
@@ -38,7 +38,8 @@ public:
     }
 
 private:
-    static const parameters& checked(const parameters& p) {
+    static const parameters& checked(const parameters& p, Real h) {
+        require_positive("position_loop.step", h);
         require_not_negative("position_loop.gain", p.gain);
         require_finite("position_loop.velocity_feedforward", p.velocity_feedforward);
         return p;

@@ -38,7 +38,7 @@ public:
         static state at(Real position) noexcept { return {position}; }
     };
 
-    position_servo(const parameters& p, Real h) : position_servo(checked(p), h, already_checked()) {}
+    position_servo(const parameters& p, Real h) : position_servo(checked(p, h), h, already_checked()) {}
     position_servo(const parameters& p, Real h, already_checked) noexcept
         : gain_(p.gain), minimum_(p.minimum), maximum_(p.maximum), step_(h * Real(p.rate)) {}
 
@@ -50,7 +50,8 @@ public:
     }
 
 private:
-    static const parameters& checked(const parameters& p) {
+    static const parameters& checked(const parameters& p, Real h) {
+        require_positive("position_servo.step", h);
         require_positive("position_servo.gain", p.gain);
         require_not_negative("position_servo.minimum", p.minimum);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {

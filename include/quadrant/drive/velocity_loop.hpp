@@ -42,7 +42,7 @@ public:
         static state at(Real velocity, Real force = Real(0)) noexcept { return {force, velocity}; }
     };
 
-    velocity_loop(const parameters& p, Real h) : velocity_loop(checked(p), h, already_checked()) {}
+    velocity_loop(const parameters& p, Real h) : velocity_loop(checked(p, h), h, already_checked()) {}
     velocity_loop(const parameters& p, Real h, already_checked) noexcept
         : gain_(p.gain), integral_(h * Real(p.integral)), limit_(p.limit) {
         using std::exp;
@@ -57,7 +57,8 @@ public:
     }
 
 private:
-    static const parameters& checked(const parameters& p) {
+    static const parameters& checked(const parameters& p, Real h) {
+        require_positive("velocity_loop.step", h);
         require_not_negative("velocity_loop.gain", p.gain);
         require_not_negative("velocity_loop.integral", p.integral);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {

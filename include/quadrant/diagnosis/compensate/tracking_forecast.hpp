@@ -2,6 +2,7 @@
 #pragma once
 #include "../../analysis/quadrant_glitch.hpp"
 #include "../how_far/closed_loop.hpp"
+#include "../how_far/driven_loop.hpp"
 #include "../log/sensor_box.hpp"
 #include "../text/on_all_cores.hpp"
 #include "../which/restart.hpp"
@@ -60,6 +61,7 @@ public:
             const axis_description& axis = i < inside.size() ? *inside[i] : *at_ends[i - inside.size()];
             plant_model plant(axis, scale_.give());
             plant.cutting_start = plant_.cutting_start;
+            plant.drive.start_force = plant_.drive.start_force;
             const auto bare = loop(axis, plant, {}, {});
             for (std::size_t c = 0; c < n; ++c)
                 after[c][i] = changed(bare, loop(axis, plant, out.compensations[c].keys, added[c]));
@@ -80,6 +82,7 @@ private:
         axis.encoder.resolution_m = 0;
         axis.actuator.dac_bits.reset();
         set_keys(*axis.controller, keys);
+        if (axis.drive.closes()) return simulate_driven(axis, plant, period_, log_);
         return simulate_closed_loop(*axis.controller, axis, plant, period_, log_, {}, 4, added);
     }
     figures changed(const closed_loop_run& bare, const closed_loop_run& with) const {

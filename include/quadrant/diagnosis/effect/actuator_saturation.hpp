@@ -37,15 +37,7 @@ inline constexpr effect actuator_saturation{
         const double most = detail::largest_command(s);
         if (!(most > 0)) return {};
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.drive_limit; };
-        return {{{.key = "actuator.drive_limit_V",
-                  .of = of,
-                  .start = detail::best_start(
-                      s, of,
-                      {0.97 * most, 0.9 * most, 0.8 * most, 0.65 * most, 0.5 * most, 0.35 * most, 0.2 * most}),
-                  .low = 0.05 * most,
-                  .high = most,
-                  .logarithmic = true,
-                  .step = 1e-2}}};
+        return {{detail::limit_below(s, "actuator.drive_limit_V", of, most)}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"actuator.drive_limit_V", {p.drive_limit}}};

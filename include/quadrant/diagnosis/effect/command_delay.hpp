@@ -22,10 +22,13 @@ inline constexpr effect command_delay{
                          .tolerance = true}},
     .prior = {0.6, "buses and drives delay by a period or two that no file mentions"},
     .remedy = "Shorten the bus cycle, or run the reference ahead by the delay.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string("a shorter bus cycle, or a reference that runs ahead by the delay");
-        },
+    .trial = {.low = 0.05,
+              .high = 6,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("drive.command_delay_s",
+                            m.described("drive.command_delay_s") + m.amplitude * m.around.period);
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!s.leader.drive.closes()) return {};
         const double t = s.record.period;

@@ -60,12 +60,19 @@ inline constexpr effect drive_gain{
                          .of = [](plant_model& p) -> double& { return p.drive.duty_gain; },
                          .tolerance = true}},
     .prior = {0.6, "gains are turned at the drive and the file is not"},
-    .remedy = "Read the gains out of the drive, or set them to the values found.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string("set the drive's gains to the values found: a command cannot make up for a loop "
-                               "that is softer");
-        },
+    .remedy = "Read the gains out of the drive, or set them to the values found: no command makes up for a "
+              "loop that is softer.",
+    .trial = {.low = 0.01,
+              .high = 2,
+              .into =
+                  [](trial_machine& m) {
+                      std::vector<const char*> there;
+                      for (const auto& [key, of] : detail::drive_gains)
+                          if (m.described(key) > 0) there.push_back(key);
+                      const char* const key =
+                          there[static_cast<std::size_t>(m.whole(0, static_cast<int>(there.size()) - 1))];
+                      m.set(key, m.changed(m.described(key)));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         std::vector<std::vector<parameter>> out;
         const auto& d = s.leader.drive;

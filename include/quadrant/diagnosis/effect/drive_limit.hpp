@@ -23,11 +23,17 @@ inline constexpr effect drive_limit{
                          .at = member<&drive_description::maximum_duty>}},
     .prior = {0.2, "limits are set by hand and forgotten"},
     .remedy = "Raise the limit in the drive, or ask for less acceleration.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string(
-                "a lower acceleration, or a higher limit in the drive: what is cut off cannot be fed forward");
-        },
+    .trial = {.low = 0.01,
+              .high = 3,
+              .into =
+                  [](trial_machine& m) {
+                      const double full = m.described("drive.supply_V") * m.described("force_constant_N_per_V");
+                      const double most = m.around.peak_force / (1 + m.amplitude);
+                      if (full > 0)
+                          m.set("drive.maximum_duty", std::min(1.0, most / full));
+                      else
+                          m.set("drive.force_limit_N", most);
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double most = detail::most_given(s);
         if (!(most > 0)) return {};
@@ -35,15 +41,7 @@ inline constexpr effect drive_limit{
         double& (*const of)(plant_model&) =
             servo ? [](plant_model& p) -> double& { return p.drive.maximum_duty; }
                   : [](plant_model& p) -> double& { return p.drive.force_limit; };
-        return {{{.key = servo ? "drive.maximum_duty" : "drive.force_limit_N",
-                  .of = of,
-                  .start = detail::best_start(
-                      s, of,
-                      {0.97 * most, 0.9 * most, 0.8 * most, 0.65 * most, 0.5 * most, 0.35 * most, 0.2 * most}),
-                  .low = 0.05 * most,
-                  .high = most,
-                  .logarithmic = true,
-                  .step = 1e-2}}};
+        return {{detail::limit_below(s, servo ? "drive.maximum_duty" : "drive.force_limit_N", of, most)}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         if (p.drive.kind == drive_kind::position_servo) return {{"drive.maximum_duty", {p.drive.maximum_duty}}};

@@ -61,6 +61,19 @@ inline double best_start(const screening& s, double& (*of)(plant_model&), const 
     return values[static_cast<std::size_t>(least - looks.begin())];
 }
 
+/// Where the fit of a limit begins: the best of several shares of the largest value that the record shows. No slope leads to a limit that
+/// clips nothing.
+inline parameter limit_below(const screening& s, const char* key, double& (*of)(plant_model&), double most) {
+    return {.key = key,
+            .of = of,
+            .start = best_start(
+                s, of, {0.97 * most, 0.9 * most, 0.8 * most, 0.65 * most, 0.5 * most, 0.35 * most, 0.2 * most}),
+            .low = 0.05 * most,
+            .high = most,
+            .logarithmic = true,
+            .step = 1e-2};
+}
+
 } // namespace detail
 
 } // namespace quadrant::diagnosis

@@ -7,6 +7,7 @@
 #include "arm_length.hpp"
 #include "asymmetric_friction.hpp"
 #include "backlash.hpp"
+#include "clock_slip.hpp"
 #include "cogging.hpp"
 #include "command_delay.hpp"
 #include "constant_force.hpp"
@@ -14,6 +15,7 @@
 #include "coulomb_friction.hpp"
 #include "cross_coupling.hpp"
 #include "cutting_force.hpp"
+#include "drive_dropout.hpp"
 #include "drive_gain.hpp"
 #include "drive_limit.hpp"
 #include "encoder_cyclic_error.hpp"
@@ -93,6 +95,8 @@ inline constexpr std::array listed_effects{
     &suspect::travel_error,
     &suspect::scale_error,
     &suspect::motor_friction,
+    &suspect::clock_slip,
+    &suspect::drive_dropout,
     &suspect::encoder_quantization,
     &suspect::encoder_cyclic_error,
     &suspect::cutting_force,

@@ -22,10 +22,9 @@ inline constexpr effect minimum_duty{
                          .tolerance = true}},
     .prior = {0.1, "some servos add it against the friction of their gear"},
     .remedy = "Read the servo's registers (PWM offset, punch).",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string("set the least duty in the servo's registers (PWM offset, punch)");
-        },
+    .trial = {.low = 0.001,
+              .high = 0.3,
+              .into = [](trial_machine& m) { m.set("drive.minimum_duty", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (s.leader.drive.kind != drive_kind::position_servo) return {};
         const double most = detail::most_given(s);

@@ -20,11 +20,9 @@ inline constexpr effect set_point_loss{
                          .at = member<&drive_description::set_point_loss>}},
     .prior = {0.1, "a bus without synchronous clocks loses some"},
     .remedy = "Synchronise the clocks of bus and controller, and watch the drive's counter of lost frames.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string(
-                "clocks of bus and controller that run together: what is lost cannot be fed forward");
-        },
+    .trial = {.low = 0.001,
+              .high = 0.4,
+              .into = [](trial_machine& m) { m.set("drive.set_point_loss", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (s.leader.drive.kind != drive_kind::position && s.leader.drive.kind != drive_kind::position_servo)
             return {};

@@ -22,10 +22,12 @@ inline constexpr effect setpoint_rate_limit{
                          .tolerance = true}},
     .prior = {0.2, "profile velocities are set once and forgotten"},
     .remedy = "Read the servo's profile velocity, and raise it or ask for slower motion.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string("a slower motion, or a higher profile velocity in the drive");
-        },
+    .trial = {.low = 0.02,
+              .high = 4,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("drive.setpoint_rate_limit_m_per_s", m.around.peak_velocity / (1 + m.amplitude));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (s.leader.drive.kind != drive_kind::position_servo) return {};
         const auto& r = s.record.observer.drive->set_point;

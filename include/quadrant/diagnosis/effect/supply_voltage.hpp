@@ -22,11 +22,12 @@ inline constexpr effect supply_voltage{
                          .tolerance = true}},
     .prior = {0.3, "batteries and long leads sag"},
     .remedy = "Measure the voltage at the drive while it works.",
-    .advice =
-        [](const plant_model&, double, std::string_view) {
-            return std::string(
-                "a supply that holds its voltage under load: every gain of the drive falls with it");
-        },
+    .trial = {.low = 0.02,
+              .high = 1,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("drive.supply_V", m.changed(m.described("drive.supply_V"), 0.3));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         std::vector<std::vector<parameter>> out;
         if (s.leader.drive.kind == drive_kind::position_servo)

@@ -18,7 +18,6 @@ inline std::vector<double> reaction_to_reading(const plant_model& described, con
     rest.period = of.period;
     rest.in_volts = of.in_volts;
     rest.constant = of.constant;
-    rest.band_Hz = of.band_Hz;
     const std::size_t n = of.position.size();
     rest.set_point.assign(n, 0.0);
     rest.position.assign(n, 0.0);
@@ -27,6 +26,17 @@ inline std::vector<double> reaction_to_reading(const plant_model& described, con
     auto out = rest.run(d).command;
     for (double& f : out) f *= described.force_constant;
     return out;
+}
+
+/// The integral of a velocity loop inside a position loop adds up the noise of the position reading: each row adds an independent
+/// step to the replayed force, which drifts as far as the record is long. Below the frequency w where this drift exceeds the noise
+/// that the reading itself makes of a mass,
+///   M w^2 = position_gain velocity_integral / w,
+/// no force can be distinguished from it. Returns the pole of the filter that takes the drift out of the innovations; 1: no drift.
+inline double drift_pole_of(const plant_model& described, double period) {
+    const drive_model& d = described.drive;
+    if (d.kind != drive_kind::position || !d.has_integral() || !(d.position_gain > 0)) return 1;
+    return std::exp(-period * std::cbrt(d.position_gain * d.velocity_integral / described.mass));
 }
 
 namespace detail {

@@ -5,6 +5,7 @@
 #include "pass.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace quadrant::diagnosis {
@@ -24,6 +25,15 @@ inline const pass_table& passes() { return passes_of<>; }
 /// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
 /// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
 struct predictor {
+    /// e'[k] = e[k] - e[k-1] + pole e'[k-1]: makes a drift of independent steps a signal of one size.
+    static void take_drift_out(std::vector<double>& e, double pole) {
+        double before = e.empty() ? 0 : e.front(), out = 0;
+        for (double& x : e) {
+            out = pole * out + x - before;
+            before = std::exchange(x, out);
+        }
+    }
+
     static constexpr std::size_t abreast = 8; ///< plants in one pass
     double period;                            ///< T [s]
     double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
@@ -33,6 +43,8 @@ struct predictor {
     std::size_t substeps = 1;                     ///< of a period, see substeps_of()
     const driven_motion* drive =
         nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
+    double drift_pole =
+        1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
     /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from
     /// the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the second difference of the
@@ -161,6 +173,8 @@ private:
                   .innovation = e.data(),
                   .acceleration = acceleration ? a.data() : nullptr},
                  passes());
+        if (drift_pole < 1)
+            for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);
     }
 };
 

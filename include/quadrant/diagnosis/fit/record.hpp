@@ -216,7 +216,9 @@ inline axis_record for_machine(axis_record r, const axis_description& a) {
     r.observer.substeps = substeps_of(described, r.period);
     if (r.observer.drive && !r.observer.drive->tapped()) {
         r.reaction = reaction_to_reading(described, *r.observer.drive);
-        const auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
+        r.observer.drift_pole = drift_pole_of(described, r.period);
+        auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
+        if (r.observer.drift_pole < 1) predictor::take_drift_out(e, r.observer.drift_pole);
         for (channel& c : r.score.channels) {
             const bool slow = 5 * c.mean > r.score.block;
             detail::set_gains(c, e);

@@ -57,16 +57,9 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     const drive_model model(d);
     const double count = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
-    double corner = 0.06 / period;
-    driven_motion::replay replay;
-    for (int round = 0; round < 2;
-         ++round) { // the velocity's band follows from the scales, which follow from the force
-        motion->band_Hz = 4 * corner;
-        motion->find_velocity();
-        replay = motion->run(model);
-        out.command = replay.command;
-        corner = scales_of(axis.plant, out, period, count).bandwidth_Hz();
-    }
+    motion->find_velocity();
+    const driven_motion::replay replay = motion->run(model);
+    out.command = replay.command;
     if (motion->tapped()) {
         double most = 0;
         for (double u : motion->measured) most = std::max(most, std::abs(u));

@@ -70,7 +70,7 @@ inline closed_loop_run simulate_driven(const axis_description& axis, const plant
             const double begin = static_cast<double>(k) + static_cast<double>(i) / steps;
             const auto r = clock.between(begin, begin + 1.0 / steps);
             double u = 0;
-            if (motion.is_off(k)) {
+            if (motion.is_off(k) || !d.is_on(now.time)) {
                 loop = velocity_loop<>::state::at(s.v);
                 follower = position_servo<>::state::at(s.x);
             } else if (d.kind == drive_kind::position_servo) {

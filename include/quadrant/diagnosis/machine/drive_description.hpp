@@ -34,6 +34,8 @@ struct drive_description {
     std::optional<double> setpoint_rate_limit_m_per_s; ///< of the set-point that is followed; absent: none
     std::optional<double> command_delay_s;             ///< from the row to the drive's use of it
     std::optional<double> set_point_loss;              ///< probability; a lost one repeats the previous
+    std::optional<double>
+        clock_slip; ///< share that a period of the drive's clock is longer than the controller's; signed
 
     /// Whether the drive closes a loop of its own around the motor.
     bool closes() const { return kind != drive_kind::current; }

@@ -34,6 +34,7 @@ inline constexpr std::array drive_key_table{
     key_of_drive{"set_point_period_s", {false, false, true, true}, {}},
     key_of_drive{"interpolation", {false, false, true, true}, {}},
     key_of_drive{"set_point_loss", {false, false, true, true}, {}},
+    key_of_drive{"clock_slip", {false, false, true, true}, {}},
     key_of_drive{"position_gain_per_m", {false, false, false, true}, {false, false, false, true}},
     key_of_drive{"minimum_duty", {false, false, false, true}, {}},
     key_of_drive{"maximum_duty", {false, false, false, true}, {}},

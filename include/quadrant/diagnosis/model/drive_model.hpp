@@ -16,6 +16,10 @@ struct drive_model {
     double set_point_period = 0; ///< [s]; 0: the sample period
     double delay = 0;            ///< [s]
     double loss = 0;             ///< probability of a set-point
+    double clock_slip =
+        0; ///< the drive's clock takes this share longer for a period than the controller's; signed
+    /// In this part of the record the drive gives nothing [s]; not after it: always on. No file can know it.
+    double off_from = 0, off_until = 0;
     double velocity_per_V = 1, velocity_gain = 0, velocity_integral = 0, velocity_filter_Hz = none;
     double force_limit = none; ///< [N]
     double position_gain = 0;  ///< [1/s]
@@ -27,13 +31,16 @@ struct drive_model {
     /// How old a reading of the position is beside what the drive received and what was measured behind it, which other
     /// registers hold: no file can know it [s].
     double reading_age = 0;
+    /// How long before what is measured behind the drive was read the drive took the set-point of its row, beside its delay: registers are read
+    /// before or after the goal is written, which no file can know either [s].
+    double tap_lateness = 0;
 
     drive_model() = default;
     explicit drive_model(const drive_description& d)
         : kind(d.kind), between(d.between.value_or(interpolation::hold)),
           set_point_period(d.set_point_period_s.value_or(0)), delay(d.command_delay_s.value_or(0)),
-          loss(d.set_point_loss.value_or(0)), velocity_per_V(d.velocity_per_V.value_or(1)),
-          velocity_gain(d.velocity_gain_N_s_per_m.value_or(0)),
+          loss(d.set_point_loss.value_or(0)), clock_slip(d.clock_slip.value_or(0)),
+          velocity_per_V(d.velocity_per_V.value_or(1)), velocity_gain(d.velocity_gain_N_s_per_m.value_or(0)),
           velocity_integral(d.velocity_integral_N_per_m.value_or(0)),
           velocity_filter_Hz(d.velocity_filter_Hz.value_or(none)), force_limit(d.force_limit_N.value_or(none)),
           position_gain(d.position_gain_per_s.value_or(0)),
@@ -44,6 +51,8 @@ struct drive_model {
 
     bool operator==(const drive_model&) const = default;
     bool closes() const { return kind != drive_kind::current; }
+    /// Whether it is on at this time of the record [s].
+    bool is_on(double time) const { return time < off_from || time >= off_until; }
     /// Whether the velocity loop remembers a force that no row shows.
     bool has_integral() const {
         return (kind == drive_kind::velocity || kind == drive_kind::position) && velocity_integral > 0;

@@ -83,6 +83,17 @@ public:
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
     /// behind the names.
     bool at_floor() const { return settled && settled_on_second; }
+    /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the owner's tolerances
+    /// differ by from one another.
+    bool calibrated_within_tolerances() const {
+        const candidate& m = path.front();
+        if (m.stops_at_a_tolerance()) return false; // it would have left them
+        if (!models.within_tolerances(m.fit.ms, record.score, noise)) return false;
+        if (!second) return true;
+        fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
+        fitter(second->observer, second->score).evaluate(there);
+        return models.within_tolerances(there.ms, second->score, noise);
+    }
     /// Nothing is left that would matter when the claims alone are added: the suspects are not needed.
     bool claims_suffice() const {
         const candidate& m = applied();

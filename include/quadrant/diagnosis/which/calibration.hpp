@@ -17,16 +17,29 @@ inline parameter start_of_drive(const record_scales& scale) {
             .spread = scale.command};
 }
 
-/// The age of the position's reading beside what was measured behind the drive: up to a row.
-inline parameter age_of_reading(double period) {
-    return {.key = "reading_age",
-            .of = [](plant_model& p) -> double& { return p.drive.reading_age; },
-            .start = 0,
-            .low = -period,
-            .high = period,
-            .step = 0.05 * period,
-            .expected = 0,
-            .spread = period / std::numbers::sqrt3};
+/// When the position and what was measured behind the drive were read within a row: registers are read one after the other, before or
+/// after the drive takes the row's set-point. Each moment may be off by up to a row.
+/// They begin where the drive that is given has them.
+inline std::array<parameter, 2> timing_of_readings(const drive_model& d, double period) {
+    const auto within_a_row = [&](const char* key, double& (*of)(plant_model&), double start) {
+        return parameter{.key = key,
+                         .of = of,
+                         .start = start,
+                         .low = -period,
+                         .high = period,
+                         .step = 0.05 * period,
+                         .expected = 0,
+                         .spread = period / std::numbers::sqrt3};
+    };
+    return {
+        within_a_row(
+            "reading_age", [](plant_model& p) -> double& { return p.drive.reading_age; }, d.reading_age),
+        within_a_row(
+            "tap_lateness", [](plant_model& p) -> double& { return p.drive.tap_lateness; }, d.tap_lateness)};
+}
+/// Whether a fitted number belongs to the record, not to the machine.
+inline bool is_of_record(const parameter& p) {
+    return p.key == "start_force" || p.key == "reading_age" || p.key == "tap_lateness";
 }
 
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is

@@ -25,6 +25,20 @@ struct candidate {
     /// White noise of the position as it sees it [m], likewise.
     std::shared_ptr<std::optional<double>> noise = std::make_shared<std::optional<double>>();
     bool missed = false; ///< the time was up before it was looked at
+
+    /// Whether a number of the machine file, calibrated inside the owner's tolerance, ends at its end.
+    bool stops_at_a_tolerance() const {
+        for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+            const parameter& p = fit.parameters[i];
+            const double x = fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low),
+                         high = p.to_fit(p.high);
+            const double hair = 1e-6 * (high - low);
+            if (p.spread > 0 && !is_of_record(p) && p.key != "presliding_length_m" &&
+                (x <= low + hair || x >= high - hair))
+                return true;
+        }
+        return false;
+    }
 };
 
 inline constexpr std::size_t folds = 5;

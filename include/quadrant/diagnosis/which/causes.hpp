@@ -235,6 +235,18 @@ inline void widen(std::vector<parameter_estimate>& mine, const std::vector<param
                 }
 }
 
+/// Whether a number of a drive's loops, found outside the owner's tolerance, has an interval that reaches into it. A replay is so sensitive to
+/// these gains that they are fitted outside a narrow tolerance by what a law is wrong by: such a value is a suspect, no claim.
+inline bool may_be_inside_its_tolerance(const axis_case& c, const std::vector<parameter_estimate>& found) {
+    if (!c.axis.drive.closes() || found.empty() || !found.front().key.starts_with("drive.")) return false;
+    for (const parameter& p : c.path.front().fit.parameters)
+        if (p.key == found.front().key && p.spread > 0) {
+            const estimate& e = found.front().values.front();
+            return e.low <= p.high && e.high >= p.low;
+        }
+    return false;
+}
+
 } // namespace detail
 
 /// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings. `rivals`: of
@@ -280,6 +292,11 @@ inline std::vector<cause> plant_causes(const axis_case& c,
         const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
+        if (detail::may_be_inside_its_tolerance(c, named.parameters)) {
+            constexpr double guess = 0.4;
+            named.probability = std::min(named.probability, guess);
+            named.group_probability = std::min(named.group_probability, guess);
+        }
         out.push_back(std::move(named));
     }
     return out;

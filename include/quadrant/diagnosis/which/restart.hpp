@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../fit/record.hpp"
+#include "calibration.hpp"
 
 namespace quadrant::diagnosis {
 
 /// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle the other
-/// one begins is found again, everything else stays as fitted. Costs some forty passes, when there is a process at all.
+/// one begins is found again, everything else stays as fitted. Costs some forty passes, when there is a process at all. Of a drive, the force
+/// that its integral holds at the first row is found again, and what happened in the first record did not happen here.
 inline plant_model restarted(plant_model plant, const axis_record& record) {
+    plant.drive.off_from = plant.drive.off_until = 0;
+    if (plant.drive.has_integral()) {
+        plant.drive.start_force = -plant.static_force(record.position[0]); // what a drive at rest holds
+        // What drifts says nothing of where it began.
+        if (record.observer.drift_pole == 1)
+            plant = fitter(record.observer, record.score).fit(plant, {start_of_drive(record.scale)}, 4).plant;
+    }
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);
     double& (*const start)(plant_model&) = [](plant_model& p) -> double& { return p.cutting_start; };

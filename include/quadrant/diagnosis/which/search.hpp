@@ -21,6 +21,8 @@ public:
            progress tell)
         : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
         given_.fit.plant = plant_model(axis, record.scale.give());
+        if (record.observer.drive && record.observer.drive->tapped())
+            given_.fit.plant.drive = record.observer.drive->with_timing(given_.fit.plant.drive);
         given_.fit.parameters = {};
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
@@ -31,7 +33,8 @@ public:
         start.fit.parameters = calibration(axis, record.scale.give());
         if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
         if (record.observer.drive && record.observer.drive->tapped())
-            start.fit.parameters.push_back(age_of_reading(record.period));
+            for (parameter& p : timing_of_readings(start.fit.plant.drive, record.period))
+                start.fit.parameters.push_back(std::move(p));
         start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
         for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
             start.fit.x[static_cast<Eigen::Index>(i)] =
@@ -223,8 +226,14 @@ public:
     /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what machines inside
     /// the owner's tolerances leave there.
     bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const {
-        const double left = mean_of(ms) - square(c.noise_gain * sigma);
-        return left < square(rules_.immaterial) * tolerance_cloud()[i];
+        return left_in(ms, c, sigma) < square(rules_.immaterial) * tolerance_cloud()[i];
+    }
+    /// Whether no channel holds more above the noise than machines inside the owner's tolerances differ by there.
+    bool within_tolerances(const std::vector<std::vector<double>>& ms, const scoring& score,
+                           double sigma) const {
+        for (std::size_t i = 0; i < std::min(ms.size(), tolerance_cloud().size()); ++i)
+            if (!(left_in(ms[i], score.channels[i], sigma) < tolerance_cloud()[i])) return false;
+        return true;
     }
     bool immaterial(const candidate& c) const {
         const double sigma = noise(c);
@@ -251,10 +260,9 @@ public:
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const {
-        // A position drive's integral adds up the noise of the position: what it leaves wanders, and looks like slow structure.
-        const drive_model& d = given_.fit.plant.drive;
-        if (!record_.reaction.empty() && d.has_integral() && d.position_gain > 0) return near_floor(c);
-        return structure(c, noise(c)) <= 0 && held_out_force(c) < 1.3 * floor_force(c);
+        // The innovations are free of the drift that a drive's integral makes of noise, the residual force is not.
+        const double most = record_.observer.drift_pole < 1 ? rules_.near_floor : 1.3;
+        return structure(c, noise(c)) <= 0 && held_out_force(c) < most * floor_force(c);
     }
 
     bool settled(const candidate& c) const { return settled(c.fit.ms, record_.score, noise(c)); }
@@ -263,9 +271,8 @@ public:
     bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
     /// The same, or what the laws of its friction and of its causes may be wrong by.
     bool near_its_laws(const candidate& c) const {
-        const auto& f = c.fit.plant.friction;
         const double taken = std::max(0.0, square(held_out_force(calibrated_)) - square(held_out_force(c)));
-        const double laws = law_error * std::hypot(f.coulomb + f.excess, std::sqrt(taken));
+        const double laws = law_error * std::hypot(friction_level(c.fit.plant), std::sqrt(taken));
         return held_out_force(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
     }
 
@@ -281,7 +288,7 @@ public:
             for (const auto& p : calibrated_.fit.parameters) {
                 const double low = p.to_fit(p.low), high = p.to_fit(p.high);
                 const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-                if (p.key != "presliding_length_m" && p.key != "start_force" && p.key != "reading_age")
+                if (p.key != "presliding_length_m" && !is_of_record(p) && !is_of_feedback(p))
                     p.of(plants[j]) = p.from_fit(low + share * (high - low));
             }
         std::vector<std::vector<double>> e(plants.size());
@@ -433,6 +440,25 @@ public:
     }
 
 private:
+    /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its path does not depend on them; only a
+    /// replay of the logged motion with another gain differs, by far more than two machines would.
+    bool is_of_feedback(const parameter& p) const {
+        const drive_kind kind = given_.fit.plant.drive.kind;
+        return p.key.starts_with("drive.") && kind != drive_kind::position_servo;
+    }
+    /// Mean square of a channel above what it sees of the noise [m^2].
+    static double left_in(const std::vector<double>& ms, const channel& c, double sigma) {
+        return mean_of(ms) - square(c.noise_gain * sigma);
+    }
+    /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted force [N].
+    double friction_level(const plant_model& p) const {
+        const auto& f = p.friction;
+        if (!(f.load > 0)) return f.coulomb + f.excess;
+        std::vector<double> transmitted(record_.position.size());
+        for (std::size_t k = 0; k < transmitted.size(); ++k)
+            transmitted[k] = p.force_constant * record_.command[k] - p.static_force(record_.position[k]);
+        return f.coulomb + f.excess + f.load * rms(transmitted);
+    }
     /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command is its own, and
     /// box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
     bool beside_drive(const effect& e) const {
