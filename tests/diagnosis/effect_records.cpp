@@ -60,7 +60,8 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
 TEST_CASE("effects: what an effect reads from a fitted model are keys of the records") {
     const plant_model plant;
     for (const effect* e : every_effect()) {
-        if (!e->read) continue;
+        if (!e->read || e->keys.empty())
+            continue; // without a key it happened in one record, and has words of its own
         CAPTURE(e->name);
         for (const key_value& found : e->read(plant)) {
             CAPTURE(found.key);

@@ -89,10 +89,13 @@ TEST_CASE("suspects: what acts on the command before the tap of a measured one i
 
 TEST_CASE("chance: a law that takes nearly all off is believed, one that takes a third off is not") {
     namespace d = quadrant::diagnosis::detail;
-    CHECK(d::by_chance(0) == doctest::Approx(0.03));
-    CHECK(d::by_chance(std::sqrt(1.0 / 9)) < 0.05); // nine tenths of the energy
-    CHECK(d::by_chance(std::sqrt(2.0)) > 0.9);      // a third
-    for (double left = 0; left < 3; left += 0.1) CHECK(d::by_chance(left) <= d::by_chance(left + 0.1));
+    constexpr std::size_t names = 30;
+    CHECK(d::by_chance(names, 0) == doctest::Approx(0.03));
+    CHECK(d::by_chance(names, std::sqrt(1.0 / 9)) < 0.05); // nine tenths of the energy
+    CHECK(d::by_chance(names, std::sqrt(2.0)) > 0.9);      // a third
+    for (double left = 0; left < 3; left += 0.1)
+        CHECK(d::by_chance(names, left) <= d::by_chance(names, left + 0.1));
+    CHECK(d::by_chance(60, 1) > d::by_chance(30, 1)); // more laws tried, more luck
 }
 
 TEST_CASE("chance: two rare effects must bring more than two common ones") {

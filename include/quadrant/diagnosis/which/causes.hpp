@@ -145,12 +145,12 @@ inline double doubtful_beside(const axis_case& c, double explained) {
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the
 /// noise nothing is left that could speak for it. While structure is left, the whole may be of a shape that no name has,
 /// and the name its nearest. One law takes at least this share of a shape drawn at random among `shapes` independent
-/// ones with the probability (1 - share)^((shapes - 1)/2); as many laws were tried as there are names.
-inline double by_chance(const axis_case& c, double left) {
+/// ones with the probability (1 - share)^((shapes - 1)/2); as many laws were tried as there are `suspects`.
+inline double by_chance(std::size_t suspects, double left) {
     constexpr double shapes =
         13; // a jump, a slope and a bend in velocity, position, time and command, and a mean
     const double share = 1 / (1 + square(left));
-    const double names = static_cast<double>(c.models.suspects().size());
+    const double names = static_cast<double>(suspects);
     return std::min(0.03 + names * std::pow(1 - share, (shapes - 1) / 2), 0.95);
 }
 
@@ -158,15 +158,16 @@ inline double by_chance(const axis_case& c, double left) {
 /// hold-out log, where a gap stays open there, beside what it explains here and there. A name that makes that one worse was not
 /// the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
-    if (!c.second) return by_chance(c, doubtful_beside(c, explained_by(c, which)));
+    const std::size_t names = c.models.suspects().size();
+    if (!c.second) return by_chance(names, doubtful_beside(c, explained_by(c, which)));
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
     const double here = explained_by(c, which), there = between(std::min(before.force, machine), after.force);
-    double out = by_chance(c, doubtful_beside(c, std::max(here, there)));
+    double out = by_chance(names, doubtful_beside(c, std::max(here, there)));
     if (!c.settled_on_second) // the motion there may show it less, but not nothing of it beside an open gap
-        out = std::max(out, by_chance(c, between(after.force, c.floor_force()) / std::sqrt(here * there)));
+        out = std::max(out, by_chance(names, between(after.force, c.floor_force()) / std::sqrt(here * there)));
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }

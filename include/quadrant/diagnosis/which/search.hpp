@@ -309,7 +309,8 @@ public:
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
-        while (best.effects.size() < rules_.most_causes && !at_noise(best) && !over() &&
+        while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
+               (best.effects.empty() || !over()) &&
                (best.effects.empty() || !near_floor(best) || !settled(best))) {
             std::vector<candidate> next;
             const auto add = [&](std::vector<candidate> some) {
