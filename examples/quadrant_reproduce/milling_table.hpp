@@ -166,6 +166,10 @@ public:
     double from_middle() const {
         return std::hypot(loop_.table().x().wire.place.value(), loop_.table().y().wire.place.value());
     }
+    /// Where one axis, not its encoder, is [m].
+    double place(bool of_y) const {
+        return (of_y ? loop_.table().y().wire.place : loop_.table().x().wire.place).value();
+    }
     bool stopped() const { return loop_.faulted() || loop_.limited(); }
 
 private:

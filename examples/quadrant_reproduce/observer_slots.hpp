@@ -10,7 +10,7 @@
 #include <array>
 
 /// The observers of [Jamaludin2008] chapters 4 and 5 and Appendices C and D as boxes for the disturbance slot of `milling_axis`: position
-/// and wanted command in, what has to be subtracted from the command out. `sense` brings the acceleration sensor.
+/// and wanted command in, what has to be subtracted from the command out; `applied` tells what was sent. `sense` brings the acceleration sensor.
 namespace thesis {
 
 using volt = quantity_of<signal::voltage>;
@@ -29,6 +29,7 @@ public:
     void sense(quantity_of<signal::acceleration>) noexcept {}
     void reset() noexcept { box_.reset(); }
     volt operator()(quantity<si::length> position, volt wanted) noexcept { return box_(position, wanted); }
+    void applied(volt u) noexcept { box_.applied(u); }
 
 private:
     disturbance_observer<signal::voltage> box_;
@@ -40,6 +41,7 @@ struct nothing_observed {
     void sense(quantity_of<signal::acceleration>) noexcept {}
     void reset() noexcept {}
     volt operator()(quantity<si::length>, volt) noexcept { return {}; }
+    void applied(volt) noexcept {}
 };
 /// Eq. (5.6): from the Ferraris sensor, filtered by the same Q. Without `feeds_back` it only estimates.
 class by_ferraris {
@@ -50,12 +52,11 @@ public:
           feeds_back_(p.feeds_back) {}
     void sense(quantity_of<signal::acceleration> a) noexcept { acceleration_ = a; }
     void reset() noexcept { box_.reset(), applied_ = volt(); }
-    volt operator()(quantity<si::length>, volt wanted) noexcept {
+    volt operator()(quantity<si::length>, volt) noexcept {
         force_ = box_(acceleration_, applied_);
-        const volt d = feeds_back_ ? box_.command() : volt();
-        applied_ = wanted - d;
-        return d;
+        return feeds_back_ ? box_.command() : volt();
     }
+    void applied(volt u) noexcept { applied_ = u; }
     quantity_of<signal::force> force() const noexcept { return force_; }
 
 private:
@@ -75,12 +76,11 @@ public:
           q_(low_pass::of(bilinear_differences(q_filter<2, 0>(p.of.corner), T), T)) {}
     void sense(quantity_of<signal::acceleration> a) noexcept { acceleration_ = a; }
     void reset() noexcept { box_.reset(), q_.reset(), applied_ = volt(); }
-    volt operator()(quantity<si::length> position, volt wanted) noexcept {
+    volt operator()(quantity<si::length> position, volt) noexcept {
         box_(position, acceleration_, applied_);
-        const volt d = q_(box_.disturbance()) / kf_;
-        applied_ = wanted - d;
-        return d;
+        return q_(box_.disturbance()) / kf_;
     }
+    void applied(volt u) noexcept { applied_ = u; }
 
 private:
     gain_of<signal::force, signal::voltage> kf_;
@@ -103,11 +103,8 @@ public:
                T) {}
     void sense(quantity_of<signal::acceleration>) noexcept {}
     void reset() noexcept { box_.reset(), applied_ = volt(); }
-    volt operator()(quantity<si::length> position, volt wanted) noexcept {
-        const volt d = box_(position, applied_);
-        applied_ = wanted - d;
-        return d;
-    }
+    volt operator()(quantity<si::length> position, volt) noexcept { return box_(position, applied_); }
+    void applied(volt u) noexcept { applied_ = u; }
 
 private:
     static std::array<frequency, Count> multiples() {

@@ -27,6 +27,34 @@ TEST_CASE("diagnose: the machine as described has no gap") {
     CHECK(d.causes.empty());
 }
 
+TEST_CASE("diagnose: a delay that splits a period leaves no more force than one of whole periods") {
+    const auto left_by = [](double delay) {
+        machine real;
+        real.delay = delay;
+        auto file = described(real);
+        auto& plant = file.axes[0].plant;
+        plant.mass_kg = real.mass;
+        plant.force_constant_N_per_V = real.force_constant;
+        plant.viscous_N_s_per_m = real.viscous;
+        plant.coulomb_N = real.coulomb;
+        return diagnosed(file, real).axes[0].gap.force_rms_N;
+    };
+    const double whole = left_by(0.0005);
+    for (const double delay : {0.00037, 0.00073}) CHECK(left_by(delay) < 1.2 * whole);
+}
+
+TEST_CASE("diagnose: a value that its tolerance stops is told, when no effect may take its place") {
+    machine real;
+    auto file = described(real);
+    file.axes[0].plant.mass_kg = real.mass * 1.05; // beyond the 2 % that the owner states
+    file.excluded_effects = {"mass", "force_constant"};
+    const auto d = diagnosed(file, real);
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("stops at the end of its tolerance") != std::string::npos &&
+               note.find("mass_kg") != std::string::npos;
+    }));
+}
+
 TEST_CASE("diagnose: a constant force, and its second reading") {
     machine real;
     const auto file = described(real);

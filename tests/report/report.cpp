@@ -94,8 +94,8 @@ TEST_CASE("report: says the verdict, the causes with their intervals, the altern
     for (const char* part :
          {"Coulomb friction and constant force", ">explained</span>", "20.4 N (19.9 to 20.8)",
           "cannot be told apart from friction that differs by direction", "coulomb asymmetry", "20.7 → 3.9 N",
-          "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times", "odds of 66.7 to 1", "<p>Simulated beforehand.</p>",
-          "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
+          "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times", "odds of 66.7 to 1",
+          "<p>Simulated beforehand.</p>", "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
         CHECK_MESSAGE((has(html, part) || has(html, escape(part))), part);
     CHECK(count(html, "data-effect=") == 3);
     CHECK(count(html, "class=\"box guilty\" data-box=\"mechanics\"") == 1);
@@ -217,4 +217,20 @@ TEST_CASE("summary: says what the report says") {
          {"Explained: emps_run1.csv", "Coulomb friction, axis x: probability > 99 %", "coulomb: 20.4 N",
           "95 % (93 to 97)", "a suspect, not a claim", "Next experiment", "Note: "})
         CHECK_MESSAGE(has(text, part), part);
+}
+
+TEST_CASE("loop picture: one box a row from the command to the mechanics, a drive and a transmission where the "
+          "axis has them") {
+    axis_result a = sample::explained().axes.at(0);
+    const auto boxes = [](const std::string& svg) { return count(svg, "<g class=\"box"); };
+    const std::string plain = loop(a);
+    CHECK(boxes(plain) == 5);
+    CHECK_FALSE(has(plain, "data-box=\"transmission\""));
+    a.where.push_back(
+        {"readings", "transmission", "lost motion takes this share off", {0.99, 0.99, 0.99}, "causes"});
+    const std::string two = loop(a);
+    CHECK(boxes(two) == 6);
+    CHECK(has(two, "transmission (99 % of the difference of the two readings)"));
+    a.driven = true;
+    CHECK(boxes(loop(a)) == 7);
 }

@@ -80,7 +80,7 @@ inline std::string causes(const diagnosis_result& d) {
             "<tr data-effect=\"{}\"><th scope=\"row\"><span class=\"cause\">{}</span><small>axis "
             "{}{}{}{}</small></th>"
             "<td data-label=\"Probability\">{}</td><td data-label=\"Values found (95 % interval)\">{}</td>"
-            "<td data-label=\"Gap before → after, rms\">{}</td><td data-label=\"Force gap shrinks "
+            "<td data-label=\"Gap before → after, rms\">{}</td><td data-label=\"Gap shrinks "
             "by\">{}</td></tr>\n",
             escape(c.effect), escape(capital(voice(name_of_effect(c.effect)))), escape(c.axis),
             box.empty() ? "" : ", ", box, claimed(c) ? "" : "<br>a suspect, not a claim", probability_bar(c),
@@ -106,7 +106,7 @@ inline std::string causes(const diagnosis_result& d) {
     }
     return "<table><thead><tr><th scope=\"col\">Effect</th><th scope=\"col\">Probability</th><th "
            "scope=\"col\">Values found "
-           "(95 % interval)</th><th scope=\"col\">Gap before → after, rms</th><th scope=\"col\">Force gap "
+           "(95 % interval)</th><th scope=\"col\">Gap before → after, rms</th><th scope=\"col\">Gap "
            "shrinks by</th></tr>"
            "</thead><tbody>\n" +
            rows + "</tbody></table>";

@@ -27,20 +27,27 @@ inline std::string chain_picture(const axis_result& a, const std::string& boxes,
 /// frame, bold letters and an exclamation mark, so that it is seen without colour too.
 inline std::string loop(const axis_result& a) {
     std::vector<std::string> guilty;
+    const bool two_encoders =
+        std::any_of(a.where.begin(), a.where.end(), [](const place& p) { return p.view == "readings"; });
     const auto box = [&](std::string_view name, int x, int y, int height) {
+        // Between two encoders the gap is the difference of their readings.
+        const bool between = two_encoders && name == "transmission";
         double share = 0;
         bool found = false;
         for (const place& p : a.where)
-            if (p.view == "block" && p.block == name) {
+            if (p.view == (between ? "readings" : "block") && p.block == name) {
                 share += p.share.value;
                 found = true;
             }
         const bool marked = share >= 0.2;
-        if (marked) guilty.push_back(fmt::format("{} ({} of the gap)", name, percent(share)));
+        if (marked)
+            guilty.push_back(fmt::format("{} ({} of the {})", name, percent(share),
+                                         between ? "difference of the two readings" : "gap"));
         std::string svg = fmt::format(
             "<g class=\"box{}\" data-box=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"104\" height=\"{}\" rx=\"6\"/>"
-            "<text x=\"{}\" y=\"{}\">{}</text>",
-            marked ? " guilty" : "", name, x, y, height, x + 52, y + (found ? 23 : height / 2 + 5), name);
+            "<text x=\"{}\" y=\"{}\"{}>{}</text>",
+            marked ? " guilty" : "", name, x, y, height, x + 52, y + (found ? 23 : height / 2 + 5),
+            name.size() > 10 ? " textLength=\"94\" lengthAdjust=\"spacingAndGlyphs\"" : "", name);
         if (found)
             svg += fmt::format("<text class=\"share\" x=\"{}\" y=\"{}\">{}</text>", x + 52, y + 43,
                                percent(share));
@@ -57,15 +64,25 @@ inline std::string loop(const axis_result& a) {
         return chain_picture(
             a, boxes, guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty)));
     }
-    // A drive with loops of its own stands between controller and actuator, and what follows one row lower.
-    const int down = a.driven ? 104 : 0;
-    const std::string boxes = box("controller", 72, 34, 56) + (a.driven ? box("drive", 246, 34, 56) : "") +
-                              box("actuator", 246, 34 + down, 56) + box("mechanics", 246, 138 + down, 56) +
-                              box("sensor", 72, 138 + down, 56) + box("process", 246, 236 + down, 54);
+    // From the command down to the mechanics, one row each: a drive with loops of its own in front of the actuator, a
+    // transmission between two encoders behind it.
+    std::vector<std::string_view> column;
+    if (a.driven) column.push_back("drive");
+    column.push_back("actuator");
+    if (two_encoders) column.push_back("transmission");
+    const int down = 104 * (static_cast<int>(column.size()) - 1);
+    std::string boxes = box("controller", 72, 34, 56), between_rows;
+    for (std::size_t row = 0; row < column.size(); ++row) {
+        const int y = 34 + 104 * static_cast<int>(row);
+        boxes += box(column[row], 246, y, 56);
+        if (row > 0) between_rows += fmt::format("<path d=\"M298 {}V{}\"/>", y + 56, y + 103);
+    }
+    boxes += box("mechanics", 246, 138 + down, 56) + box("sensor", 72, 138 + down, 56) +
+             box("process", 246, 236 + down, 54);
     const std::string wires = fmt::format(
         R"(<path d="M2 62H22"/><path d="M45 62H71"/><path d="M176 62H245"/><path d="M350 62H368V166H351"/>
 {}<path d="M246 {}H177"/><path d="M72 {}H34V74"/><path d="M298 {}V{}"/>)",
-        a.driven ? "<path d=\"M298 194V241\"/>" : "", 166 + down, 166 + down, 236 + down, 195 + down);
+        between_rows, 166 + down, 166 + down, 236 + down, 195 + down);
     const std::string text =
         guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty));
     return fmt::format(
@@ -80,7 +97,7 @@ inline std::string loop(const axis_result& a) {
 <p class="hint loop-says">{4}.</p>
 )svg",
         escape(a.name), text, boxes, voice_of(a)("force"), capital(text), 294 + down, wires,
-        a.driven ? "" : voice_of(a)("force"), 158 + down, 186 + down, 220 + down);
+        down > 0 ? "" : voice_of(a)("force"), 158 + down, 186 + down, 220 + down);
 }
 
 inline std::string paragraph(const std::string& text) {

@@ -58,7 +58,9 @@ inline outcome harmonics_memory(const std::string& id, const thesis::axis& a) {
     const auto follow = [&](auto configured, int harmonics) {
         using chosen = decltype(configured);
         const cut c{.cycle = exact_cycle, .weights = first_order};
-        axis_in_cut<chosen, gms_plant> axis(a, a, c);
+        table_in_cut<chosen, gms_plant> both(c); // the other axis stands
+        using motion = typename decltype(both)::loop::motion;
+        const bool of_y = a.name == std::string("y");
         auto some = table;
         for (std::size_t i = std::size_t(harmonics); i < 15; ++i) some.real[i] = some.imaginary[i] = 0;
         cutting_force<15> cutter({milling_harmonics::fundamental, c.force * milling_harmonics::scale, some},
@@ -68,12 +70,15 @@ inline outcome harmonics_memory(const std::string& id, const thesis::axis& a) {
         double squares = 0, counted = 0;
         for (int k = 0; k * T < end; ++k) {
             const double t = k * T, x = 0.03 * (1 - std::cos(w * t));
-            const double error = 1e6 * (x - axis.position());
-            if (!(std::abs(error) < 1000) || axis.stopped()) return push_result{.diverged = true};
+            const double error = 1e6 * (x - both.place(of_y));
+            if (!(std::abs(error) < 1000) || both.stopped()) return push_result{.diverged = true};
             r.time.push_back(t), r.error.push_back(error);
             if (t > end / 2) squares += error * error, counted += 1;
-            axis.step({x * 1_m, 0.03 * w * std::sin(w * t) * 1_mps, 0.03 * w * w * std::cos(w * t) * 1_mps2},
-                      cutter());
+            const motion along{x * 1_m, 0.03 * w * std::sin(w * t) * 1_mps,
+                               0.03 * w * w * std::cos(w * t) * 1_mps2};
+            const auto push = cutter();
+            both.step({.x = of_y ? motion{} : along, .y = of_y ? along : motion{}}, of_y ? 0.0 * push : push,
+                      of_y ? push : 0.0 * push);
         }
         r.rms = std::sqrt(squares / counted);
         return r;
