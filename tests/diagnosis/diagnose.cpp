@@ -31,12 +31,12 @@ TEST_CASE("diagnose: a delay that splits a period leaves no more force than one 
     const auto left_by = [](double delay) {
         machine real;
         real.delay = delay;
+        real.coulomb = 0; // friction laws differ between simulation and model, and that force with the delay
         auto file = described(real);
         auto& plant = file.axes[0].plant;
         plant.mass_kg = real.mass;
         plant.force_constant_N_per_V = real.force_constant;
         plant.viscous_N_s_per_m = real.viscous;
-        plant.coulomb_N = real.coulomb;
         return diagnosed(file, real).axes[0].gap.force_rms_N;
     };
     const double whole = left_by(0.0005);
