@@ -12,8 +12,6 @@ inline void join(axis_result& result, std::vector<cause>& causes, diagnosis_resu
     for (place& p : o.places) {
         if (p.view == "block" && std::string_view(view) != "block") {
             if (p.block.empty()) continue;
-            p.finding = p.block + ": " + p.finding;
-            p.block.clear();
             p.basis.clear();
             p.view = view;
         }
