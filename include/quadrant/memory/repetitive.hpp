@@ -136,20 +136,8 @@ public:
         reader_ = old_reader_ = reader(periods_);
         out_.reset();
     }
-    void settle(argument x) noexcept {
-        if (integrates()) return settle(x, out_.last());
-        const Real g = smoothing_.sum() * sum(weights_);
-        const value r = g / (1 - g) * x;
-        fill(x + r, r, learning_.sum() * r);
-    }
-    void settle(argument x, value y) noexcept {
-        const Real gain = learning_.sum(), g = smoothing_.sum() * sum(weights_);
-        if (none(finite(x, y))) return out_.raise();
-        if (any(equal(gain, Real(0))) || any(equal(g, Real(0))))
-            return integrates() ? fill({}, {}, {}) : settle(x);
-        const value r = y / gain;
-        fill(r / g, r, y);
-    }
+    void settle(argument x) noexcept { stand(x, out_.last(), false); }
+    void settle(argument x, value y) noexcept { stand(x, y, true); }
 
     /// Of what repeats, from the next step on; see above.
     void cycle(quantity<si::time, number> d) noexcept {
@@ -253,14 +241,33 @@ private:
             detail::plain(given_.fade) > 0 ? given_.fade.value() / period_.value() : detail::plain(periods);
         fade_ = state_.fading = std::size_t(std::ceil(steps));
     }
-    void fill(value m, value r, value y) noexcept {
-        const value p = smoothing_.sum() * m;
-        if (none(finite(m, p, r, y))) return out_.raise();
-        state_.m.x.fill(m), state_.p.fill(p), state_.r.x.fill(r);
+    /// What a memory at rest holds: m = e + r, r, and its output.
+    struct standing {
+        value m{}, r{}, y{};
+    };
+    /// At the input x, or, where any output may stand at one input or `has_output`, at the output y. `gain`: sum of L; g: of Q and the
+    /// weights.
+    static standing at_rest(value x, value y, bool has_output, const Real& gain, const Real& g) noexcept {
+        const bool any_output = std::abs(detail::plain(g) - 1) <= whole_tolerance;
+        if ((has_output || any_output) && detail::plain(gain) != 0 && detail::plain(g) != 0) {
+            const value r = y / gain;
+            return {r / g, r, y};
+        }
+        if (any_output) return {};
+        const value r = g / (Real(1) - g) * x;
+        return {x + r, r, gain * r};
+    }
+    void stand(value x, value y, bool has_output) noexcept {
+        if (none(finite(x, y))) return out_.raise();
+        const Real q = smoothing_.sum();
+        const standing now = at_rest(x, y, has_output, learning_.sum(), q * sum(weights_));
+        const value p = q * now.m;
+        if (none(finite(now.m, p, now.r, now.y))) return out_.raise();
+        state_.m.x.fill(now.m), state_.p.fill(p), state_.r.x.fill(now.r);
         state_.fading = 0;
         if (pending_) start(wanted_);
         state_.fading = 0; // nothing to fade: both cycles read the same
-        out_.reset(y);
+        out_.reset(now.y);
     }
 
     static Real sum(const std::array<Real, Order>& c) noexcept {
@@ -282,6 +289,36 @@ private:
     held_output<value> out_;
 };
 
+namespace detail {
+/// Parameters of several memories in lanes: as those of one, each for all lanes; `ahead` and `fade` are common to them.
+template <class One, std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps, class Real>
+struct repetitive_lanes {
+    using single = typename One::number;
+
+    quantity<si::time, Real> cycle;
+    std::array<Real, Order> weights{Real(1)};
+    std::array<Real, LearningTaps> learning{Real(1)};
+    std::size_t ahead = 0;
+    std::array<Real, SmoothingTaps> smoothing = only_the_middle();
+    duration fade{};
+
+    static std::array<Real, SmoothingTaps> only_the_middle() {
+        std::array<Real, SmoothingTaps> q{};
+        q[SmoothingTaps / 2] = Real(1);
+        return q;
+    }
+    /// Those of lane i.
+    typename One::parameters of(std::size_t i) const {
+        const auto taps = [i](const auto& from) {
+            std::array<single, std::tuple_size_v<std::remove_cvref_t<decltype(from)>>> out;
+            for (std::size_t k = 0; k < out.size(); ++k) out[k] = single(lane(from[k], i));
+            return out;
+        };
+        return {in_real<single>(lane(cycle, i)), taps(weights), taps(learning), ahead, taps(smoothing), fade};
+    }
+};
+} // namespace detail
+
 /// In lanes: each lane has its own cycle, weights and filters, and the call loops over the lanes.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
           std::size_t SmoothingTaps, several_lanes Real>
@@ -294,31 +331,7 @@ requires detail::repeats<Order, LearningTaps, SmoothingTaps> &&
     using single = typename Real::single;
 
 public:
-    /// As those of one memory; `ahead` and `fade` are the same in all lanes.
-    struct parameters {
-        quantity<si::time, Real> cycle;
-        std::array<Real, Order> weights{Real(1)};
-        std::array<Real, LearningTaps> learning{Real(1)};
-        std::size_t ahead = 0;
-        std::array<Real, SmoothingTaps> smoothing = only_the_middle();
-        duration fade{};
-
-        static std::array<Real, SmoothingTaps> only_the_middle() {
-            std::array<Real, SmoothingTaps> q{};
-            q[SmoothingTaps / 2] = Real(1);
-            return q;
-        }
-        /// Those of lane i.
-        typename one::parameters of(std::size_t i) const {
-            const auto taps = [i](const auto& from) {
-                std::array<single, std::tuple_size_v<std::remove_cvref_t<decltype(from)>>> out;
-                for (std::size_t k = 0; k < out.size(); ++k) out[k] = single(lane(from[k], i));
-                return out;
-            };
-            return {
-                in_real<single>(lane(cycle, i)), taps(weights), taps(learning), ahead, taps(smoothing), fade};
-        }
-    };
+    using parameters = detail::repetitive_lanes<one, Order, LearningTaps, SmoothingTaps, Real>;
     repetitive(const parameters& p, duration period)
         : lane_by_lane<one, Real>([&](std::size_t i) { return p.of(i); }, period), given_(p) {}
     using lane_by_lane<one, Real>::settle;

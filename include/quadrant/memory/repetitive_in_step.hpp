@@ -89,32 +89,14 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = Real; ///< of parameters
 
-    /// As those of one memory, each for all lanes; `ahead` and `fade` are common to them.
-    struct parameters {
-        quantity<si::time, Real> cycle;
-        std::array<Real, Order> weights{Real(1)};
-        std::array<Real, LearningTaps> learning{Real(1)};
-        std::size_t ahead = 0;
-        std::array<Real, SmoothingTaps> smoothing = only_the_middle();
-        duration fade{};
-
-        static std::array<Real, SmoothingTaps> only_the_middle() {
-            std::array<Real, SmoothingTaps> q{};
-            q[SmoothingTaps / 2] = Real(1);
-            return q;
-        }
-        /// Those of lane i.
-        typename one::parameters of(std::size_t i) const {
-            return {lane(cycle, i), lane(weights, i), lane(learning, i), ahead, lane(smoothing, i), fade};
-        }
-    };
+    using parameters = detail::repetitive_lanes<one, Order, LearningTaps, SmoothingTaps, Real>;
     /// The cycles that were learnt, and the samples that are inside the filters.
     struct state {
-        detail::lane_window<W, taps_of_m::size> m{};        ///< e + r
-        detail::lane_window<W, taps_of_r::size> r{};        ///< r, `ahead` samples early
+        detail::lane_window<W, taps_of_m::size> m{};            ///< e + r
+        detail::lane_window<W, taps_of_r::size> r{};            ///< r, `ahead` samples early
         std::array<double, 2 * (Order * Capacity + 2) * W> p{}; ///< ring of Q (e + r), written twice
-        std::size_t next_p = 0;                             ///< where the coming p goes, in samples
-        std::size_t fading = 0;                             ///< steps left of a change of cycle
+        std::size_t next_p = 0;                                 ///< where the coming p goes, in samples
+        std::size_t fading = 0;                                 ///< steps left of a change of cycle
     };
 
     repetitive(const parameters& p, duration period) : given_(p), period_(period) {
@@ -245,21 +227,12 @@ private:
         for (const Real& w : given_.weights) weights += w;
         const Real gain = learning_.sum(), q = smoothing_.sum();
         for (std::size_t i = 0; i < W; ++i) {
-            const double g = q[i] * weights[i];
-            const bool whole = std::abs(g - 1) <= one::whole_tolerance;
-            double m = 0, r = 0, out = 0;
-            if ((has_output || whole) && gain[i] != 0 && g != 0) {
-                r = y[i] / gain[i];
-                m = r / g;
-                out = y[i];
-            } else if (!whole) {
-                r = g / (1 - g) * x[i];
-                m = x[i] + r;
-                out = gain[i] * r;
-            }
-            to_m.set(i, m);
-            to_r.set(i, r);
-            to_y.set(i, out);
+            using level = typename one::value;
+            const auto of_one = one::at_rest(level::from_value(x[i]), level::from_value(y[i]), has_output,
+                                             gain[i], q[i] * weights[i]);
+            to_m.set(i, of_one.m.value());
+            to_r.set(i, of_one.r.value());
+            to_y.set(i, of_one.y.value());
         }
         const Real p = q * to_m;
         if (!all((to_m + p + to_r + to_y).finite_mask())) return out_.raise();
