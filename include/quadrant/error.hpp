@@ -85,12 +85,9 @@ struct field_name {
 template <multi_lane Lanes>
 requires(lane_count<Lanes> == 1) constexpr double plain(const Lanes& x) noexcept { return x[0]; }
 constexpr double plain(double x) noexcept { return x; }
-template <class Dual>
-requires requires(const Dual& d) {
-    d.value;
-    d.partial;
+template <carries_partials Dual> constexpr double plain(const Dual& x) noexcept {
+    return static_cast<double>(x.value);
 }
-constexpr double plain(const Dual& x) noexcept { return static_cast<double>(x.value); }
 template <class Unit, class Real> constexpr double plain(const boost::units::quantity<Unit, Real>& x) noexcept {
     return plain(x.value());
 }

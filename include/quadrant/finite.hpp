@@ -11,12 +11,7 @@
 namespace quadrant {
 
 namespace detail {
-template <class Dual>
-requires requires(const Dual& d) {
-    d.value;
-    d.partial;
-}
-constexpr bool is_finite(const Dual& x) noexcept {
+template <carries_partials Dual> constexpr bool is_finite(const Dual& x) noexcept {
     bool all = is_finite(x.value);
     for (const auto& p : x.partial) all = all && is_finite(p);
     return all;

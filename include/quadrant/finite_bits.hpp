@@ -8,6 +8,13 @@
 /// take it that there are no NaNs and no infinities.
 namespace quadrant::detail {
 
+/// A number with its derivatives beside it (`dual`, or one of the user's own).
+template <class T>
+concept carries_partials = requires(const T& x) {
+    x.value;
+    x.partial;
+};
+
 constexpr bool is_finite(double x) noexcept {
     constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000;
     return (bits_as<std::uint64_t>(x) & exponent) != exponent;

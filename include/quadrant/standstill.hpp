@@ -18,12 +18,7 @@ constexpr std::uint64_t large_bits(double x) noexcept {
     return bits_as<std::uint64_t>(x) & 0x7800'0000'0000'0000;
 }
 constexpr std::uint32_t large_bits(float x) noexcept { return bits_as<std::uint32_t>(x) & 0x6000'0000; }
-template <class Dual>
-requires requires(const Dual& d) {
-    d.value;
-    d.partial;
-}
-constexpr auto large_bits(const Dual& x) noexcept {
+template <carries_partials Dual> constexpr auto large_bits(const Dual& x) noexcept {
     auto all = large_bits(x.value);
     for (const auto& p : x.partial) all |= large_bits(p);
     return all;
@@ -31,11 +26,7 @@ constexpr auto large_bits(const Dual& x) noexcept {
 inline constexpr double least = 0x1p-895;
 template <class Value> using bare_of = std::remove_cvref_t<decltype(bare(std::declval<const Value&>()))>;
 
-template <class Dual>
-requires requires(const Dual& d) {
-    d.value;
-    d.partial;
-}
+template <carries_partials Dual>
 constexpr Dual without_tiny(const Dual& of) noexcept { // value and derivatives die out each for itself
     Dual x = of;
     if (large_bits(x.value) == 0) x.value = 0;
