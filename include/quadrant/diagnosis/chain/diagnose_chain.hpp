@@ -89,8 +89,7 @@ struct two_encoders {
     outcome found;
     std::vector<std::string> notes;
     /// The log with the centre of mass of motor and load for the position: it obeys the laws of a rigid axis,
-    /// whatever lies
-    /// between the two.
+    /// whatever lies between the two.
     axis_log carried;
     double motor_coulomb =
         0; ///< friction on the motor's side, described or claimed: part of what the force overcomes [N]

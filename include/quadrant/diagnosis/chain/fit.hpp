@@ -109,8 +109,7 @@ inline fitted fit_columns(const readings& r, const link_model& m) {
 }
 
 /// Calls `cost` at values between two ends and gives the best of what it saw: a grid by equal ratios, then
-/// golden section around
-/// its best.
+/// golden section around its best.
 template <class Cost> double least(Cost cost, double low, double high, int grid, int steps) {
     std::vector<double> at;
     for (int i = 0; i < grid; ++i)

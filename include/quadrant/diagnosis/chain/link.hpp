@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../plant/backlash.hpp"
 #include "../fit/scales.hpp"
 
 /// Two positions of one axis, one behind the other: what was asked or counted, and what the scale reads.
@@ -18,8 +19,7 @@ struct position_link {
     bool geared = true;
     double turn = 0; ///< travel of one turn of the motor; 0: not known [m]
     /// Force behind the motor's mass, before the motor's friction [N], and the direction of the motor, both as
-    /// smooth as the
-    /// difference; empty: no force is known.
+    /// smooth as the difference; empty: no force is known.
     std::vector<double> force{}, motor_direction{};
     double force_band_Hz = 0; ///< to which force and difference are smoothed; 0: they are not
 
@@ -35,9 +35,8 @@ struct position_link {
     /// Rounding of the difference; what was asked is asked as it stands [m].
     double rounding() const { return asked ? last_count : std::hypot(first_count, last_count); }
     /// Noise of the difference of two right readings: rounding, or what no smooth motion explains; where the
-    /// first stands still often
-    /// enough, what is left there, since at a low rate an error that repeats along the travel looks like noise
-    /// [m].
+    /// first stands still often enough, what is left there, since at a low rate an error that repeats along the
+    /// travel looks like noise [m].
     double noise() const {
         constexpr std::size_t enough = 32;
         std::vector<double> d(rows());
@@ -60,8 +59,7 @@ struct position_link {
 };
 
 /// What lies behind a play of this width, held by friction, and whether it is known yet: before the first drive
-/// through the whole
-/// play it may stand anywhere in it.
+/// through the whole play it may stand anywhere in it.
 struct behind_play {
     std::vector<double> offset; ///< beside the motion that drives it [m]
     std::size_t known_from = 0; ///< row
@@ -70,10 +68,12 @@ struct behind_play {
 inline behind_play play_of(std::span<const double> x, double width) {
     behind_play out{std::vector<double>(x.size(), 0.0), x.size()};
     if (x.empty()) return out;
-    double at = x[0], low = x[0], high = x[0];
+    using length = quantity<si::length>;
+    backlash<> play({.width = length::from_value(width)}, duration::from_value(1)); // it needs no period
+    play.settle(length::from_value(x[0]));
+    double low = x[0], high = x[0];
     for (std::size_t k = 0; k < x.size(); ++k) {
-        at = std::clamp(at, x[k] - width / 2, x[k] + width / 2);
-        out.offset[k] = at - x[k];
+        out.offset[k] = play(length::from_value(x[k])).value() - x[k];
         low = std::min(low, x[k]);
         high = std::max(high, x[k]);
         if (out.known_from == x.size() && high - low > width) out.known_from = k;

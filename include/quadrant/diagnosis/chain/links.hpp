@@ -57,8 +57,7 @@ inline double of_a_counted_metre(const transmission_description& t) {
 }
 
 /// The motor's reading in units of the load; refuses one that the machine file cannot turn into those, or that
-/// moves otherwise than
-/// the scale by far more than any machine is wrong.
+/// moves otherwise than the scale by far more than any machine is wrong.
 inline double motor_to_load(const axis_description& axis, const axis_log& log, const std::string& file) {
     const transmission_description& t = axis.transmission;
     const double measured = slope(log.motor, log.position);
@@ -141,8 +140,7 @@ inline described_link asked_to(const axis_description& axis, const axis_log& log
 }
 
 /// The force behind the motor's mass on the link from motor to scale: command times force constant, as late as
-/// it acts, less what
-/// moves the motor. Smoothed to the band in which the record shows forces.
+/// it acts, less what moves the motor. Smoothed to the band in which the record shows forces.
 inline void give_force(described_link& d, const axis_description& axis, const axis_log& log) {
     auto& l = d.readings;
     if (log.command.size() != l.rows() || !(axis.plant.mass_kg > 0)) return;

@@ -97,13 +97,6 @@ inline double smooth_curve(const link_model& m, double x) {
     for (std::size_t i = 0; i < m.smooth.size(); ++i) out += m.smooth[i] * legendre(static_cast<int>(i) + 2, u);
     return out;
 }
-inline double described_pitch(const link_model& m, double x) {
-    double out = 0;
-    for (std::size_t j = 0; j < m.pitch.size(); ++j)
-        out += m.pitch[j] * std::sin(2 * std::numbers::pi * static_cast<double>(j + 1) * x / m.pitch_period +
-                                     (j < m.pitch_phase.size() ? m.pitch_phase[j] : 0));
-    return out;
-}
 
 /// What the last reading is beside the first, with all that is described or set taken off, and the columns that
 /// explain it.

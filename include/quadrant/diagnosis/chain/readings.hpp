@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../model/harmonics.hpp"
 #include "model.hpp"
 
 namespace quadrant::diagnosis::chain {
@@ -10,7 +11,6 @@ inline constexpr std::size_t most_rows = 30000;
 /// One link made ready: the part of its equations that does not depend on a model.
 class readings {
 public:
-    /// `widest`: the play beyond which none is looked for [m].
     explicit readings(position_link l)
         : link_(std::move(l)), noise_(link_.noise()), travel_(link_.travel()), middle_(link_.middle()) {
         const double band = link_.force_band_Hz;
@@ -33,8 +33,7 @@ public:
     double along(double x) const { return 2 * (x - middle_) / travel_; }
 
     /// Where what lies behind the play stands beside what drives it. With a force its sign tells which side is
-    /// in contact; without,
-    /// friction holds the load where it is.
+    /// in contact; without, friction holds the load where it is.
     std::vector<double> offset(const link_model& m, std::span<const double> driven, double width) const {
         if (link_.force.empty()) return play_of(driven, width).offset;
         std::vector<double> out(driven.size());
@@ -65,9 +64,8 @@ private:
 };
 
 /// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it
-/// stands at a known
-/// side of any play; and the force, where one is known, is far enough from zero for the side in contact to be
-/// sure.
+/// stands at a known side of any play; and the force, where one is known, is far enough from zero for the side
+/// in contact to be sure.
 inline void readings::choose_rows() {
     const std::size_t n = link_.rows();
     std::vector<unsigned char> out(n, 0);
@@ -176,8 +174,9 @@ inline equations readings::of_model(const link_model& m) const {
     const auto driven = followed(first_, link_.period, m.how, m.lag);
     const auto behind = m.play > 0 ? offset(m, driven, m.play) : std::vector<double>(driven.size(), 0.0);
     const auto n = static_cast<Eigen::Index>(rows_.size());
+    const harmonics pitch(m.pitch_period, m.pitch, m.pitch_phase);
     const auto errors = m.pitch.empty() ? std::vector<double>(driven.size(), 0.0)
-                                        : along_travel(m, [&](double x) { return described_pitch(m, x); });
+                                        : along_travel(m, [&](double x) { return pitch.at(x); });
     out.difference.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::size_t k = rows_[static_cast<std::size_t>(i)];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../effect/rules.hpp"
 #include "../fit/spatial_spectrum.hpp"
 #include "fit.hpp"
 
@@ -99,8 +98,8 @@ inline fitted with_steps(const readings& r, const fitted& from, double margin) {
     return best;
 }
 
-/// A model with one term more, fitted; the model itself where the term cannot join.
-inline fitted with_term(const readings& r, const fitted& from, term t) {
+/// A model with one term more, fitted; the model itself where the term cannot join. `margin`: what each jump has to pay.
+inline fitted with_term(const readings& r, const fitted& from, term t, double margin) {
     link_model m = from.model;
     const auto freed = [&](link_model& x) {
         if (!x.has(t)) x.freed.push_back(t);
@@ -162,7 +161,7 @@ inline fitted with_term(const readings& r, const fitted& from, term t) {
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
         break;
     case term::steps:
-        return with_steps(r, from, rules{}.margin);
+        return with_steps(r, from, margin);
     default:
         break;
     }
