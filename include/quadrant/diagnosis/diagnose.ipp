@@ -260,7 +260,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
 /// The rules with this axis' share of the time that is left for `axes`.
 inline rules for_one_of(rules r, std::ptrdiff_t axes) {
     if (r.until != rules::clock::time_point::max()) {
-        const auto now = rules::clock::now();
+        const auto now = r.now();
         r.until = now + (r.until - now) / axes;
     }
     return r;

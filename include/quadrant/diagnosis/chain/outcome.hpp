@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../effect/described_numbers.hpp"
-#include "../which/search.hpp"
+#include "../which/chance.hpp"
 #include "reversals.hpp"
 
 /// What is said of one link: causes, places, verdict.

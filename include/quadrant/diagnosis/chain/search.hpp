@@ -2,6 +2,7 @@
 #pragma once
 #include "../effect/rules.hpp"
 #include "../fit/scoring.hpp"
+#include "../which/chance.hpp"
 #include "start.hpp"
 
 #include <optional>
@@ -54,7 +55,7 @@ private:
         std::vector<fitted> out;
         for (term t : suspects_) {
             if (best.model.has(t)) continue;
-            fitted tried = with_term(r_, best, t);
+            fitted tried = with_term(r_, best, t, limits_.margin);
             if (tried.model.has(t) && pays(tried, best, t)) out.push_back(std::move(tried));
         }
         std::stable_sort(out.begin(), out.end(),
@@ -154,14 +155,6 @@ private:
         if (t == term::steps) m.steps = best.model.steps;
         return fit_columns(r_, m);
     }
-    /// One law takes a share of a random shape among 13 off by chance, and as many are tried as there are terms
-    /// (docs/diagnosis.md).
-    double by_chance(double left) const {
-        constexpr double shapes = 13;
-        const double share = 1 / (1 + left * left);
-        return std::min(0.03 + static_cast<double>(suspects_.size()) * std::pow(1 - share, (shapes - 1) / 2),
-                        0.95);
-    }
     void weigh(const answer& out, finding& f) const {
         const fitted without = without_term(r_, out.best, f.what, described_);
         const double explained = std::max(energy(without) - energy(out.best), 1e-300);
@@ -170,11 +163,11 @@ private:
         sum += std::exp(std::clamp((value(without) - value(out.best)) / score_temperature, -50.0, 50.0));
         for (term u : suspects_) {
             if (out.best.model.has(u)) continue;
-            const fitted rival = with_term(r_, without, u);
+            const fitted rival = with_term(r_, without, u, limits_.margin);
             if (!rival.model.has(u)) continue;
             double weight =
                 std::exp(std::clamp((value(rival) - value(out.best)) / score_temperature, -50.0, 50.0));
-            const bool alike = energy(rival) - energy(out.best) < 0.0025 * explained + left;
+            const bool alike = energy(rival) - energy(out.best) < law_error * law_error * explained + left;
             if (alike && pays(rival, without, u))
                 weight = std::max(weight, std::min(1.0, odds(u) / odds(f.what)) * 0.5);
             sum += weight;
@@ -183,7 +176,7 @@ private:
                 same += weight;
             }
         }
-        const double known = 1 - by_chance(std::sqrt(left / explained));
+        const double known = 1 - detail::by_chance(suspects_.size(), std::sqrt(left / explained));
         f.probability = known / sum;
         f.group_probability = known * same / sum;
     }

@@ -47,6 +47,13 @@ inline std::vector<key_value> settings_of(const travel_block::parameters& p) {
     return {{"pitch_m", {p.pitch.value()}}, amplitude, phase};
 }
 
+/// A feedforward of so much command as the keys of the kind have it; nothing where it has no such key.
+inline std::vector<key_value> fed(const controller_kind& kind, const controller_description& c,
+                                  const feedforward_key& f, double amount) {
+    if (f.key.empty()) return {};
+    return {{std::string(f.key), {f.over.empty() ? amount : amount / given_values(kind, c)[f.over]}}};
+}
+
 /// The compensations of one axis that `causes` ask for, from the corrected plant `p` and its controller `c`.
 class compensations_of {
 public:
@@ -98,10 +105,8 @@ private:
             if (std::find(causes_.begin(), causes_.end(), name) != causes_.end()) out.push_back(name);
         return out;
     }
-    /// A feedforward of so much command as the keys of the kind have it; nothing where it has no such key.
     std::vector<key_value> fed(const feedforward_key& f, double amount) const {
-        if (f.key.empty()) return {};
-        return {{std::string(f.key), {f.over.empty() ? amount : amount / given_values(kind_, c_)[f.over]}}};
+        return detail::fed(kind_, c_, f, amount);
     }
     bool already(const feedforward_key& f) const {
         return !f.key.empty() && given_values(kind_, c_)[f.key] != 0;

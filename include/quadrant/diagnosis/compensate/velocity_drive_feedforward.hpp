@@ -36,13 +36,9 @@ inline std::vector<compensation> for_velocity_drive(const plant_model& p, const 
     const controller_kind& kind = kind_of(c);
     const velocity_drive_feedforward f(p, period, in_volts);
     compensation out{.name = "velocity feedforward", .effects = std::move(causes)};
-    const auto set = [&](const feedforward_key& key, double amount) {
-        if (key.key.empty()) return;
-        out.keys.push_back(
-            {std::string(key.key), {key.over.empty() ? amount : amount / given_values(kind, c)[key.over]}});
-    };
-    set(kind.viscous, f.velocity);
-    set(kind.acceleration, f.acceleration);
+    for (const auto& keys :
+         {fed(kind, c, kind.viscous, f.velocity), fed(kind, c, kind.acceleration, f.acceleration)})
+        out.keys.insert(out.keys.end(), keys.begin(), keys.end());
     const bool biased = std::any_of(kind.keys.begin(), kind.keys.end(),
                                     [](const controller_key& k) { return k.name == "bias"; });
     if (biased && f.bias != 0) out.keys.push_back({"bias", {f.bias}});

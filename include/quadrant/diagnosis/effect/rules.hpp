@@ -30,6 +30,7 @@ struct rules {
     /// With such an end the result depends on how fast the computer is.
     using clock = std::chrono::steady_clock;
     clock::time_point until = clock::time_point::max();
+    clock::time_point (*now)() = clock::now; ///< another clock, for tests
 };
 
 /// Some half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to the end, fewer

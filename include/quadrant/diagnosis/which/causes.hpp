@@ -142,18 +142,6 @@ inline double doubtful_beside(const axis_case& c, double explained) {
     return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
 
-/// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in force). At the
-/// noise nothing is left that could speak for it. While structure is left, the whole may be of a shape that no name has,
-/// and the name its nearest. One law takes at least this share of a shape drawn at random among `shapes` independent
-/// ones with the probability (1 - share)^((shapes - 1)/2); as many laws were tried as there are `suspects`.
-inline double by_chance(std::size_t suspects, double left) {
-    constexpr double shapes =
-        13; // a jump, a slope and a bend in velocity, position, time and command, and a mean
-    const double share = 1 / (1 + square(left));
-    const double names = static_cast<double>(suspects);
-    return std::min(0.03 + names * std::pow(1 - share, (shapes - 1) / 2), 0.95);
-}
-
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or there; on the
 /// hold-out log, where a gap stays open there, beside what it explains here and there. A name that makes that one worse was not
 /// the cause there.

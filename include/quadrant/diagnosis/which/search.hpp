@@ -3,6 +3,7 @@
 #include "../effect/rules.hpp"
 #include "../text/on_all_cores.hpp"
 #include "candidate.hpp"
+#include "chance.hpp"
 
 #include <deque>
 #include <optional>
@@ -10,9 +11,6 @@
 #include <set>
 
 namespace quadrant::diagnosis {
-
-/// No law is better than some five per cent of the force that it explains.
-inline constexpr double law_error = 0.05;
 
 /// One axis under diagnosis: the record, the described machine and the models tried so far.
 class search {
@@ -79,15 +77,14 @@ public:
     std::vector<candidate> with_each(const candidate& from, const std::vector<const effect*>& among) const {
         std::vector<candidate> out;
         std::vector<std::size_t> rank; // of those that were not met before
-        const may_stop here(*this);
         for (const effect* e : among) {
             if (has(from, e)) continue;
             const candidate* known = tried(from, e);
             if (!known) rank.push_back(out.size());
             out.push_back(known ? *known : joined(from, e));
         }
-        sketch_each(from, rank, out);
-        finish_best(rank, rules_.finalists, out);
+        sketch_each(from, rank, out, when_late::leave_out);
+        finish_best(rank, rules_.finalists, out, when_late::leave_out);
         for (std::size_t i : rank) {
             if (out[i].missed) {
                 missed_.insert(out[i].effects.back());
@@ -100,7 +97,7 @@ public:
         return out;
     }
     /// Whether the time is up (rules.until).
-    bool over() const { return rules::clock::now() >= rules_.until; }
+    bool over() const { return rules_.now() >= rules_.until; }
     /// Whether run() ended because the time was up.
     bool cut() const { return cut_; }
     /// Suspects that the search did not come to before the time was up.
@@ -118,8 +115,8 @@ public:
             if (!known) fresh.push_back(out.size());
             out.push_back(known ? *known : joined(from, e));
         }
-        sketch_each(from, fresh, out);
-        finish_best(fresh, most, out);
+        sketch_each(from, fresh, out, when_late::go_on);
+        finish_best(fresh, most, out, when_late::go_on);
         for (std::size_t i : fresh) {
             tell_(describe(out[i]));
             tried_.push_back(out[i]);
@@ -154,7 +151,7 @@ public:
         candidate from = without;
         begin_at(from, best.fit.plant);
         std::vector<candidate> out{joined(from, added)};
-        sketch_each(from, {0}, out);
+        sketch_each(from, {0}, out, when_late::go_on);
         if (std::isfinite(out.front().fit.objective)) finish(record_, out.front());
         return out.front();
     }
@@ -467,17 +464,6 @@ private:
         if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
         return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
     }
-    /// As long as it lives, what is computed may be left out.
-    class may_stop {
-    public:
-        explicit may_stop(const search& s) : search_(s) { search_.stoppable_ = true; }
-        ~may_stop() { search_.stoppable_ = false; }
-        may_stop(const may_stop&) = delete;
-        may_stop& operator=(const may_stop&) = delete;
-
-    private:
-        const search& search_;
-    };
     /// Moves the numbers of a model to those of another plant, where the fit goes on.
     static void begin_at(candidate& c, plant_model known) {
         for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
@@ -560,9 +546,11 @@ private:
         c.effects.push_back(added);
         return c;
     }
+    /// What happens to a model whose turn comes when the time is up.
+    enum class when_late { go_on, leave_out };
     /// A first look at each of these: `from` and the effect that it names last.
     void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
-                     std::vector<candidate>& models) const {
+                     std::vector<candidate>& models, when_late how) const {
         if (which.empty()) return;
         const auto left = residual_behind_drive(from);
         const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
@@ -571,7 +559,7 @@ private:
         fit.evaluate(here);
         const auto slopes = fit.slopes(here);
         in_groups(which, 4, [&](std::span<const std::size_t> some) {
-            const bool late = stoppable_ && over();
+            const bool late = how == when_late::leave_out && over();
             for (const std::size_t i : some) {
                 models[i].total = -std::numeric_limits<double>::infinity();
                 models[i].missed = late;
@@ -593,14 +581,15 @@ private:
         });
     }
     /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by promise.
-    void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models) const {
+    void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models,
+                     when_late how) const {
         std::stable_sort(which.begin(), which.end(),
                          [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
         const std::size_t fitted = std::min(most, which.size());
         in_groups(std::span(which).first(fitted), 2, [&](std::span<const std::size_t> some) {
             std::vector<candidate*> pair;
             for (const std::size_t i : some) pair.push_back(&models[i]);
-            if (stoppable_ && over())
+            if (how == when_late::leave_out && over())
                 for (candidate* c : pair) judge(record_, *c);
             else
                 finish(record_, pair);
@@ -639,8 +628,8 @@ private:
     candidate given_, calibrated_;
     mutable std::deque<candidate> tried_;
     mutable std::set<const effect*> missed_{};
-    mutable bool cut_ = false, stoppable_ = false; ///< what is computed now may be left out when the time is up
-    mutable std::vector<double> cloud_{};          ///< found when it is asked for
+    mutable bool cut_ = false;
+    mutable std::vector<double> cloud_{}; ///< found when it is asked for
 };
 
 } // namespace quadrant::diagnosis
