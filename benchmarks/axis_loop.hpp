@@ -2,8 +2,8 @@
 #pragma once
 #include "hand_written_axis.h"
 
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <bit>
@@ -21,7 +21,8 @@ using namespace quadrant;
 using namespace quadrant::literals;
 
 // One sub-step a period: the machine is needed to close the loop, the controller is what is measured.
-using boxes = cascade_p_pi_boxes<filtered_derivative<signal::position, signal::velocity>, notch<signal::voltage>>;
+using boxes =
+    cascade_p_pi_boxes<filtered_derivative<signal::position, signal::velocity>, notch<signal::voltage>>;
 using controller = cascade<boxes>;
 using machine = linear_motor<coulomb_viscous<>, hand_capacity>;
 
@@ -118,8 +119,8 @@ template <bool Checked> struct hand_loop {
     }
     double position() const { return reading; }
     int flags() const {
-        return control.limited | motor.limited << 1 | control.integral_limited << 2 | hand_faulted(&control) << 3 |
-               motor.fault << 4;
+        return control.limited | motor.limited << 1 | control.integral_limited << 2 |
+               hand_faulted(&control) << 3 | motor.fault << 4;
     }
 };
 
@@ -140,8 +141,9 @@ template <class A, class B> bool same(const std::vector<double>& reference, cons
             std::bit_cast<std::uint64_t>(a.position()) == std::bit_cast<std::uint64_t>(b.position()) &&
             a.flags() == b.flags())
             continue;
-        std::fprintf(stderr, "%s: sample %zu: commands %.17g and %.17g, positions %.17g and %.17g, flags %d and %d\n", name,
-                     k, ua, ub, a.position(), b.position(), a.flags(), b.flags());
+        std::fprintf(stderr,
+                     "%s: sample %zu: commands %.17g and %.17g, positions %.17g and %.17g, flags %d and %d\n",
+                     name, k, ua, ub, a.position(), b.position(), a.flags(), b.flags());
         return false;
     }
     return true;

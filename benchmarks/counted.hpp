@@ -3,7 +3,7 @@
 #include "conformance/blocks.hpp"
 #include "sums.hpp"
 
-#include <quadrant/lanes.hpp>
+#include <quadrant/base/lanes.hpp>
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Time per servo period of the interpolator, moves handed over as they are needed: all that a controller spends on its path.
 #include <benchmark/benchmark.h>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/trajectory/interpolator.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 
 #include <memory>
 #include <utility>

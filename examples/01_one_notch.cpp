@@ -8,8 +8,8 @@
 // Source: the structural mode of the x axis in [Jamaludin2008] ch. 2 (320 to 340 Hz).
 // You should see: without the notch the loop rings up until the amplifier clips; with it, the same gain is quiet.
 // Volts go in, volts come out; a bare number, or a position, does not compile.
+#include <quadrant/base/literals.hpp>
 #include <quadrant/filter/notch.hpp>
-#include <quadrant/literals.hpp>
 
 #include <algorithm>
 #include <cmath>

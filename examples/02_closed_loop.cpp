@@ -9,9 +9,9 @@
 // You should see: below 2 um of error in motion, and twice that where the axis reverses (942.5 ms): friction turns
 // round there, and the feedforward knows one Coulomb level while the machine's level falls with speed. The last line
 // is one row of a log: every wire of the loop has a name and a unit.
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <cmath>

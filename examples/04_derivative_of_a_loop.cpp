@@ -6,12 +6,12 @@
 //                    ^                                                   |     velocity_gain = dual::variable(60, 1)
 //                    +---------------------------------------------------+
 //
-// Source: forward differentiation by dual numbers, quadrant/dual.hpp; axis of [Jamaludin2008] with friction.
+// Source: forward differentiation by dual numbers, quadrant/base/dual.hpp; axis of [Jamaludin2008] with friction.
 // You should see: both derivatives are those of a central difference of two more runs each, and both gains help:
 // one per cent of velocity gain is worth twice one per cent of position gain.
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/dual.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <cmath>

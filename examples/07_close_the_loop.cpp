@@ -7,13 +7,13 @@
 // level and nothing else of that; the diagnosis fits laws of its own (sticking contacts, harmonics), so that neither the
 // forecast nor the feedforward shares a friction law with the machine.
 // You should see: both causes named, and less than a third of the error left with them in the controller, inside what was forecast.
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/friction/lugre.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/axis_load.hpp>
 #include <quadrant/plant/cogging_force.hpp>
 #include <quadrant/plant/linear_motor.hpp>

@@ -9,11 +9,11 @@
 // command goes on where it was. At 400 ms the thread that tunes has offered other boxes, and they are taken whole between
 // two samples. At 1000 ms somebody hits the mushroom: a ramp of 2 m/s^2, the brake, off, and the cascade tracks zero volts.
 // You should see: the command moves by millivolts where the axis is enabled and tuned, and the stop takes v^2/(2 a) = 2.3 mm.
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/compose/parameter_swap.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/parameter_swap.hpp>
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/following_error.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 #include <quadrant/trajectory/stream_limiter.hpp>
 

@@ -2,8 +2,8 @@
 #pragma once
 #include "page/picture.hpp"
 
-#include <quadrant/literals.hpp>
-#include <quadrant/signal.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/base/signal.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "families.hpp"
 #include "quadrant_reproduce/thesis.hpp"
 
-#include <quadrant/compose/absent.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/block/absent.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/observer/harmonic_force_observer.hpp>
 #include <quadrant/observer/kalman.hpp>
 #include <quadrant/observer/reduced_order_observer.hpp>

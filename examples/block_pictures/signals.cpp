@@ -2,8 +2,8 @@
 // Blocks that shape or watch one wire: what goes in beside what comes out.
 #include "families.hpp"
 
-#include <quadrant/compose/absent.hpp>
-#include <quadrant/compose/series.hpp>
+#include <quadrant/block/absent.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/control/dead_band.hpp>
 #include <quadrant/control/gain_schedule.hpp>
 #include <quadrant/control/limiter.hpp>

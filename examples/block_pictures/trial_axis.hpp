@@ -2,7 +2,7 @@
 #pragma once
 #include "draw.hpp"
 
-#include <quadrant/compose/feed_control.hpp>
+#include <quadrant/loop/feed_control.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <limits>

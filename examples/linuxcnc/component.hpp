@@ -2,7 +2,7 @@
 #pragma once
 #include "hal_pins.hpp"
 
-#include <quadrant/make.hpp>
+#include <quadrant/base/make.hpp>
 
 #include <atomic>
 #include <bit>

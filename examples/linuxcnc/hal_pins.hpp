@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/taps.hpp>
-#include <quadrant/error.hpp>
+#include <quadrant/base/error.hpp>
+#include <quadrant/block/taps.hpp>
 
 #include <hal.h>
 #include <rtapi.h>

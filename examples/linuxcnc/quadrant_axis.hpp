@@ -6,8 +6,8 @@
 #include <quadrant/analysis/loop.hpp>
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
 #include <quadrant/friction/stribeck.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 
 /// The controller of an axis for HAL: `milling_axis` with Stribeck friction, disturbance observer and repetitive memory.
 /// Another friction law is another type below and its fields in `list()`; pins for the wires come with the loop.

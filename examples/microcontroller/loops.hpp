@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 

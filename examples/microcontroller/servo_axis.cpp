@@ -4,8 +4,8 @@
 
 #include "loops.hpp"
 
-#include <quadrant/in_si.hpp>
-#include <quadrant/make.hpp>
+#include <quadrant/base/in_si.hpp>
+#include <quadrant/base/make.hpp>
 
 #ifndef SERVO_LOOP
 #    define SERVO_LOOP with_memory

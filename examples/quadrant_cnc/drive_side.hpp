@@ -2,9 +2,9 @@
 #pragma once
 #include "cnc_file.hpp"
 
-#include <quadrant/compose/feed_drive.hpp>
+#include <quadrant/base/in_si.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/in_si.hpp>
+#include <quadrant/loop/feed_drive.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <memory>

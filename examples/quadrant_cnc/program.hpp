@@ -2,7 +2,7 @@
 #pragma once
 #include "cnc_file.hpp"
 
-#include <quadrant/in_si.hpp>
+#include <quadrant/base/in_si.hpp>
 #include <quadrant/path/cl_reader.hpp>
 #include <quadrant/path/gcode_reader.hpp>
 #include <quadrant/trajectory/interpolator.hpp>

@@ -2,8 +2,8 @@
 #pragma once
 #include "../page/outputs.hpp"
 
+#include <quadrant/base/error.hpp>
 #include <quadrant/diagnosis/text/bad_input.hpp>
-#include <quadrant/error.hpp>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

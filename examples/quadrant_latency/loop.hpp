@@ -2,8 +2,8 @@
 #pragma once
 #include "../quadrant_reproduce/thesis.hpp"
 
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/compose/xy_control_lanes.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
+#include <quadrant/loop/xy_control_lanes.hpp>
 #include <quadrant/memory/repetitive.hpp>
 
 #include <cmath>

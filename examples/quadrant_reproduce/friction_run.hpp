@@ -2,7 +2,7 @@
 #pragma once
 #include "thesis.hpp"
 
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <algorithm>

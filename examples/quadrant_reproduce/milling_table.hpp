@@ -6,9 +6,9 @@
 
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/compose/xy_loop.hpp>
 #include <quadrant/friction/lugre.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
+#include <quadrant/loop/xy_loop.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/process/cutting_force.hpp>
 #include <quadrant/process/milling_force.hpp>

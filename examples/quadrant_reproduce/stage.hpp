@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/feed_control.hpp>
+#include <quadrant/base/in_si.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/predictive.hpp>
 #include <quadrant/friction/lugre.hpp>
-#include <quadrant/in_si.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/feed_control.hpp>
 #include <quadrant/observer/kalman.hpp>
 #include <quadrant/observer/lugre_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>

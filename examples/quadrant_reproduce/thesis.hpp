@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/analysis/loop.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 
 #include <array>

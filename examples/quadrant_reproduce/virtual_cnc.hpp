@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/feed_control.hpp>
-#include <quadrant/compose/feed_drive.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/sliding_mode.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/feed_control.hpp>
+#include <quadrant/loop/feed_drive.hpp>
 
 #include <algorithm>
 #include <array>

@@ -24,7 +24,7 @@ cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
     -P "$root/examples/page/embed.cmake"
 
 # One file each, as many at once as there are cores.
-version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/version.hpp")
+version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
 flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
     -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$build/include"
 part() { # NAME HEADER...

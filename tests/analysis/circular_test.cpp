@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/circular_test.hpp>
 #include <quadrant/analysis/quadrant_glitch.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

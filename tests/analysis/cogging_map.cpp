@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/cogging_map.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/cogging_harmonics.hpp>
 #include <quadrant/feedforward/cogging_table.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 #include <shared.hpp>
 

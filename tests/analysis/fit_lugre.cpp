@@ -2,8 +2,8 @@
 // LuGre friction of a simulated stage found from its encoder and its command: static map, then the bristles.
 #include <quadrant/analysis/fit_lugre.hpp>
 #include <quadrant/analysis/fit_stribeck.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/predictive.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/kalman.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 

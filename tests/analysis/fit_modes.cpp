@@ -3,7 +3,7 @@
 
 #include <quadrant/analysis/excitation.hpp>
 #include <quadrant/analysis/fit_modes.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

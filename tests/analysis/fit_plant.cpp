@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/excitation.hpp>
 #include <quadrant/analysis/fit_plant.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

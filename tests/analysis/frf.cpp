@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/excitation.hpp>
 #include <quadrant/analysis/frf.hpp>
-#include <quadrant/compose/maps.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/maps.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/filter/transfer_function.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

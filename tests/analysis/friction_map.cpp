@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/fit_stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 #include "modal_axis.hpp"
 
 #include <quadrant/analysis/gain_design.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

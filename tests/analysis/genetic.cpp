@@ -3,7 +3,7 @@
 #include <quadrant/analysis/loop.hpp>
 #include <quadrant/analysis/margins.hpp>
 #include <quadrant/analysis/move_cost.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

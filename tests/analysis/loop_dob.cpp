@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/nyquist.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 
 #include <doctest/doctest.h>

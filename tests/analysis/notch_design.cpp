@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/modes.hpp>
 #include <quadrant/analysis/notch_design.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

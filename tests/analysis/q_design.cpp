@@ -4,7 +4,7 @@
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/nyquist.hpp>
 #include <quadrant/analysis/q_design.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

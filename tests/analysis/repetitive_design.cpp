@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/loop.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 
 #include <doctest/doctest.h>
 

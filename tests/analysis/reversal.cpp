@@ -3,8 +3,8 @@
 
 #include <quadrant/analysis/judge_compensation.hpp>
 #include <quadrant/analysis/reversal.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
 #include <quadrant/friction/lugre.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include "motion_blocks.hpp"
 
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/quadrant.hpp>
 
 #include <array>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/gantry_pair.hpp>
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/axis_law.hpp>
 #include <quadrant/control/following_error.hpp>
 #include <quadrant/control/gain_schedule.hpp>
 #include <quadrant/feedforward/inverse_model.hpp>
 #include <quadrant/feedforward/preview.hpp>
+#include <quadrant/loop/gantry_pair.hpp>
 
 #include <complex>
 #include <cstddef>

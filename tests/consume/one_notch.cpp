@@ -3,8 +3,8 @@
 #ifdef SINGLE_FILE
 #    include <quadrant_single.hpp>
 #else
+#    include <quadrant/base/literals.hpp>
 #    include <quadrant/filter/notch.hpp>
-#    include <quadrant/literals.hpp>
 #endif
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/dead_band.hpp>
 #include <quadrant/control/limiter.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

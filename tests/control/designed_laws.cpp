@@ -2,13 +2,13 @@
 // p_pi, state_feedback, rst and its designs: pole placement, zero phase error tracking, generalized predictive control, lead-lag.
 #include <quadrant/analysis/law_loop.hpp>
 #include <quadrant/analysis/margins.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/generalized_predictive.hpp>
 #include <quadrant/control/lead_lag.hpp>
 #include <quadrant/control/p_pi.hpp>
 #include <quadrant/control/pole_placement.hpp>
 #include <quadrant/control/state_feedback.hpp>
 #include <quadrant/control/zero_phase_tracking.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/kalman.hpp>
 
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // pid and sliding_mode, their designs, and the loop that their response() closes.
 #include <quadrant/analysis/law_loop.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/pid.hpp>
 #include <quadrant/control/sliding_mode.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/plant/ball_screw_drive.hpp>
 
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <doctest/doctest.h>
 
+#include "quadrant/base/in_si.hpp"
+#include "quadrant/base/literals.hpp"
 #include "quadrant/control/linuxcnc_pid.hpp"
-#include "quadrant/in_si.hpp"
-#include "quadrant/literals.hpp"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/least_squares.hpp>
-#include <quadrant/compose/feed_control.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/predictive.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/feed_control.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/proportional_integral.hpp>
-#include <quadrant/dual.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/rate_limiter.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // axis_enable and following_error: what switches an axis on and off.
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/following_error.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

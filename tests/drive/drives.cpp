@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <doctest/doctest.h>
+#include <quadrant/base/lanes.hpp>
 #include <quadrant/drive/position_loop.hpp>
 #include <quadrant/drive/position_servo.hpp>
 #include <quadrant/drive/set_point_line.hpp>
-#include <quadrant/lanes.hpp>
 
 #include <vector>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 // Compiled with -O3 -ffast-math, by which a compiler may take it that there is no NaN and no infinity.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/proportional_integral.hpp>
-#include <quadrant/dual.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 #include <quadrant/plant/flexible_modes.hpp>
 

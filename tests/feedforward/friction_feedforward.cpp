@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/quadrant_glitch.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/friction_feedforward.hpp>
 #include <quadrant/feedforward/preview.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

@@ -2,10 +2,10 @@
 #include "linear_plant.hpp"
 
 #include <quadrant/analysis/loop.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/inverse_model.hpp>
 #include <quadrant/feedforward/preview.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/preview.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "linear_plant.hpp"
 
+#include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/sampled_inverse_model.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

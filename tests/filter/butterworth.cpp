@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/transfer_function.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 // Every block with a corner, from a hundred thousandth of the sampling rate to half of it: float and lanes beside double.
-#include <quadrant/compose/series.hpp>
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/discretize.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/filter/transfer_function.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 #include <quadrant/observer/ferraris_force_estimator.hpp>
 #include <quadrant/observer/reduced_order_observer.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/filter/backward_difference.hpp>
 #include <quadrant/filter/two_sample_derivative.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

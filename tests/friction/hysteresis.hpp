@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/presliding.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

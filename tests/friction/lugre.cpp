@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "hysteresis.hpp"
 
-#include <quadrant/compose/maps.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/block/maps.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 

@@ -2,7 +2,7 @@
 // One implicit step of a mass on friction that remembers, over random axes: from 0.1 to 1000 kg, steps from 1 us to 2 ms.
 #include "hysteresis.hpp"
 
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>

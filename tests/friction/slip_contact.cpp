@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <doctest/doctest.h>
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/friction/slip_contact.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
 
 #include <cmath>
 #include <random>

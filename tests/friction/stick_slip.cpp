@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 // One implicit step of a mass on friction, over random axes: from 0.1 to 1000 kg, sub-steps from 1 us to 1 ms.
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/stick_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/stick_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

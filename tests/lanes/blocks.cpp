@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "blocks.hpp"
 
-#include <quadrant/lanes.hpp>
+#include <quadrant/base/lanes.hpp>
 
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/compose/absent.hpp>
-#include <quadrant/compose/cascade.hpp>
-#include <quadrant/compose/series.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/absent.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/control/dead_band.hpp>
 #include <quadrant/control/lead_lag.hpp>
 #include <quadrant/control/limiter.hpp>
@@ -21,7 +21,7 @@
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/filter/transfer_function.hpp>
 #include <quadrant/filter/two_sample_derivative.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/memory/fractional_delay.hpp>
 #include <quadrant/memory/repetitive.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // Lanes that take a sample all together: what no other test of lanes sees.
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/quantizer.hpp>
 #include <quadrant/friction/maxwell_slip_lanes.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/memory/repetitive_in_step.hpp>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/dual.hpp>
-#include <quadrant/finite.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
-#include <quadrant/signal.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/finite.hpp>
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/base/signal.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/filter/notch.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/process/cutting_force.hpp>
 

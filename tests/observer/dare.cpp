@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
 #include <quadrant/observer/dare.hpp>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/proportional_integral.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/filter/discretize.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/observer/harmonic_force_observer.hpp>
 
@@ -132,7 +132,8 @@ TEST_CASE("harmonic_force_observer: in the loop nothing but rounding is left of 
     observer<2> ob{{y, two, placed<2>::equal(200.0 / 1_s)}, T};
     // In time: a peak of some micrometres goes to rounding.
     const auto push = forces({46, 69}, 8000);
-    const double without = last_peak(errors(no_observer{}, 0, 0, push)), with = last_peak(errors(ob, 0, 0, push));
+    const double without = last_peak(errors(no_observer{}, 0, 0, push)),
+                 with = last_peak(errors(ob, 0, 0, push));
     CHECK(without > 5e-6);
     CHECK(with < 1e-10 * without);
     // In frequency: u = wanted - Hz z - Hu u z^-1, so a force is multiplied by 1 + Hu z^-1 and what remains of the loop.

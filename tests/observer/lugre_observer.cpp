@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/observer/lugre_observer.hpp>
 
 #include <doctest/doctest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/maps.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/maps.hpp>
 #include <quadrant/control/quantizer.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/observer/reduced_order_observer.hpp>
 
 #include <doctest/doctest.h>

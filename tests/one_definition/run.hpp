@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/error.hpp>
+#include <quadrant/base/error.hpp>
 
 #include <array>
 

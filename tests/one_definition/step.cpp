@@ -2,13 +2,13 @@
 // Compiled once for every instruction set, with -Drun=run_NAME.
 #include "run.hpp"
 
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/base/make.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/notch.hpp>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
-#include <quadrant/make.hpp>
 #include <quadrant/memory/fractional_delay.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 

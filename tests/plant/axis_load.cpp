@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/plant/axis_load.hpp>
 #include <quadrant/plant/cogging_force.hpp>
 #include <quadrant/plant/flexible_modes.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/plant/backlash.hpp>
 #include <quadrant/plant/ball_screw_drive.hpp>
 

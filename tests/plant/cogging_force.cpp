@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/dual.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/plant/cogging_force.hpp>
 #include <quadrant/plant/force_ripple.hpp>
 

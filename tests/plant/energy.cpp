@@ -4,12 +4,12 @@
 // Springs of a friction law are stretched by the velocity at the end of a step, the position moves by the
 // mean of both: beside their energy the work is counted along the way of the springs. Tolerance: a billionth
 // of the work that went in and out, which is rounding.
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/plant/backlash.hpp>
 #include <quadrant/plant/ball_screw_drive.hpp>
 #include <quadrant/plant/flexible_modes.hpp>

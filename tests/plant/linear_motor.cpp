@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/maps.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/maps.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

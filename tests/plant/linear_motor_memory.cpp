@@ -2,8 +2,8 @@
 // linear_motor on friction that remembers: dahl, lugre, maxwell_slip.
 #include "../friction/hysteresis.hpp"
 
-#include <quadrant/compose/maps.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/block/maps.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>

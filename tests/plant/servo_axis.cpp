@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <doctest/doctest.h>
-#include <quadrant/lanes.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/lanes.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/plant/flexible_modes.hpp>
 #include <quadrant/plant/servo_axis.hpp>
 

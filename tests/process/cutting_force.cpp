@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/dual.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/process/milling_harmonics.hpp>
 
 #include <doctest/doctest.h>

@@ -2,8 +2,8 @@
 // A frequency without its unit: hertz or rad/s?
 // MUST SAY: could not convert '3.3e+2' from 'double' | no viable conversion from 'double'
 // AT MOST: gcc 2500, clang 7800
+#include "quadrant/base/literals.hpp"
 #include "quadrant/filter/notch.hpp"
-#include "quadrant/literals.hpp"
 using namespace quadrant::literals;
 
 using force_notch = quadrant::notch<quadrant::signal::force>;

@@ -2,8 +2,8 @@
 // The gain of a position loop where the gain of a velocity loop belongs.
 // MUST SAY: could not convert | no viable conversion
 // AT MOST: gcc 1900, clang 11100
+#include "quadrant/base/literals.hpp"
 #include "quadrant/control/proportional.hpp"
-#include "quadrant/literals.hpp"
 using namespace quadrant::literals;
 namespace signal = quadrant::signal;
 

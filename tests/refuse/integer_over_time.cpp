@@ -2,7 +2,7 @@
 // An integer does not divide by a quantity (Boost.Units keeps to the type of the number): a trap that the docs name.
 // MUST SAY: no match for 'operator/' | invalid operands to binary expression
 // AT MOST: gcc 12600, clang 6700
-#include "quadrant/literals.hpp"
+#include "quadrant/base/literals.hpp"
 using namespace quadrant::literals;
 
 #ifdef MEND

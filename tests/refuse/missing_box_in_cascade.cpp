@@ -3,7 +3,7 @@
 // MUST SAY: decltype (B::friction) | no member named 'friction'
 // MUST SAY: axis_boxes
 // AT MOST: gcc 1400, clang 800
-#include "quadrant/compose/cascade_p_pi.hpp"
+#include "quadrant/loop/cascade_p_pi.hpp"
 using namespace quadrant;
 
 struct my_axis {

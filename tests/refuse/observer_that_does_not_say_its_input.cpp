@@ -2,7 +2,7 @@
 // An observer of two inputs that does not say which command it is fed: this cycle's wish or the last one that acted.
 // MUST SAY: observes_disturbance
 // AT MOST: gcc 1900, clang 2900
-#include "quadrant/compose/milling_axis_boxes.hpp"
+#include "quadrant/loop/milling_axis_boxes.hpp"
 using namespace quadrant;
 
 struct my_observer {

@@ -2,8 +2,8 @@
 // A notch for forces on a wire that carries a position.
 // MUST SAY: notch<quadrant::signal::force
 // AT MOST: gcc 3700, clang 1000
+#include "quadrant/base/literals.hpp"
 #include "quadrant/filter/notch.hpp"
-#include "quadrant/literals.hpp"
 using namespace quadrant::literals;
 
 auto filtered(quadrant::notch<quadrant::signal::force>& resonance) {

@@ -2,7 +2,7 @@
 // A sum of two wires that carry different things.
 // MUST SAY: no match for 'operator+' | invalid operands to binary expression
 // AT MOST: gcc 6400, clang 9400
-#include "quadrant/literals.hpp"
+#include "quadrant/base/literals.hpp"
 using namespace quadrant::literals;
 
 #ifdef MEND

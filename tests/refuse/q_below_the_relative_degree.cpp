@@ -2,7 +2,7 @@
 // Q falls off slower than the plant: Q/Gn would differentiate the encoder without bound.
 // MUST SAY: q_is_not_below_the_relative_degree
 // AT MOST: gcc 2600, clang 1200
-#include "quadrant/literals.hpp"
+#include "quadrant/base/literals.hpp"
 #include "quadrant/observer/disturbance_observer.hpp"
 using namespace quadrant::literals;
 namespace signal = quadrant::signal;

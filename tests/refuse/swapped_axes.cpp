@@ -3,7 +3,7 @@
 // MUST SAY: use of deleted function | invokes a deleted function
 // MUST SAY: axis::y
 // AT MOST: gcc 3600, clang 1900
-#include "quadrant/compose/xy_table.hpp"
+#include "quadrant/loop/xy_table.hpp"
 using namespace quadrant;
 
 using table = xy_table<table_axis_boxes<>, table_axis_boxes<>>;

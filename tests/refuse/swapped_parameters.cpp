@@ -2,8 +2,8 @@
 // Gain and integral gain exchanged: they differ by a second, so the compiler can tell.
 // MUST SAY: could not convert | no viable conversion
 // AT MOST: gcc 700, clang 14100
+#include "quadrant/base/literals.hpp"
 #include "quadrant/control/proportional_integral.hpp"
-#include "quadrant/literals.hpp"
 using namespace quadrant::literals;
 namespace signal = quadrant::signal;
 

@@ -3,7 +3,7 @@
 // MUST SAY: tap
 // MUST SAY: same_as
 // AT MOST: gcc 9400, clang 7300
-#include "quadrant/compose/taps.hpp"
+#include "quadrant/block/taps.hpp"
 using namespace quadrant;
 
 struct wires {

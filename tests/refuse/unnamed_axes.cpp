@@ -3,7 +3,7 @@
 // MUST SAY: along<quadrant::axis::x | along<axis::x
 // MUST SAY: could not convert | no viable conversion | chosen constructor is explicit
 // AT MOST: gcc 4600, clang 9500
-#include "quadrant/compose/xy_table.hpp"
+#include "quadrant/loop/xy_table.hpp"
 using namespace quadrant;
 
 using table = xy_table<table_axis_boxes<>, table_axis_boxes<>>;

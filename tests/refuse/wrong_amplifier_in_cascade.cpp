@@ -3,7 +3,7 @@
 // MUST SAY: axis_boxes
 // MUST SAY: decltype (B::amplifier) | decltype(my_axis::amplifier)
 // AT MOST: gcc 1700, clang 1100
-#include "quadrant/compose/cascade_p_pi.hpp"
+#include "quadrant/loop/cascade_p_pi.hpp"
 using namespace quadrant;
 
 struct my_axis : cascade_p_pi_boxes<> {

@@ -4,7 +4,7 @@
 // MUST SAY: maps<
 // MUST SAY: axis_boxes
 // AT MOST: gcc 1400, clang 7500
-#include "quadrant/compose/cascade_p_pi.hpp"
+#include "quadrant/loop/cascade_p_pi.hpp"
 using namespace quadrant;
 
 struct my_axis : cascade_p_pi_boxes<> {

@@ -4,7 +4,7 @@
 // MUST SAY: maps<
 // MUST SAY: milling_boxes
 // AT MOST: gcc 1400, clang 1100
-#include "quadrant/compose/milling_axis_boxes.hpp"
+#include "quadrant/loop/milling_axis_boxes.hpp"
 #include "quadrant/memory/repetitive.hpp"
 using namespace quadrant;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // Situation: the encoder line breaks for milliseconds at 100 mm/s: readings that are no numbers, or stand still.
 // From: driving on without feedback (MaslowCNC/GroundControl #379); reset transients (PX4 #20449, field.md 6.14).
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

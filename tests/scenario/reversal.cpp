@@ -3,9 +3,9 @@
 // From: 0.17 mm of quadrant error, a friction compensation that did not act (SINUMERIK, field.md 6.17).
 //
 // The machine's friction is stribeck; the controller believes in one Coulomb level that is none of the machine's.
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

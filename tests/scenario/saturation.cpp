@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // Situation: moves that ask for more than the amplifier has; meanwhile the velocity loop must not wind up.
 // From: an anti-windup switch that changed nothing (control_toolbox #38, #298), hunting (Tinymovr #166); field.md 6.13.
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>

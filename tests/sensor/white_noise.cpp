@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/sensor/white_noise.hpp>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // What stands in for a C++ library that lacks it does the same as the library that has it.
-#include <quadrant/digits.hpp>
-#include <quadrant/portable.hpp>
+#include <quadrant/base/digits.hpp>
+#include <quadrant/base/portable.hpp>
 
 #include <charconv>
 #include <cmath>

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""usage: rooms.py ROOT: no header includes itself by a detour, and the rooms of the diagnosis stand in order.
+"""usage: rooms.py ROOT: no header includes itself by a detour, and the rooms stand in order.
 
-The order is the table under "Rooms of the diagnosis" in docs/CONTRIBUTING.md: a room includes itself and rooms above it
-in the table. The calls in the folder itself include any room, and no room includes a call.
+The order is that of the tables under "Rooms" and "Rooms of the diagnosis" in docs/CONTRIBUTING.md: a room includes itself
+and rooms above it in the table. What lies beside the rooms includes any of them, and no room includes it.
 """
 import os
 import pathlib
@@ -47,29 +47,39 @@ for header in headers:
     visit(header)
 
 page = (root / "docs/CONTRIBUTING.md").read_text()
-section = page.split("## Rooms of the diagnosis")[1].split("\n## ")[0]
-order = re.findall(r"^\| `([a-z_]+)/` \|", section, re.M)
-top = include / "quadrant/diagnosis"
-rooms = {p.name for p in top.iterdir() if p.is_dir()}
-if rooms != set(order):
-    faults.append(f"docs/CONTRIBUTING.md lists {sorted(order)}, the folder holds {sorted(rooms)}")
 
 
-def room(header):
-    inside = header.relative_to(top).parts
-    return inside[0] if len(inside) > 1 else None
+def order_of(heading):
+    section = page.split(f"## {heading}\n")[1].split("\n## ")[0]
+    return re.findall(r"^\| `([a-z_]+)/` \|", section, re.M)
 
 
-for header, targets in graph.items():
-    if not header.is_relative_to(top) or room(header) not in order:
-        continue
-    for target in targets:
-        if not target.is_relative_to(top):
+def hold(top, heading, what_is_above):
+    """The rooms of `top` stand in the order of the page; what lies in `top` itself includes rooms and is included by none."""
+    order = order_of(heading)
+    rooms = {p.name for p in top.iterdir() if p.is_dir()}
+    if rooms != set(order):
+        faults.append(f"docs/CONTRIBUTING.md lists {sorted(order)}, {top.name} holds {sorted(rooms)}")
+
+    def room(header):
+        inside = header.relative_to(top).parts
+        return inside[0] if len(inside) > 1 else None
+
+    for header, targets in graph.items():
+        if not header.is_relative_to(top) or room(header) not in order:
             continue
-        if room(target) is None:
-            faults.append(f"{header.relative_to(top)} includes the call {target.name}")
-        elif order.index(room(target)) > order.index(room(header)):
-            faults.append(f"{header.relative_to(top)} includes {target.relative_to(top)}, a room further down")
+        for target in targets:
+            if not target.is_relative_to(top):
+                continue
+            if room(target) is None:
+                faults.append(f"{header.relative_to(top)} includes {what_is_above} {target.name}")
+            elif room(target) in order and order.index(room(target)) > order.index(room(header)):
+                faults.append(f"{header.relative_to(top)} includes {target.relative_to(top)}, a room further down")
+    return order
+
+
+order = hold(include / "quadrant", "Rooms", "what holds all rooms,")
+order += hold(include / "quadrant/diagnosis", "Rooms of the diagnosis", "the call")
 
 for fault in faults:
     print(fault)

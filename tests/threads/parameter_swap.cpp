@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/parameter_swap.hpp>
+#include <quadrant/block/parameter_swap.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 #include "limits.hpp"
 
 #include <doctest/doctest.h>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/trajectory/interpolator.hpp>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include <quadrant/analysis/fit_gms.hpp>
 #include <quadrant/analysis/fit_stribeck.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../feedforward/axis_motion.hpp"
+#include "../block/axis_motion.hpp"
 #include "../trajectory/interpolator.hpp"
 #include "contour_error.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../control/axis_law.hpp"
+#include "../filter/viscous_step.hpp"
 #include "../observer/nominal_plant.hpp"
-#include "../plant/viscous_step.hpp"
 #include "response.hpp"
 
 namespace quadrant::analysis {

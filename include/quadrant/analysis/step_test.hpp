@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../plant/viscous_step.hpp"
+#include "../filter/viscous_step.hpp"
 #include "law_loop.hpp"
 
 #include <cmath>

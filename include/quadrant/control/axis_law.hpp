@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../compose/maps.hpp"
-#include "../feedforward/axis_motion.hpp"
+#include "../block/axis_motion.hpp"
+#include "../block/maps.hpp"
 
 #include <complex>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../filter/viscous_step.hpp"
 #include "../observer/matrix.hpp"
 #include "../observer/nominal_plant.hpp"
-#include "../plant/viscous_step.hpp"
 #include "axis_law.hpp"
 #include "proportional.hpp"
 #include "proportional_integral.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "../observer/nominal_plant.hpp"
-#include "../standstill.hpp"
 #include "axis_law.hpp"
 #include "proportional_integral.hpp"
 

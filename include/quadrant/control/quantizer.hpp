@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
 
 #include <cmath>
 
@@ -61,7 +61,8 @@ private:
         const auto rounds = greater(step_, value());
         if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
             if (none(rounds)) return x;
-        if constexpr (steps_together<Real>) { // off by a step where a division would meet the middle between two of them
+        if constexpr (steps_together<
+                          Real>) { // off by a step where a division would meet the middle between two of them
             const Real whole = round(Real(x * inverse_step_));
             return select(rounds, value(whole * step_), x);
         } else

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
+#include "../filter/viscous_step.hpp"
 #include "../observer/dare.hpp"
 #include "../observer/nominal_plant.hpp"
-#include "../plant/viscous_step.hpp"
-#include "../standstill.hpp"
 #include "axis_law.hpp"
 #include "diophantine.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../select.hpp"
+#include "../base/select.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
 
 #include <concepts>
 

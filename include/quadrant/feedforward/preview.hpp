@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
-#include "axis_motion.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../block/axis_motion.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../fine_sum.hpp"
-#include "../standstill.hpp"
+#include "../base/fine_sum.hpp"
+#include "../base/standstill.hpp"
 #include "pole_mapping.hpp"
 
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../fine_sum.hpp"
-#include "../finite.hpp"
-#include "../standstill.hpp"
+#include "../base/error.hpp"
+#include "../base/fine_sum.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "slowest.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../signal.hpp"
+#include "../base/error.hpp"
+#include "../base/signal.hpp"
 
 #include <concepts>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../standstill.hpp"
+#include "../base/standstill.hpp"
 #include "stribeck.hpp"
 
 #include <cmath>

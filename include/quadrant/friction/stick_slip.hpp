@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../signal.hpp"
+#include "../base/signal.hpp"
 
 #include <concepts>
 

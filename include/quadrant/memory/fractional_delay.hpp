@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
-#include "../lanes/lane_by_lane.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/lanes/lane_by_lane.hpp"
 #include "cubic_weights.hpp"
 
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
 #include "../filter/differences.hpp"
 #include "../filter/slowest.hpp"
-#include "../finite.hpp"
 #include "nominal_plant.hpp"
 #include "q_filter.hpp"
 

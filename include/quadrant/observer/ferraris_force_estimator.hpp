@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/finite.hpp"
 #include "../filter/slowest.hpp"
 #include "../filter/transfer_function.hpp"
-#include "../finite.hpp"
 #include "q_filter.hpp"
 
 #include <complex>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../finite.hpp"
-#include "../standstill.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "harmonic_design.hpp"
 #include "nominal_plant.hpp"
 
@@ -59,7 +59,8 @@ public:
         std::array<value, Harmonics> in_phase{}, across{}; ///< q and r
     };
     static constexpr std::size_t order = 2 + 2 * Harmonics;
-    static constexpr bool takes_last_applied = true; ///< a loop feeds the command that acted since the sample before
+    static constexpr bool takes_last_applied =
+        true; ///< a loop feeds the command that acted since the sample before
 
     harmonic_force_observer(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("harmonic_force_observer.period", period);

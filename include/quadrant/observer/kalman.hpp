@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../finite.hpp"
-#include "../standstill.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "dare.hpp"
 
 #include <cmath>

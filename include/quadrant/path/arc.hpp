@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
+#include "../base/error.hpp"
 #include "point.hpp"
 
 #include <algorithm>

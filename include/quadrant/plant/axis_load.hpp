@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../compose/absent.hpp"
-#include "../compose/maps.hpp"
+#include "../block/absent.hpp"
+#include "../block/maps.hpp"
 
 namespace quadrant {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
+#include "../filter/viscous_step.hpp"
 #include "../friction/asymmetric_stribeck.hpp"
 #include "../observer/nominal_plant.hpp"
-#include "../standstill.hpp"
-#include "viscous_step.hpp"
 
 #include <cstddef>
 #include <numbers>

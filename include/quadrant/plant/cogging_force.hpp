@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../finite.hpp"
+#include "../base/finite.hpp"
 #include "periodic.hpp"
 
 namespace quadrant {

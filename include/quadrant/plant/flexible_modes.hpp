@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
-#include "../standstill.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "oscillator.hpp"
 
 #include <array>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/standstill.hpp"
 #include "../friction/coulomb_viscous.hpp"
 #include "../friction/presliding.hpp"
 #include "../friction/stick_slip.hpp"
-#include "../standstill.hpp"
 #include "motor_load.hpp"
 
 #include <array>

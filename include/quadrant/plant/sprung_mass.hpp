@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
+#include "../base/error.hpp"
+#include "../base/select.hpp"
 #include "../friction/already_checked.hpp"
-#include "../select.hpp"
 #include "oscillator.hpp"
 
 namespace quadrant {

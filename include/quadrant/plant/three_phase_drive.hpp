@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../finite.hpp"
-#include "../signal.hpp"
-#include "../standstill.hpp"
+#include "../base/error.hpp"
+#include "../base/finite.hpp"
+#include "../base/signal.hpp"
+#include "../base/standstill.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
+#include "../base/error.hpp"
+#include "../base/signal.hpp"
 #include "../plant/harmonic_series.hpp"
-#include "../signal.hpp"
 #include "tool_entry.hpp"
 #include "turning_phase.hpp"
 

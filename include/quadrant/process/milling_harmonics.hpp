@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../units.hpp"
+#include "../base/units.hpp"
 #include "cutting_force.hpp"
 
 /// The cutting forces measured on the milling table of [Jamaludin2008]: aluminium, 3 edges, feed 320 mm/min.

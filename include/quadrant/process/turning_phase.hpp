@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../units.hpp"
+#include "../base/units.hpp"
 
 #include <cmath>
 #include <cstdint>

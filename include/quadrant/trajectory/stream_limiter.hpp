@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../error.hpp"
-#include "../fine_sum.hpp"
-#include "../finite.hpp"
+#include "../base/error.hpp"
+#include "../base/fine_sum.hpp"
+#include "../base/finite.hpp"
 #include "limits.hpp"
 
 #include <array>

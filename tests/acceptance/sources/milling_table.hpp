@@ -5,7 +5,7 @@
 
 #include "quadrant_reproduce/friction_run.hpp"
 
-#include <quadrant/compose/cascade_p_pi.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 
 #include <limits>
 

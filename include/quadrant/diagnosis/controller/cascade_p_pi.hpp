@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../compose/cascade_p_pi.hpp"
 #include "../../filter/two_sample_derivative.hpp"
+#include "../../loop/cascade_p_pi.hpp"
 #include "../machine/own_controller.hpp"
 #include "kind.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../compose/feed_control.hpp"
 #include "../../feedforward/friction_feedforward.hpp"
 #include "../../filter/filtered_derivative.hpp"
 #include "../../friction/asymmetric_stribeck.hpp"
+#include "../../loop/feed_control.hpp"
 #include "../../observer/kalman.hpp"
 #include "kind.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../compose/milling_axis_boxes.hpp"
 #include "../../friction/maxwell_slip.hpp"
+#include "../../loop/milling_axis_boxes.hpp"
 #include "../../memory/repetitive.hpp"
 #include "../../observer/disturbance_observer.hpp"
 #include "kind.hpp"

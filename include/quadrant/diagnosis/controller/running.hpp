@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/in_si.hpp"
 #include "../../control/axis_law.hpp"
-#include "../../in_si.hpp"
 #include "../machine/controller_description.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../lanes.hpp"
+#include "../../base/lanes.hpp"
 #include "../model/plant_axis.hpp"
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../in_si.hpp"
+#include "../../base/in_si.hpp"
 #include "machine.hpp"
 
 #include <type_traits>

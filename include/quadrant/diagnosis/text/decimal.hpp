@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../portable.hpp"
+#include "../../base/portable.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/finite.hpp"
+#include "../block/absent.hpp"
+#include "../block/taps.hpp"
 #include "../control/axis_law.hpp"
 #include "../control/limiter.hpp"
 #include "../control/proportional.hpp"
 #include "../control/quantizer.hpp"
 #include "../filter/backward_difference.hpp"
-#include "../finite.hpp"
 #include "../plant/backlash.hpp"
 #include "../plant/ball_screw_drive.hpp"
 #include "../sensor/white_noise.hpp"
-#include "absent.hpp"
-#include "taps.hpp"
 
 #include <array>
 #include <limits>

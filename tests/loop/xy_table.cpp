@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/compose/xy_table.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
+#include <quadrant/loop/xy_table.hpp>
 #include <quadrant/plant/cogging_force.hpp>
 #include <quadrant/plant/flexible_modes.hpp>
 #include <quadrant/plant/force_ripple.hpp>

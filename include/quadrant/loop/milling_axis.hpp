@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../feedforward/axis_motion.hpp"
-#include "../finite.hpp"
+#include "../base/finite.hpp"
+#include "../block/axis_motion.hpp"
+#include "../block/maps.hpp"
+#include "../block/taps.hpp"
 #include "cascade.hpp"
-#include "maps.hpp"
-#include "taps.hpp"
 
 #include <array>
 #include <tuple>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/taps.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/taps.hpp>
 
 #include <doctest/doctest.h>
 
@@ -16,8 +16,8 @@ struct wires {
     quantity<si::force> friction;
 };
 constexpr std::array every{tap<signal::position, &wires::error>("error"),
-                         tap<signal::force, &wires::force>("force"),
-                         tap<signal::force, &wires::friction>("friction")};
+                           tap<signal::force, &wires::force>("force"),
+                           tap<signal::force, &wires::friction>("friction")};
 static_assert(every_wire_has_a_tap(every));
 constexpr std::array forgotten{tap<signal::position, &wires::error>("error"),
                                tap<signal::force, &wires::force>("force")};

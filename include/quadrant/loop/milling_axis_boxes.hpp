@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../block/absent.hpp"
 #include "../control/limiter.hpp"
 #include "../control/proportional.hpp"
 #include "../control/proportional_integral.hpp"
@@ -7,7 +8,6 @@
 #include "../filter/backward_difference.hpp"
 #include "../filter/filtered_derivative.hpp"
 #include "../filter/notch.hpp"
-#include "absent.hpp"
 #include "milling_axis.hpp"
 
 namespace quadrant {

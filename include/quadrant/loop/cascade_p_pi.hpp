@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../block/absent.hpp"
 #include "../control/limiter.hpp"
 #include "../control/proportional.hpp"
 #include "../control/proportional_integral.hpp"
@@ -8,7 +9,6 @@
 #include "../filter/filtered_derivative.hpp"
 #include "../filter/notch.hpp"
 #include "../friction/coulomb_viscous.hpp"
-#include "absent.hpp"
 #include "cascade.hpp"
 
 namespace quadrant {

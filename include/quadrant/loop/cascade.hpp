@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../finite.hpp"
-#include "maps.hpp"
-#include "taps.hpp"
+#include "../base/finite.hpp"
+#include "../block/maps.hpp"
+#include "../block/taps.hpp"
 
 #include <array>
 #include <tuple>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/finite.hpp"
+#include "../block/absent.hpp"
+#include "../block/maps.hpp"
+#include "../block/taps.hpp"
 #include "../control/quantizer.hpp"
 #include "../filter/backward_difference.hpp"
-#include "../finite.hpp"
 #include "../plant/axis_load.hpp"
 #include "../plant/linear_motor.hpp"
-#include "absent.hpp"
-#include "maps.hpp"
-#include "taps.hpp"
 
 #include <array>
 #include <tuple>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/compose/series.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/filter/two_sample_derivative.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 
 #include <doctest/doctest.h>
 

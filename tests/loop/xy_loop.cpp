@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // The controllers of both axes as one block, and the whole loop of a table.
-#include <quadrant/compose/xy_control_lanes.hpp>
-#include <quadrant/compose/xy_loop.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/loop/xy_control_lanes.hpp>
+#include <quadrant/loop/xy_loop.hpp>
 #include <quadrant/process/cutting_force.hpp>
 #include <quadrant/process/milling_harmonics.hpp>
 

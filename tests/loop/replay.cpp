@@ -2,8 +2,8 @@
 // The cascade against recorded machines: the logs of the practice set whose controller is the one described.
 #include "shared.hpp"
 
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
 
 #include <doctest/doctest.h>
 

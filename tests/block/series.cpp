@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
-#include <quadrant/compose/absent.hpp>
-#include <quadrant/compose/series.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/absent.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/rate_limiter.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
-#include <quadrant/literals.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Other parameters in the middle of a random signal, beside a twin that keeps its own: what the coming output is off by is
 // bounded by the formula in the block's doc comment, for every pair of parameters, and the bound is reached.
-#include <quadrant/compose/series.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/series.hpp>
 #include <quadrant/control/proportional.hpp>
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/filter/butterworth.hpp>
@@ -11,7 +12,6 @@
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
-#include <quadrant/literals.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/memory/fractional_delay.hpp>
 #include <quadrant/memory/repetitive.hpp>

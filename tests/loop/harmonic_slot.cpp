@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // The slot `disturbance` of a milling_axis feeds each observer the command that it is made for.
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/observer/harmonic_force_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
@@ -55,6 +55,6 @@ TEST_CASE(
     const double alone = shaken<nothing>(), observed = shaken<harmonics>();
     MESSAGE("um rms: " << alone << " without, " << observed << " with the observer");
     CHECK(alone > 0);
-    CHECK(observed >= 0); // it does not diverge
+    CHECK(observed >= 0);           // it does not diverge
     CHECK(observed < 1e-6 * alone); // a gain without bound at these frequencies
 }

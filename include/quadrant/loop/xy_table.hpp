@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "along.hpp"
+#include "../block/along.hpp"
 #include "table_axis.hpp"
 
 namespace quadrant {

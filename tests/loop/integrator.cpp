@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 // Day one, with whole loops: enable on the move, disable, emergency stop, other parameters, homing, a gantry.
-#include <quadrant/compose/cascade_p_pi.hpp>
-#include <quadrant/compose/gantry_pair.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/compose/parameter_swap.hpp>
+#include <quadrant/base/literals.hpp>
+#include <quadrant/block/parameter_swap.hpp>
 #include <quadrant/control/axis_enable.hpp>
 #include <quadrant/control/following_error.hpp>
 #include <quadrant/control/gain_schedule.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/cascade_p_pi.hpp>
+#include <quadrant/loop/gantry_pair.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/finite.hpp"
+#include "../block/absent.hpp"
+#include "../block/taps.hpp"
 #include "../control/axis_law.hpp"
 #include "../control/limiter.hpp"
 #include "../control/pid.hpp"
 #include "../control/quantizer.hpp"
 #include "../feedforward/preview.hpp"
-#include "../finite.hpp"
-#include "absent.hpp"
-#include "taps.hpp"
 
 #include <array>
 #include <tuple>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/lanes.hpp"
 #include "../friction/maxwell_slip_lanes.hpp"
-#include "../lanes.hpp"
 #include "../memory/repetitive_in_step.hpp"
 #include "../observer/disturbance_observer.hpp"
 #include "milling_axis_boxes.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/analysis/loop.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
-#include <quadrant/compose/milling_axis_boxes.hpp>
-#include <quadrant/dual.hpp>
+#include <quadrant/base/dual.hpp>
+#include <quadrant/base/literals.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
-#include <quadrant/literals.hpp>
+#include <quadrant/loop/milling_axis_boxes.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
