@@ -13,8 +13,9 @@
 #include <limits>
 #include <vector>
 
-/// The x axis of the milling table under its cascade, closed loop, twice: with the blocks, and by hand. Everything is
-/// inlined into `step` and `step` into nothing (a servo interrupt), so that the same work stands behind the same border.
+/// The x axis of the milling table under its cascade, closed loop, twice: with the blocks, and by hand.
+/// Everything is inlined into `step` and `step` into nothing (a servo interrupt), so that the same work stands
+/// behind the same border.
 namespace axis_loop {
 
 using namespace quadrant;
@@ -77,7 +78,8 @@ inline std::vector<double> sine() {
         r[k] = 0.015 * (1 - std::cos(2 * std::numbers::pi * 1.06 * static_cast<double>(k) * 0.0005));
     return r;
 }
-/// The same with steps that drive the amplifier into its limit, a lost encoder line (NaN) and a value that overflows
+/// The same with steps that drive the amplifier into its limit, a lost encoder line (NaN) and a value that
+/// overflows
 /// in the gains: every branch of the policy.
 inline std::vector<double> rough() {
     std::vector<double> r = sine();

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-/// What blocks_count and blocks_time measure: every block of tests/conformance/blocks.hpp, the whole axis of the milling table,
-/// and two second-order filters as one would write them without this library.
+/// What blocks_count and blocks_time measure: every block of tests/conformance/blocks.hpp, the whole axis of
+/// the milling table, and two second-order filters as one would write them without this library.
 namespace counted {
 using namespace conformance;
 
@@ -123,7 +123,8 @@ template <std::size_t Horizon> auto predicting() {
                 T)](double x) mutable { return block(x * 1_m).value(); };
 }
 
-/// Four notches of the library, each with its own centre, and the same in lanes (registers of the build's instruction set).
+/// Four notches of the library, each with its own centre, and the same in lanes (registers of the build's
+/// instruction set).
 struct four_notches {
     std::array<notch<s::force>, 4> each{notch<s::force>{{330_Hz, 0.1}, T}, notch<s::force>{{340_Hz, 0.1}, T},
                                         notch<s::force>{{350_Hz, 0.1}, T}, notch<s::force>{{360_Hz, 0.1}, T}};
@@ -144,7 +145,8 @@ struct notches_in_lanes {
     }
 };
 
-/// Ways to sum a filter of 90 taps, then ways to have two axes: count(group, name, what makes the step), a group is one filter.
+/// Ways to sum a filter of 90 taps, then ways to have two axes: count(group, name, what makes the step), a
+/// group is one filter.
 template <class Count> void each_sum(Count&& count) {
     using sums::over_a_window;
     using four = over_a_window<sums::as_in_repetitive, sums::as_in_repetitive::size>;

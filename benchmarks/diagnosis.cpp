@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Time of the diagnosis' parts against the length of the log: reading, one pass of the plant, one fit, the whole.
+// Time of the diagnosis' parts against the length of the log: reading, one pass of the plant, one fit, the
+// whole.
 //   build/bench/benchmarks/diagnosis
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
@@ -44,8 +45,8 @@ void one_pass(benchmark::State& state) {
     state.SetComplexityN(state.range(0));
 }
 
-/// So many plants on 28 000 rows, in one pass: an axis of 320 kg with Stribeck friction whose delay splits each period. The counter is
-/// the time of one plant's row.
+/// So many plants on 28 000 rows, in one pass: an axis of 320 kg with Stribeck friction whose delay splits each
+/// period. The counter is the time of one plant's row.
 void plant_pass(benchmark::State& state, std::size_t plants) {
     constexpr std::size_t rows = 28000;
     constexpr double period = 5e-4;

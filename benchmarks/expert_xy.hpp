@@ -8,11 +8,11 @@
 #include <cstring>
 #include <immintrin.h>
 
-/// The controller of both axes as one writes it who counts every instruction, for x86-64-v3: both axes in the lanes of a register,
-/// every FIR coefficient loaded once for both (the axes share their taps; other ones would need another loop), friction without a
-/// branch, one exponential for both axes, rounding in one instruction, one range check at the inputs. The same commands behind the
-/// DAC as the other loops give; nothing else: no wire to look at, no flag of a box, no change of parameters, no settle.
-/// GCC's and Clang's vector extension.
+/// The controller of both axes as one writes it who counts every instruction, for x86-64-v3: both axes in the
+/// lanes of a register, every FIR coefficient loaded once for both (the axes share their taps; other ones would
+/// need another loop), friction without a branch, one exponential for both axes, rounding in one instruction,
+/// one range check at the inputs. The same commands behind the DAC as the other loops give; nothing else: no
+/// wire to look at, no flag of a box, no change of parameters, no settle. GCC's and Clang's vector extension.
 namespace expert {
 
 typedef double v2 __attribute__((vector_size(16)));
@@ -35,7 +35,8 @@ template <class V> [[gnu::always_inline]] inline V at(const double* p) {
 [[gnu::always_inline]] inline v2 whole(v2 x) {
     return (v2)_mm_round_pd((__m128d)x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
 }
-/// exp(x) for x <= 0, to 3e-13, which is enough behind a DAC of 16 bits: 2^k from the bits, the rest by its series.
+/// exp(x) for x <= 0, to 3e-13, which is enough behind a DAC of 16 bits: 2^k from the bits, the rest by its
+/// series.
 [[gnu::always_inline]] inline v2 fall(v2 x) {
     x = x < all(-700) ? all(-700) : x;
     const v2 shifted = x * 1.4426950408889634 + 6755399441055744.0, k = shifted - 6755399441055744.0;

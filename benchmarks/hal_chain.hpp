@@ -12,8 +12,9 @@
 #include <utility>
 #include <vector>
 
-/// LinuxCNC's own components as they are installed, loaded into this program and called one after another as a HAL thread
-/// does. HAL itself is replaced by the few functions that components call: memory, pins and functions by name.
+/// LinuxCNC's own components as they are installed, loaded into this program and called one after another as a
+/// HAL thread does. HAL itself is replaced by the few functions that components call: memory, pins and
+/// functions by name.
 namespace hal {
 
 struct registry {
@@ -133,8 +134,8 @@ int hal_export_funct(const char* name, void (*call)(void*, long), void* argument
 
 namespace hal {
 
-/// One axis of what LinuxCNC has of the loop: velocities by ddt and lowpass, biquad as notch, sum2 for gains and sums, pid as
-/// PI, limit1. Friction, observer and memory are missing: there are no such components.
+/// One axis of what LinuxCNC has of the loop: velocities by ddt and lowpass, biquad as notch, sum2 for gains
+/// and sums, pid as PI, limit1. Friction, observer and memory are missing: there are no such components.
 class axis {
 public:
     struct gains {

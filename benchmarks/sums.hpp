@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-/// The sum of a FIR filter in the ways one could write it, and two axes beside each other in the lanes of one register.
+/// The sum of a FIR filter in the ways one could write it, and two axes beside each other in the lanes of one
+/// register.
 namespace sums {
 inline constexpr std::size_t taps = 90;
 using quadrant::detail::fir_taps;

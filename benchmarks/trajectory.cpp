@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Time per servo period of the interpolator, moves handed over as they are needed: all that a controller spends on its path.
+// Time per servo period of the interpolator, moves handed over as they are needed: all that a controller spends
+// on its path.
 #include <benchmark/benchmark.h>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/trajectory/interpolator.hpp>

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-/// The diagram of `milling_axis` as it is without types: wires by number in an array, nodes called through one virtual
-/// function each, in the order in which they were added. The blocks in the nodes are the same, with their flags.
+/// The diagram of `milling_axis` as it is without types: wires by number in an array, nodes called through one
+/// virtual function each, in the order in which they were added. The blocks in the nodes are the same, with
+/// their flags.
 namespace virtual_graph {
 
 using namespace quadrant;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// Time per servo period of the controller of both axes of the milling table: typed, by hand in doubles with the same NaN policy,
-// and as a run-time graph of the same blocks, each with the memory's FIR filters and without; and what LinuxCNC's components
-// can do of it, chained as in a HAL thread.
+// Time per servo period of the controller of both axes of the milling table: typed, by hand in doubles with the
+// same NaN policy, and as a run-time graph of the same blocks, each with the memory's FIR filters and without;
+// and what LinuxCNC's components can do of it, chained as in a HAL thread.
 #include "xy_loop.hpp"
 #include "hal_chain.hpp"
 
@@ -53,7 +53,8 @@ BENCHMARK(loop<xy_loop::typed_lanes<1, 1>>)->Name("xy_loop/typed_lanes/without_f
 BENCHMARK(loop<xy_loop::by_hand<1, 1>>)->Name("xy_loop/hand_written/without_fir");
 BENCHMARK(loop<xy_loop::as_graph<1, 1>>)->Name("xy_loop/virtual_graph/without_fir");
 
-/// LinuxCNC's own components chained: cascade, notch and inverse of the plant, without friction, observer and memory.
+/// LinuxCNC's own components chained: cascade, notch and inverse of the plant, without friction, observer and
+/// memory.
 class hal_chain {
 public:
     hal_chain() {

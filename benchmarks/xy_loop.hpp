@@ -12,8 +12,9 @@
 #include <cstdio>
 #include <limits>
 
-/// The controller of both axes of the milling table: typed, alone and in lanes (examples/quadrant_latency/loop.hpp), by hand, as an
-/// expert writes it, and as a run-time graph of the same blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
+/// The controller of both axes of the milling table: typed, alone and in lanes
+/// (examples/quadrant_latency/loop.hpp), by hand, as an expert writes it, and as a run-time graph of the same
+/// blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
 namespace xy_loop {
 
 using namespace quadrant;
@@ -83,7 +84,8 @@ template <std::size_t Learning, std::size_t Smoothing> struct by_hand {
     }
 };
 
-/// Every box behind a virtual call, the wires in an array: what a graph does that is put together while the program runs.
+/// Every box behind a virtual call, the wires in an array: what a graph does that is put together while the
+/// program runs.
 template <std::size_t Learning, std::size_t Smoothing> struct as_graph {
     using boxes = quadrant_latency::boxes<quadrant_latency::memory_of<Learning, Smoothing>>;
     virtual_graph::axis x{

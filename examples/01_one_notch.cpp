@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
-// A notch dropped into a loop that somebody else wrote, in bare doubles: one line to make it, one line to use it.
+// A notch dropped into a loop that somebody else wrote, in bare doubles: one line to make it, one line to use
+// it.
 //
 //   demand --->( )---> P ---> notch ---> amplifier ---> mass, swinging frame --- y ---> difference, low-pass --+
 //             -  ^                                                                                            |
 //                +--------------------------------------------------------------------------------------------+
 //
 // Source: the structural mode of the x axis in [Jamaludin2008] ch. 2 (320 to 340 Hz).
-// You should see: without the notch the loop rings up until the amplifier clips; with it, the same gain is quiet.
-// Volts go in, volts come out; a bare number, or a position, does not compile.
+// You should see: without the notch the loop rings up until the amplifier clips; with it, the same gain is
+// quiet. Volts go in, volts come out; a bare number, or a position, does not compile.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/filter/notch.hpp>
 
@@ -20,8 +21,8 @@ using namespace quadrant;
 using namespace quadrant::literals;
 constexpr double T = 500e-6; // [s]
 
-/// Somebody's simulated machine, 20 steps a period: a drive that acts one period late, 340 kg on viscous friction,
-/// and a frame that swings at 330 Hz when pushed.
+/// Somebody's simulated machine, 20 steps a period: a drive that acts one period late, 340 kg on viscous
+/// friction, and a frame that swings at 330 Hz when pushed.
 struct machine {
     double x = 0, v = 0, swing = 0, swing_speed = 0, next = 0;
     double operator()(double command) {
@@ -39,7 +40,8 @@ struct machine {
     }
 };
 
-/// A step to 10 mm/s; what is left of the error in the second half of 0.4 s, and how often the amplifier clipped.
+/// A step to 10 mm/s; what is left of the error in the second half of 0.4 s, and how often the amplifier
+/// clipped.
 void run(bool with_notch) {
     notch<signal::voltage> quiet{{330_Hz, 0.3}, 500_us}; // one line to make it
     machine axis;

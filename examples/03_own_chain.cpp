@@ -7,10 +7,11 @@
 //   y -> estimator -> notch -------- measured speed --------+                     |
 //   r -> difference -> difference -> inertia -------------------------------------+
 //
-// Source: the thesis' own loop, [Jamaludin2008] eq. (2.22) to (2.34): the notch sits in the velocity feedback, and the
-// reference velocity passes the same filters. The stock cascade has the notch in the command, and plain differences.
-// You should see: with the same filters on both sides the error is less than a tenth of that with a plain difference
-// (thesis: 2.4 um for this motion).
+// Source: the thesis' own loop, [Jamaludin2008] eq. (2.22) to (2.34): the notch sits in the velocity feedback,
+// and the reference velocity passes the same filters. The stock cascade has the notch in the command, and plain
+// differences.
+// You should see: with the same filters on both sides the error is less than a tenth of that with a plain
+// difference (thesis: 2.4 um for this motion).
 #include <quadrant/quadrant.hpp>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ struct thesis_axis {
     }
 };
 
-/// Largest error in the second of two periods of 30 mm at 0.53 Hz, on the thesis' model B e^(-s Td) / (s (s + A)).
+/// Largest error in the second of two periods of 30 mm at 0.53 Hz, on the thesis' model B e^(-s Td) / (s (s +
+/// A)).
 double worst(bool same_filters) {
     thesis_axis axis;
     axis.same_filters = same_filters;

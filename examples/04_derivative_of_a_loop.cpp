@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSL-1.0
-// How does the peak tracking error move with two gains? The loop itself answers, run once with a number that carries
-// its derivatives.
+// How does the peak tracking error move with two gains? The loop itself answers, run once with a number that
+// carries its derivatives.
 //
 //   reference --> cascade<..., dual<2>> --> linear_motor<..., dual<2>> --+     position_gain = dual::variable(150, 0)
 //                    ^                                                   |     velocity_gain = dual::variable(60, 1)
 //                    +---------------------------------------------------+
 //
-// Source: forward differentiation by dual numbers, quadrant/base/dual.hpp; axis of [Jamaludin2008] with friction.
-// You should see: both derivatives are those of a central difference of two more runs each, and both gains help:
-// one per cent of velocity gain is worth twice one per cent of position gain.
+// Source: forward differentiation by dual numbers, quadrant/base/dual.hpp; axis of [Jamaludin2008] with
+// friction.
+// You should see: both derivatives are those of a central difference of two more runs each, and both gains
+// help: one per cent of velocity gain is worth twice one per cent of position gain.
 #include <quadrant/base/dual.hpp>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/loop/cascade_p_pi.hpp>

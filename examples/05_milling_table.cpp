@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The milling table, whole: both axes along a circle while the cutter shakes them with 15 harmonics of its 23.3 Hz.
+// The milling table, whole: both axes along a circle while the cutter shakes them with 15 harmonics of its 23.3
+// Hz.
 //
 //   r -+-> Vest -> notch ------------------+     +------- (r'' + A' r')/B, inverse of the axis
 //      |            +-> memory -+          |     |         +- GMS friction of r'
@@ -7,8 +8,9 @@
 //      y ---^-  position_error             ^-          ^- observer(y, u)     ^ friction, cutting force
 //      y -> Vest -> notch -----------------+
 //
-// Source: [Jamaludin2008] ch. 2 to 5; Table 5.4 for (i) to (iii), measured 7.68, 4.43, 1.09 um. A memory of 85 whole periods
-// is 1 % off the cutter's cycle: weights 2, -1 forgive that, for 12 dB between the harmonics instead of 6 with weights 1.
+// Source: [Jamaludin2008] ch. 2 to 5; Table 5.4 for (i) to (iii), measured 7.68, 4.43, 1.09 um. A memory of 85
+// whole periods is 1 % off the cutter's cycle: weights 2, -1 forgive that, for 12 dB between the harmonics
+// instead of 6 with weights 1.
 // You should see: (i) > (ii) > (iii); a memory that learns too much is stopped and gives no figure.
 #include "quadrant_reproduce/divergence_guard.hpp"
 #include "quadrant_reproduce/thesis.hpp"
@@ -35,7 +37,8 @@ struct choice { // of the memory
     std::array<double, 2> weights{2, -1};
 };
 
-/// L inverts the closed loop of the model, observer and all; Q keeps it from frequencies that the model does not know.
+/// L inverts the closed loop of the model, observer and all; Q keeps it from frequencies that the model does
+/// not know.
 memory::parameters learned(const axis& a, const choice& c) {
     const analysis::axis_model<> g{a.A_gms, a.B, a.delay}, nominal{a.A_gms, a.B, 0_s};
     const analysis::q_model<> d{a.corner};

@@ -3,10 +3,11 @@
 //
 //   machine --> log --> diagnose --> apply --> feedforward blocks --> forecast --> the same machine again
 //
-// The machine: a linear motor whose friction is bristles (LuGre) and whose magnets cog. The machine file knows its Coulomb
-// level and nothing else of that; the diagnosis fits laws of its own (sticking contacts, harmonics), so that neither the
-// forecast nor the feedforward shares a friction law with the machine.
-// You should see: both causes named, and less than a third of the error left with them in the controller, inside what was forecast.
+// The machine: a linear motor whose friction is bristles (LuGre) and whose magnets cog. The machine file knows
+// its Coulomb level and nothing else of that; the diagnosis fits laws of its own (sticking contacts,
+// harmonics), so that neither the forecast nor the feedforward shares a friction law with the machine.
+// You should see: both causes named, and less than a third of the error left with them in the controller,
+// inside what was forecast.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/compensate.hpp>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 // The diagnosis as a library, with what it cannot know: a controller of your own and an effect of your own.
 //
-// The machine here is simulated by the code below. Its controller is a PID with a lead, no cascade. Somebody has turned its
+// The machine here is simulated by the code below. Its controller is a PID with a lead, no cascade. Somebody
+// has turned its
 // lead from 25 ms to 30 ms, and a way cover pulls on it with the square of its stretch: no list has either.
-// You should see: the controller found by replay, with the number that mends it; without the cover in the list no name is
-// claimed for what is behind the command; with it the cover is named and its number found.
+// You should see: the controller found by replay, with the number that mends it; without the cover in the list
+// no name is claimed for what is behind the command; with it the cover is named and its number found.
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/effect/own_effect.hpp>
@@ -21,7 +22,8 @@ namespace {
 
 constexpr double period = 0.001;
 
-/// u = gain (e + lead de/dt) + integral of e, the derivative behind 200 Hz. Plain doubles; quadrant's loops go as well.
+/// u = gain (e + lead de/dt) + integral of e, the derivative behind 200 Hz. Plain doubles; quadrant's loops go
+/// as well.
 struct lead_pid {
     double gain, lead, integral, last = 0, slope = 0, sum = 0;
     double operator()(double reference, double measured) noexcept {
@@ -76,7 +78,8 @@ machine_log record(double seconds) {
     return {.file = "log", .sample_period_s = period, .samples = x.position.size(), .axes = {x}, .notes = {}};
 }
 
-/// What its simulation believes: a machine file, and the controller as code with the numbers that may be others.
+/// What its simulation believes: a machine file, and the controller as code with the numbers that may be
+/// others.
 machine_description believed() {
     auto machine = read_machine(std::string_view(R"({
         "schema": "quadrant.machine/1", "sample_period_s": 0.001,

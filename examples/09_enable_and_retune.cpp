@@ -5,10 +5,12 @@
 //                                    ^ buttons, trip            ^ track, retune                |
 //                                 following_error <-------------+------------------------------+
 //
-// First another controller has the axis, and the cascade tracks what that one puts out. At 200 ms it is enabled: the
-// command goes on where it was. At 400 ms the thread that tunes has offered other boxes, and they are taken whole between
-// two samples. At 1000 ms somebody hits the mushroom: a ramp of 2 m/s^2, the brake, off, and the cascade tracks zero volts.
-// You should see: the command moves by millivolts where the axis is enabled and tuned, and the stop takes v^2/(2 a) = 2.3 mm.
+// First another controller has the axis, and the cascade tracks what that one puts out. At 200 ms it is
+// enabled: the command goes on where it was. At 400 ms the thread that tunes has offered other boxes, and they
+// are taken whole between two samples. At 1000 ms somebody hits the mushroom: a ramp of 2 m/s^2, the brake,
+// off, and the cascade tracks zero volts.
+// You should see: the command moves by millivolts where the axis is enabled and tuned, and the stop takes
+// v^2/(2 a) = 2.3 mm.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/parameter_swap.hpp>
 #include <quadrant/control/axis_enable.hpp>

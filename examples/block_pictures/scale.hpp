@@ -12,7 +12,8 @@ struct point {
     double x, y;
 };
 
-/// The points of a curve that the eye needs: no dropped one is further than a fifth of a pixel from what is drawn.
+/// The points of a curve that the eye needs: no dropped one is further than a fifth of a pixel from what is
+/// drawn.
 inline std::vector<point> simplified(const std::vector<point>& all) {
     std::vector<bool> keep(all.size(), false);
     std::vector<std::pair<std::size_t, std::size_t>> open;

@@ -5,7 +5,8 @@
 
 #include <array>
 
-/// A picture as a file of its own: panels below each other, on white, so that it reads on a light and on a dark page. The
+/// A picture as a file of its own: panels below each other, on white, so that it reads on a light and on a dark
+/// page. The
 /// same numbers give the same bytes, on any computer: no fonts are measured and no program is asked.
 namespace block_pictures {
 

@@ -7,8 +7,8 @@
 
 #include <limits>
 
-/// The axis on which the control laws show what they do: 3 t, B and A of the x axis of a virtual CNC, no friction but the
-/// viscous one, 1 ms, an amplifier of 5 V.
+/// The axis on which the control laws show what they do: 3 t, B and A of the x axis of a virtual CNC, no
+/// friction but the viscous one, 1 ms, an amplifier of 5 V.
 namespace block_pictures {
 
 inline const axis_model<s::voltage> trial_model{0.6336_mps2 / 1_V, 2.548 / 1_s};

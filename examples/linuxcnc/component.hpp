@@ -26,10 +26,11 @@
 ///       bool adopt(const Block& next) noexcept;                       // goes on with other parameters; false: not now
 ///       struct wires; wires wire() const; static constexpr auto taps(); // what to show
 ///   };
-/// Every parameter is an input pin. A thread beside the real-time one looks at them every few milliseconds, builds a
-/// new block from what changed and offers it; the real-time thread takes the offer between two periods. Nothing is
-/// allocated, locked or thrown there. What a constructor refuses is told once, raises `refused`, and the old one stays.
-/// While `apply` is FALSE changes are collected; they are then taken all at once.
+/// Every parameter is an input pin. A thread beside the real-time one looks at them every few milliseconds,
+/// builds a new block from what changed and offers it; the real-time thread takes the offer between two
+/// periods. Nothing is allocated, locked or thrown there. What a constructor refuses is told once, raises
+/// `refused`, and the old one stays. While `apply` is FALSE changes are collected; they are then taken all at
+/// once.
 namespace hal {
 
 template <class Block> class instance {

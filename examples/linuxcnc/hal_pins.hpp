@@ -17,7 +17,8 @@ namespace hal {
 
 using quadrant::quantity;
 
-/// One parameter of Settings: the name of its pin, its default, where it goes. In SI, as everything here that is typed.
+/// One parameter of Settings: the name of its pin, its default, where it goes. In SI, as everything here that
+/// is typed.
 template <class Settings> struct parameter {
     const char* name;
     double standard;

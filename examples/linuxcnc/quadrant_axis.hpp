@@ -9,8 +9,9 @@
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/loop/milling_axis_boxes.hpp>
 
-/// The controller of an axis for HAL: `milling_axis` with Stribeck friction, disturbance observer and repetitive memory.
-/// Another friction law is another type below and its fields in `list()`; pins for the wires come with the loop.
+/// The controller of an axis for HAL: `milling_axis` with Stribeck friction, disturbance observer and
+/// repetitive memory. Another friction law is another type below and its fields in `list()`; pins for the wires
+/// come with the loop.
 namespace hal {
 
 class hal_axis {
@@ -80,7 +81,8 @@ public:
     static constexpr auto taps() { return loop::taps(); }
     const wires& wire() const noexcept { return loop_.wire; }
 
-    /// Off: the loop goes along and takes 0 for its last output, so that it begins without a bump, also on the move.
+    /// Off: the loop goes along and takes 0 for its last output, so that it begins without a bump, also on the
+    /// move.
     bool step(const pins& p) noexcept {
         const bool on = p.enable.get();
         fault_ = fault_ && on;
@@ -115,8 +117,8 @@ public:
         return !fault_;
     }
 
-    /// Other parameters, also in motion: the first output after the change is off by no more than docs/integrator.md says. A
-    /// memory that is switched on or off begins with nothing learnt.
+    /// Other parameters, also in motion: the first output after the change is off by no more than
+    /// docs/integrator.md says. A memory that is switched on or off begins with nothing learnt.
     bool adopt(const hal_axis& next) noexcept {
         known_ = known_ && given_.scale == next.given_.scale; // other units: begins anew
         const bool switched = (given_.weight == 0) != (next.given_.weight == 0);
@@ -130,7 +132,8 @@ public:
 private:
     bool inside(length x) const noexcept { return x >= -given_.range && x <= given_.range; } // NaN is not
 
-    /// The observer compares with the plant that is fed forward; the memory's filters are made for loop and period.
+    /// The observer compares with the plant that is fed forward; the memory's filters are made for loop and
+    /// period.
     static parameters completed(parameters p, duration period) {
         namespace analysis = quadrant::analysis;
         quadrant::require_positive("quadrant_axis.scale", p.scale);
@@ -141,7 +144,8 @@ private:
         auto& box = p.box;
         quadrant::require(box.dac_step <= box.limit, "quadrant_axis.dac_step", box.dac_step,
                           "must not be above limit (" + quadrant::detail::shortest(box.limit.value()) + ")");
-        // How far the limit moves the axis in a period, beside the range: below a rounding of it the axis is no axis.
+        // How far the limit moves the axis in a period, beside the range: below a rounding of it the axis is no
+        // axis.
         const double range = p.range.value(), push = box.limit.value() * period.value() * period.value(),
                      least = std::numeric_limits<double>::epsilon() * range / push, most = range / push;
         quadrant::require(box.plant_gain.value() >= least && box.plant_gain.value() <= most,

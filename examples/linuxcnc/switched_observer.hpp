@@ -7,7 +7,8 @@ namespace hal {
 namespace signal = quadrant::signal;
 using quadrant::duration;
 
-/// An observer that can be off: it then watches and gives nothing, so that it knows the axis when it is switched on.
+/// An observer that can be off: it then watches and gives nothing, so that it knows the axis when it is
+/// switched on.
 class switched_observer : public quadrant::disturbance_observer<signal::voltage> {
     using observer = quadrant::disturbance_observer<signal::voltage>;
 

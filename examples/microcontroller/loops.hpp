@@ -6,8 +6,8 @@
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
 
-/// What this machine's axes are made of: three loops to choose from, from small to large. Real is float where the
-/// processor has no double.
+/// What this machine's axes are made of: three loops to choose from, from small to large. Real is float where
+/// the processor has no double.
 namespace loops {
 using namespace quadrant;
 using namespace quadrant::literals;
@@ -42,8 +42,8 @@ template <class Real, class Memory = absent<signal::position, signal::position, 
     }
 };
 
-/// And a memory of the last two cycles of 236 ms. Q, 61 taps: a triangle, first zero at 65 Hz. L, the lag of the position
-/// loop turned round, 1 + s / position_gain.
+/// And a memory of the last two cycles of 236 ms. Q, 61 taps: a triangle, first zero at 65 Hz. L, the lag of
+/// the position loop turned round, 1 + s / position_gain.
 template <class Real> struct with_memory {
     using base = with_observer<Real, repetitive<signal::position, 512, 2, 90, 61, Real>>;
     using boxes = typename base::boxes;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The blocks behind servo_axis.h. Compiles with -fno-exceptions -fno-rtti; needs no heap, no I/O, no start-up code.
+// The blocks behind servo_axis.h. Compiles with -fno-exceptions -fno-rtti; needs no heap, no I/O, no start-up
+// code.
 #include "servo_axis.h"
 
 #include "loops.hpp"

@@ -36,7 +36,8 @@ inline std::string nearest_option(const CLI::App& program, int argc, const char*
     return "";
 }
 
-/// Prints what CLI11 has to say, with what may have been meant; `refused` is the exit code of a wrong command line.
+/// Prints what CLI11 has to say, with what may have been meant; `refused` is the exit code of a wrong command
+/// line.
 inline int said(const CLI::App& program, const CLI::ParseError& fault, int argc, const char* const* argv,
                 int refused) {
     if (program.exit(fault) == 0) return 0;

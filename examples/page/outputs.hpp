@@ -71,7 +71,8 @@ inline void write_output(const std::string& path, std::string_view text) {
         throw quadrant::diagnosis::bad_input("standard output", "cannot be written");
 }
 
-/// The exit code of a program that would end with `code`: 1 and a line when not all of its standard output was taken.
+/// The exit code of a program that would end with `code`: 1 and a line when not all of its standard output was
+/// taken.
 inline int ended(int code, const char* program) {
     constexpr int unwritten = 1;
     const bool lost = std::ferror(stdout) != 0;

@@ -15,7 +15,8 @@ inline std::string about(double seconds) {
                             : fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// How far a program is, on standard error: one line that is overwritten on a terminal, else a line every ten seconds.
+/// How far a program is, on standard error: one line that is overwritten on a terminal, else a line every ten
+/// seconds.
 class progress_line {
 public:
     explicit progress_line(bool quiet) : quiet_(quiet) {}

@@ -62,8 +62,9 @@ private:
     std::filesystem::path path_;
 };
 
-/// From now on an interruption (SIGINT, SIGTERM, SIGHUP) removes the scratch folders and then ends the program as ever.
-/// To be called before any thread is started; children begin with undo_interruption_mask() or an empty mask.
+/// From now on an interruption (SIGINT, SIGTERM, SIGHUP) removes the scratch folders and then ends the program
+/// as ever. To be called before any thread is started; children begin with undo_interruption_mask() or an empty
+/// mask.
 inline void remove_scratch_when_interrupted() {
     const sigset_t waited = detail::interruptions();
     detail::scratch();

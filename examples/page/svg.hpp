@@ -22,7 +22,8 @@ namespace quadrant_page {
 inline constexpr std::string_view gnuplot_package = "gnuplot-nox";
 inline bool gnuplot_is_here() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
-/// The samples to draw: the first, the last, the smallest and the largest of every bucket, so that no peak is lost.
+/// The samples to draw: the first, the last, the smallest and the largest of every bucket, so that no peak is
+/// lost.
 inline std::vector<std::size_t> peaks(const std::vector<double>& y, std::size_t limit = 1200) {
     std::vector<std::size_t> keep;
     const std::size_t n = y.size(), buckets = n > limit ? limit / 2 : n;

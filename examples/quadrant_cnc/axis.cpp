@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// An axis of the virtual machine: drive and control law as the file says, each known to the other by its ports only.
+// An axis of the virtual machine: drive and control law as the file says, each known to the other by its ports
+// only.
 #include "axis.hpp"
 
 #include "drive_side.hpp"

@@ -9,7 +9,8 @@
 #include <variant>
 #include <vector>
 
-/// A virtual machine as its file describes it (schema quadrant.cnc/1). Field names are the file's keys; all values SI.
+/// A virtual machine as its file describes it (schema quadrant.cnc/1). Field names are the file's keys; all
+/// values SI.
 namespace quadrant_cnc {
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-/// The subcommands of quadrant-cnc, one file each; their options are read in main.cpp. A command throws bad_input or
-/// bad_program when it cannot do what it was asked for.
+/// The subcommands of quadrant-cnc, one file each; their options are read in main.cpp. A command throws
+/// bad_input or bad_program when it cannot do what it was asked for.
 namespace quadrant_cnc {
 
 struct run_options {

@@ -7,15 +7,15 @@
 #include <numbers>
 #include <vector>
 
-/// How far the machine is from the path that the program asks for: the distance to the geometry itself, lines, arcs and
-/// splines, not to samples of it.
+/// How far the machine is from the path that the program asks for: the distance to the geometry itself, lines,
+/// arcs and splines, not to samples of it.
 namespace quadrant_cnc {
 
 using quadrant::point;
 using quadrant::segment;
 
-/// The path length of the place on a piece that is nearest to `at`; of several, as on a circle driven twice, the one around
-/// `guess`.
+/// The path length of the place on a piece that is nearest to `at`; of several, as on a circle driven twice,
+/// the one around `guess`.
 inline double nearest(const segment& path, point at, double guess) noexcept {
     const double length = path.length();
     if (const auto* straight = std::get_if<quadrant::line>(&path.shape()))
@@ -39,9 +39,10 @@ inline double nearest(const segment& path, point at, double guess) noexcept {
     return s;
 }
 
-/// Walks along the program with the reference and keeps no more of it than lies around it. The distance is that to the stretch
-/// of path on both sides of the reference that is twice as long as the table is away from it: where a path crosses itself or
-/// comes back, the other branch does not count.
+/// Walks along the program with the reference and keeps no more of it than lies around it. The distance is that
+/// to the stretch
+/// of path on both sides of the reference that is twice as long as the table is away from it: where a path
+/// crosses itself or comes back, the other branch does not count.
 class contour {
 public:
     static constexpr std::size_t kept = 512; ///< pieces, those ahead included
@@ -76,11 +77,12 @@ public:
         off_ = off;
         passed_ = here_ != before;
     }
-    /// Where the reference is on the path [m]; when it has just passed a joint: there, so that a line through these places
-    /// cuts no corner.
+    /// Where the reference is on the path [m]; when it has just passed a joint: there, so that a line through
+    /// these places cuts no corner.
     point path_place() const noexcept { return passed_ ? at(here_).path.start() : at(here_).path.position(s_); }
     deviation operator()(point place) const noexcept {
-        // Further along the path than this only another branch of it can be nearer, which is not the one that is driven.
+        // Further along the path than this only another branch of it can be nearer, which is not the one that
+        // is driven.
         const double reach = 2 * (distance(place, reference_) + off_) + 1e-9;
         found best{at(here_).path, nearest(at(here_).path, place, s_), place};
         double way = s_;

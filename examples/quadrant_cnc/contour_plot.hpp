@@ -6,7 +6,8 @@
 #include <array>
 #include <functional>
 
-/// The path and the table beside it, in the plane in which the path is largest, as SVG: drawn here, so that it needs no script.
+/// The path and the table beside it, in the plane in which the path is largest, as SVG: drawn here, so that it
+/// needs no script.
 namespace quadrant_cnc {
 
 /// 1, 2 or 5 times a power of ten, not below `value`.

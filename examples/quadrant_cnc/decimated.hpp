@@ -7,8 +7,8 @@
 /// What a report draws of a run of any length, in memory that does not grow with it.
 namespace quadrant_cnc {
 
-/// Several signals of one clock: of every stretch of time the smallest and the largest value of each, so that no peak is
-/// lost. When all stretches are full, two become one.
+/// Several signals of one clock: of every stretch of time the smallest and the largest value of each, so that
+/// no peak is lost. When all stretches are full, two become one.
 class decimated {
 public:
     static constexpr std::size_t most = 1600; ///< stretches; even

@@ -13,8 +13,8 @@
 
 namespace quadrant_cnc {
 
-/// A part program, move by move: a CL file by its name (.cl, .cls, .apt), else G-code. Every move is one that the machine can
-/// drive.
+/// A part program, move by move: a CL file by its name (.cl, .cls, .apt), else G-code. Every move is one that
+/// the machine can drive.
 class program {
 public:
     program(const cnc_description& cnc, const std::string& file)

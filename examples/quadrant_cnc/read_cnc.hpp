@@ -8,7 +8,8 @@
 
 namespace quadrant_cnc {
 
-/// One reading of a machine's file, box by box. Nothing in it is ignored; messages name the file and the path of the key.
+/// One reading of a machine's file, box by box. Nothing in it is ignored; messages name the file and the path
+/// of the key.
 class cnc_reader {
 public:
     cnc_reader(std::string_view text, std::string_view file)

@@ -31,7 +31,8 @@ struct axis_outcome {
     std::size_t limited = 0;                    ///< periods
 };
 
-/// One place of the path and how far the table was from it, in the plane of x and y, unless magnified in true proportion.
+/// One place of the path and how far the table was from it, in the plane of x and y, unless magnified in true
+/// proportion.
 struct contour_sample {
     quadrant::point path, foot,
         off; ///< where the reference is on the path; nearest place; from there to the table

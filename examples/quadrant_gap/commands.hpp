@@ -9,7 +9,8 @@
 #include <cstdio>
 #include <string>
 
-/// The subcommands of quadrant-gap, one file each. A command throws bad_input when it cannot do what it was asked for.
+/// The subcommands of quadrant-gap, one file each. A command throws bad_input when it cannot do what it was
+/// asked for.
 namespace quadrant_gap {
 using quadrant_page::outputs, quadrant_page::write_output;
 

@@ -22,7 +22,8 @@ struct import_options {
     terminal say;
 };
 
-/// Asks where a current or torque was taken, when neither map nor option says it and somebody is there to answer.
+/// Asks where a current or torque was taken, when neither map nor option says it and somebody is there to
+/// answer.
 void ask_origin(quadrant::diagnosis::import_map& map) {
     using namespace quadrant::diagnosis;
     for (auto& axis : map.axes) {

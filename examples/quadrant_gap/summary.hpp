@@ -16,7 +16,8 @@ inline std::string padded(std::string text, std::size_t width) {
     return used < width ? text.append(width - used, ' ') : text;
 }
 
-/// Lines of at most 100 columns, indented; longer words are cut and control characters (of file names) shown as "?".
+/// Lines of at most 100 columns, indented; longer words are cut and control characters (of file names) shown as
+/// "?".
 inline std::string wrapped(std::string text, std::size_t indent) {
     constexpr std::size_t width = 100;
     std::replace_if(

@@ -56,7 +56,8 @@ private:
     std::mutex telling_;
 };
 
-/// A diagnosis that never saw the hold-out log: its forecast for that motion, and what its claims do on that log.
+/// A diagnosis that never saw the hold-out log: its forecast for that motion, and what its claims do on that
+/// log.
 std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const std::filesystem::path& folder) {
     const auto file = [&](const char* name) { return (folder / name).string(); };
     const auto runs = [&](std::vector<std::string> words) {

@@ -337,7 +337,8 @@ struct gap_row {
     std::string name, before, after, floor;
 };
 
-/// The gap that a cause takes off, before and after: in force, or where two positions were compared, in position.
+/// The gap that a cause takes off, before and after: in force, or where two positions were compared, in
+/// position.
 inline std::string gap_of(const cause& c, const axis_voice& voice) {
     if (c.gap_before_force_rms_N.value == 0 && c.gap_before_position_rms_m.value > 0)
         return "position gap " +

@@ -2,13 +2,15 @@
 #pragma once
 #include <string>
 
-/// The most instructions of one call of the two-axis loop, over directed inputs: does not depend on what else the computer does.
+/// The most instructions of one call of the two-axis loop, over directed inputs: does not depend on what else
+/// the computer does.
 namespace quadrant_latency {
 
 /// Makes every directed call once; under callgrind, which counts each for itself.
 void make_directed_calls();
 
-/// Runs this program under callgrind and says per kind of call the median and the most. Throws std::runtime_error without valgrind.
+/// Runs this program under callgrind and says per kind of call the median and the most. Throws
+/// std::runtime_error without valgrind.
 std::string bound(const std::string& program);
 
 } // namespace quadrant_latency

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-/// What is measured: the controller of both axes of the milling table, whole. Cascade with notch, inverse of the plant, GMS
-/// friction, disturbance observer, repetitive memory of second order with its two FIR filters.
+/// What is measured: the controller of both axes of the milling table, whole. Cascade with notch, inverse of
+/// the plant, GMS friction, disturbance observer, repetitive memory of second order with its two FIR filters.
 namespace quadrant_latency {
 
 using namespace quadrant;
@@ -24,7 +24,8 @@ using memory = memory_of<90, 61>;
 using memory_without_fir = memory_of<1, 1>;
 template <class Memory> using boxes = milling_axis_boxes<friction, observer, Memory>;
 
-/// The taps have the shape of designed ones. The sum of Q is 0.9: the memory forgets, since nothing here closes the loop.
+/// The taps have the shape of designed ones. The sum of Q is 0.9: the memory forgets, since nothing here closes
+/// the loop.
 template <std::size_t LearningTaps, std::size_t SmoothingTaps>
 typename memory_of<LearningTaps, SmoothingTaps>::parameters
 remembered(memory_of<LearningTaps, SmoothingTaps>*) {
@@ -63,8 +64,10 @@ struct commands {
     double x, y;
 };
 
-/// A circle of 30 mm at 100 mm/s as the encoders of a table see it that follows within some um. No plant is behind the
-/// commands, so the observer in time asks for more than the limit: samples with and without clipping are among them.
+/// A circle of 30 mm at 100 mm/s as the encoders of a table see it that follows within some um. No plant is
+/// behind the
+/// commands, so the observer in time asks for more than the limit: samples with and without clipping are among
+/// them.
 constexpr std::size_t five_turns = 18'850; ///< samples; may be repeated without a jump
 inline std::vector<sample> circle(std::size_t n = five_turns) {
     const double R = 0.03, w = 0.1 / R, encoder_step = 250e-9;
@@ -85,7 +88,8 @@ inline std::vector<sample> standing(std::size_t n = 1000) {
     const double count = 250e-9;
     return std::vector<sample>(n, sample{{0, 0, 0, count}, {0, 0, 0, -count}});
 }
-/// Both axes turn round every ten samples, on 20 um: break-away, friction in the other direction, a count of the encoder at a time.
+/// Both axes turn round every ten samples, on 20 um: break-away, friction in the other direction, a count of
+/// the encoder at a time.
 inline std::vector<sample> reversing(std::size_t n = 20'000) {
     const double size = 10e-6, w = pi / (10 * thesis::period.value()), encoder_step = 250e-9;
     std::vector<sample> all(n);
@@ -101,7 +105,8 @@ inline std::vector<sample> reversing(std::size_t n = 20'000) {
     return all;
 }
 
-/// Everything is inlined into `step` and `step` into nothing, as in a servo interrupt. Boxes: those of one axis, or `in_lanes` of them.
+/// Everything is inlined into `step` and `step` into nothing, as in a servo interrupt. Boxes: those of one
+/// axis, or `in_lanes` of them.
 template <class Memory, class Boxes> struct loop_of {
     using control = quadrant::xy_control<Boxes>;
     control both{{parameters_of<Memory>(thesis::x), parameters_of<Memory>(thesis::y)}, thesis::period};

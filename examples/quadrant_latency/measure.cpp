@@ -63,7 +63,8 @@ private:
     volatile double sum_ = 0; // a consumer
 };
 
-/// Takes samples until time or place is over, with rests: the kernel stops a real-time program that never sleeps.
+/// Takes samples until time or place is over, with rests: the kernel stops a real-time program that never
+/// sleeps.
 template <class Take> void collect(durations& into, std::size_t most, double seconds, Take&& take) {
     constexpr nanoseconds busy = 5'000'000, rest = 1'000'000;
     const nanoseconds end = now() + nanoseconds(seconds * 1e9);

@@ -5,8 +5,9 @@
 
 namespace thesis {
 
-/// Tells a run that runs away, so that none of its figures is taken for a result: an error that is not finite or beyond a
-/// limit, or, slower, a window (one turn, one cycle) with more than `growth` times the rms of the window before.
+/// Tells a run that runs away, so that none of its figures is taken for a result: an error that is not finite
+/// or beyond a limit, or, slower, a window (one turn, one cycle) with more than `growth` times the rms of the
+/// window before.
 class divergence_guard {
 public:
     explicit divergence_guard(double limit, std::size_t window = 0, double growth = 1.5)

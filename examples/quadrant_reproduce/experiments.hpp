@@ -2,7 +2,8 @@
 #pragma once
 #include "row.hpp"
 
-/// All experiments; a new one is a file in experiment/ and a line in one of these, which are compiled beside each other.
+/// All experiments; a new one is a file in experiment/ and a line in one of these, which are compiled beside
+/// each other.
 namespace quadrant_reproduce {
 
 std::vector<experiment> loop_experiments();

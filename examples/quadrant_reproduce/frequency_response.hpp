@@ -9,7 +9,8 @@
 
 #include <cstddef>
 
-/// How [Jamaludin2008] section 2.3 measures an axis: white noise at the amplifier, encoder out, H1 under a Hann window.
+/// How [Jamaludin2008] section 2.3 measures an axis: white noise at the amplifier, encoder out, H1 under a Hann
+/// window.
 namespace thesis {
 
 inline constexpr double frf_minutes = 5;
@@ -30,7 +31,8 @@ struct gms_beside {
     }
 };
 
-/// The frequency response of a simulated axis under white noise of so many volts rms. The hold is half a period of Td.
+/// The frequency response of a simulated axis under white noise of so many volts rms. The hold is half a period
+/// of Td.
 template <class Plant>
 analysis::measured_frf measured_response(const axis& a, frequency pole, double rms,
                                          double minutes = frf_minutes) {
@@ -59,8 +61,8 @@ inline analysis::plant_fit<> fitted(const analysis::measured_frf& frf) {
     return analysis::fit_plant<>(frf, {.from = 3_Hz, .to = 200_Hz});
 }
 
-/// The procedure of section 4.2.1: the pole beside GMS with which the fitted response has the pole A of the original. By the
-/// secant from A and from zero; friction makes the response depend on how large the noise is.
+/// The procedure of section 4.2.1: the pole beside GMS with which the fitted response has the pole A of the
+/// original. By the secant from A and from zero; friction makes the response depend on how large the noise is.
 inline double pole_beside_gms(const axis& a, double rms, double minutes = 1) {
     const auto excess = [&](double pole) {
         return fitted(measured_response<gms_beside>(a, pole * 1_Hz, rms, minutes)).pole.value.value() -

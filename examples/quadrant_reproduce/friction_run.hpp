@@ -9,9 +9,10 @@
 #include <cmath>
 #include <cstddef>
 
-/// The friction experiment of [Jamaludin2008] section 4.2 (Table 4.2): the milling table's axis on Generalized Maxwell-slip
-/// friction follows a sinusoid of 30 mm; how far it lags after each reversal without friction feedforward, with the static
-/// curve, and with the model that the plant itself has; each without and with the disturbance observer.
+/// The friction experiment of [Jamaludin2008] section 4.2 (Table 4.2): the milling table's axis on Generalized
+/// Maxwell-slip friction follows a sinusoid of 30 mm; how far it lags after each reversal without friction
+/// feedforward, with the static curve, and with the model that the plant itself has; each without and with the
+/// disturbance observer.
 namespace thesis {
 
 struct no_friction_model {
@@ -68,7 +69,8 @@ public:
         for (const auto& each : motor_.friction().now().elements) sum += each.force.value();
         return sum;
     }
-    /// A box at fault, or the amplifier clips: nothing here asks for a tenth of its 10 V but a loop that swings.
+    /// A box at fault, or the amplifier clips: nothing here asks for a tenth of its 10 V but a loop that
+    /// swings.
     bool stopped() const { return motor_.faulted() || loop_.faulted() || loop_.limited(); }
 
 private:

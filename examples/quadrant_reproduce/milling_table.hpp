@@ -21,8 +21,9 @@
 #include <string_view>
 #include <vector>
 
-/// Both axes along a circle while the cutter turns: [Jamaludin2008] ch. 5, Tables 5.4 and 5.6, configurations (i) to (iii).
-/// The experiments cutting and robustness share it; as a loop to read, see examples/05_milling_table.cpp.
+/// Both axes along a circle while the cutter turns: [Jamaludin2008] ch. 5, Tables 5.4 and 5.6, configurations
+/// (i) to (iii). The experiments cutting and robustness share it; as a loop to read, see
+/// examples/05_milling_table.cpp.
 namespace thesis {
 
 using order_2 = std::array<double, 2>;
@@ -45,7 +46,8 @@ struct cut {
     double turns = 4; ///< the first one is not counted
 };
 
-/// The complementary sensitivity that L has to invert: the cascade around a plant that its observer makes nominal.
+/// The complementary sensitivity that L has to invert: the cascade around a plant that its observer makes
+/// nominal.
 inline auto tracking_of(const axis& machine, const axis& believed) {
     const analysis::axis_model<> g{machine.A_gms, machine.B, machine.delay},
         nominal{believed.A_gms, believed.B, 0_s};
@@ -130,7 +132,8 @@ private:
     white_noise gauss_;
 };
 
-/// A process whose force of the coming period is told from outside: a cutter whose force depends on the way that both axes go.
+/// A process whose force of the coming period is told from outside: a cutter whose force depends on the way
+/// that both axes go.
 struct told_force {
     struct parameters {};
     told_force(const parameters&, duration) {}
@@ -208,8 +211,8 @@ struct circle_result {
     std::vector<double> angle{}, radial{}; ///< deg, um; of every sample that counts
 };
 
-/// Drives the circle, counter-clockwise from (radius, 0) and from rest. The error is that of the axes, not of the encoders.
-/// `cutter(direction)` gives the force of the coming period.
+/// Drives the circle, counter-clockwise from (radius, 0) and from rest. The error is that of the axes, not of
+/// the encoders. `cutter(direction)` gives the force of the coming period.
 template <class Configuration, class PlantFriction, class Cutter>
 circle_result mill(const cut& c, Cutter cutter) {
     table_in_cut<Configuration, PlantFriction> table(c);

@@ -9,8 +9,9 @@
 
 #include <array>
 
-/// The observers of [Jamaludin2008] chapters 4 and 5 and Appendices C and D as boxes for the disturbance slot of `milling_axis`: position
-/// and wanted command in, what has to be subtracted from the command out; `applied` tells what was sent. `sense` brings the acceleration sensor.
+/// The observers of [Jamaludin2008] chapters 4 and 5 and Appendices C and D as boxes for the disturbance slot
+/// of `milling_axis`: position and wanted command in, what has to be subtracted from the command out; `applied`
+/// tells what was sent. `sense` brings the acceleration sensor.
 namespace thesis {
 
 using volt = quantity_of<signal::voltage>;
@@ -89,8 +90,8 @@ private:
     quantity_of<signal::acceleration> acceleration_{};
     volt applied_{};
 };
-/// Appendix D: the first harmonics of the cutter themselves. Where the thesis put the poles is not printed: ours are those of the
-/// harmonics, shifted left by 200 1/s.
+/// Appendix D: the first harmonics of the cutter themselves. Where the thesis put the poles is not printed:
+/// ours are those of the harmonics, shifted left by 200 1/s.
 template <std::size_t Count> class by_harmonics {
 public:
     struct parameters : slot_parameters {

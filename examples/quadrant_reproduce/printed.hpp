@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-/// The numbers that the three sources print, each with where ours stands. This is the one place that says what is published.
+/// The numbers that the three sources print, each with where ours stands. This is the one place that says what
+/// is published.
 namespace quadrant_reproduce {
 
 /// Where a printed number comes from.

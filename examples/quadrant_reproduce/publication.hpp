@@ -53,7 +53,8 @@ private:
     std::map<std::pair<std::string, std::string>, const row*> rows_;
 };
 
-/// The measured glitches of Tables 4.4 and 4.10 as levels in the pictures of the tracking errors beside their rows.
+/// The measured glitches of Tables 4.4 and 4.10 as levels in the pictures of the tracking errors beside their
+/// rows.
 inline void draw_glitches(section& s) {
     for (const row& r : s.rows) {
         if (r.quantity != "quadrant_glitch_100" || !r.published_measured) continue;

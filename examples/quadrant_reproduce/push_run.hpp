@@ -7,8 +7,8 @@
 #include <complex>
 #include <vector>
 
-/// The y axis pushed by some harmonics of the cutter while an observer takes them off: [Jamaludin2008] sections 5.2 and 5.3, Appendices
-/// C and D.
+/// The y axis pushed by some harmonics of the cutter while an observer takes them off: [Jamaludin2008] sections
+/// 5.2 and 5.3, Appendices C and D.
 namespace thesis {
 
 /// What is done to the axis.
@@ -82,8 +82,8 @@ push_result run_push(Loop loop, Motor motor, const push& p, double counts, doubl
 }
 } // namespace detail
 
-/// At rest the plant is linear, as the thesis analyses it: pre-sliding friction would hold the table. While tracking it is on GMS
-/// friction, which is fed forward.
+/// At rest the plant is linear, as the thesis analyses it: pre-sliding friction would hold the table. While
+/// tracking it is on GMS friction, which is fed forward.
 template <class Slot> push_result pushed(const push& p, typename Slot::parameters slot = {}) {
     const axis& a = slot.of;
     const quantity<si::mass> mass = a.kf / a.B;

@@ -7,13 +7,16 @@ namespace thesis {
 inline constexpr std::size_t edges = 4;
 using cutter_force = milling_force<edges>;
 
-/// The cut of [Jamaludin2008] section 5.5, Table 5.5: 25 mm at 5 mm/s. The table's 0.1 mm per tooth would be 9 mm/s at its 1360
-/// rpm and 4 edges, so the chip follows from the speed of the text: 0.055 mm. Which way it was milled is not printed: up.
+/// The cut of [Jamaludin2008] section 5.5, Table 5.5: 25 mm at 5 mm/s. The table's 0.1 mm per tooth would be 9
+/// mm/s at its 1360
+/// rpm and 4 edges, so the chip follows from the speed of the text: 0.055 mm. Which way it was milled is not
+/// printed: up.
 /// The memory has whole periods, as the thesis rounds: 88 of 88.2.
 inline cut real_circle() { return {.radius = 0.025, .feed = 0.005, .cycle = 88, .turns = 2}; }
 
-/// The cutter of Table 5.5. Its coefficients are not printed; ours are usual for aluminium 7050: Kt 796, Kr 168 N/mm^2, edges 27.7
-/// and 30.8 N/mm. Runout, without which an edge is like the others, is not printed either: none.
+/// The cutter of Table 5.5. Its coefficients are not printed; ours are usual for aluminium 7050: Kt 796, Kr 168
+/// N/mm^2, edges 27.7 and 30.8 N/mm. Runout, without which an edge is like the others, is not printed either:
+/// none.
 inline const cutter_force::parameters& cutter() {
     static const cutter_force::parameters p = [] {
         cutter_force::parameters c;

@@ -10,8 +10,8 @@
 /// What an experiment hands over: rows of figures, and pictures.
 namespace quadrant_reproduce {
 
-/// One figure beside those of the thesis; what is not there is empty. `simulated` is computed in the run, always; the
-/// others stand in the experiment's file beside the table that they come from.
+/// One figure beside those of the thesis; what is not there is empty. `simulated` is computed in the run,
+/// always; the others stand in the experiment's file beside the table that they come from.
 struct row {
     std::string id, quantity, unit;
     std::optional<double> simulated;             ///< empty: it diverged, and the note says so
@@ -25,8 +25,8 @@ using quadrant_page::line;
 using quadrant_page::panel;
 using quadrant_page::picture;
 
-/// Cases of one experiment that hand over pictures of the same title draw into one: their lines are put together, panel by
-/// panel.
+/// Cases of one experiment that hand over pictures of the same title draw into one: their lines are put
+/// together, panel by panel.
 struct outcome {
     std::vector<row> rows;
     std::vector<picture> pictures{};

@@ -24,8 +24,8 @@ inline void put_together(std::vector<picture>& all, picture more) {
         for (line& l : more.panels[k].lines) same->panels[k].lines.push_back(std::move(l));
 }
 
-/// Runs the cases on all cores; `tell(id, done, of)` hears of each that has ended, one at a time. A case that throws leaves
-/// one row that says so. No number that is not finite leaves here.
+/// Runs the cases on all cores; `tell(id, done, of)` hears of each that has ended, one at a time. A case that
+/// throws leaves one row that says so. No number that is not finite leaves here.
 template <class Tell> std::vector<section> run_all(const std::vector<experiment>& chosen, Tell&& tell) {
     std::vector<const run_case*> cases;
     for (const experiment& e : chosen)

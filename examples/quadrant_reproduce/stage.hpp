@@ -16,7 +16,8 @@
 #include <cmath>
 
 /// The precision stage of [LowKeck2003]. Its parameters are not published: the machine is the plausible one of
-/// shared/reference/linear_stage.md, what the controller believes is off by 5 to 20 %. A volt stands for an ampere.
+/// shared/reference/linear_stage.md, what the controller believes is off by 5 to 20 %. A volt stands for an
+/// ampere.
 namespace stage {
 
 using namespace quadrant;
@@ -202,8 +203,8 @@ figures move(const machine& is, const machine& thought, const tuning& t, double 
     return f;
 }
 
-/// The last micrometre is a matter of where the counts of the encoder happen to lie: medians over nine machines whose mass
-/// differs by 0.1 %, the final error the largest of them.
+/// The last micrometre is a matter of where the counts of the encoder happen to lie: medians over nine machines
+/// whose mass differs by 0.1 %, the final error the largest of them.
 template <class Compensation>
 figures usual(const machine& is, const machine& thought, const tuning& t, double length, double time,
               double end) {
@@ -225,8 +226,8 @@ figures usual(const machine& is, const machine& thought, const tuning& t, double
             ordered(&figures::stuck_from, 4)};
 }
 
-/// The linear cycle of BS 3800 with targets of 10 um: three forward, half a step over, the same three back, half a step
-/// over. 0.1 s to each, 0.4 s there.
+/// The linear cycle of BS 3800 with targets of 10 um: three forward, half a step over, the same three back,
+/// half a step over. 0.1 s to each, 0.4 s there.
 struct linear_cycle {
     static constexpr double targets[] = {0, 10, 20, 30, 35, 30, 20, 10, 5, 10, 20, 30, 35, 30, 20, 10, 5};
     static constexpr double takes = 0.1, lasts = 0.5;

@@ -52,7 +52,8 @@ inline machine_boxes::parameters drive(const axis& a, quantity<si::length> play 
 }
 inline axis_model<signal::voltage> model(const axis& a) { return model_of(machine_boxes(drive(a), period)); }
 
-/// Table 10. One set of gains for both axes; the sliding mode law knows each axis' inertia and viscous friction.
+/// Table 10. One set of gains for both axes; the sliding mode law knows each axis' inertia and viscous
+/// friction.
 inline pid<>::parameters pid_of(const axis&) {
     return {
         .gain = 70e3 * 1_V / 1_m, .integral_gain = 800e3 * 1_V / (1_m * 1_s), .derivative_gain = 300_V / 1_mps};
@@ -96,7 +97,8 @@ struct asked {
     axis_motion<> x, y;
 };
 
-/// A square of 50 mm on its corner, counterclockwise from its lowest corner, each side from rest to rest, no dwell.
+/// A square of 50 mm on its corner, counterclockwise from its lowest corner, each side from rest to rest, no
+/// dwell.
 struct diamond {
     static constexpr double side = 0.05;
     static constexpr int samples_of_side = 390;

@@ -7,7 +7,8 @@
 
 namespace thesis {
 
-/// Numbers with a normal distribution of rms 1, by Box and Muller: the standard libraries' own differ from one another.
+/// Numbers with a normal distribution of rms 1, by Box and Muller: the standard libraries' own differ from one
+/// another.
 class white_noise {
 public:
     explicit white_noise(std::uint64_t seed) : random_(seed) {}

@@ -7,7 +7,8 @@
 #include <optional>
 #include <utility>
 
-/// The friction experiment on the y axis with GMS feedforward, 100 mm/s, on a machine that differs from its tables.
+/// The friction experiment on the y axis with GMS feedforward, 100 mm/s, on a machine that differs from its
+/// tables.
 namespace thesis {
 
 /// How the machine differs from what its controller believes.

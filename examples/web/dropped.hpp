@@ -30,7 +30,8 @@ inline nlohmann::json described(const machine_log& log) {
             {"notes", log.notes}};
 }
 
-/// The columns of a table that names none of our columns, and what can be guessed of each. A first line of numbers
+/// The columns of a table that names none of our columns, and what can be guessed of each. A first line of
+/// numbers
 /// alone names no columns: they go by number.
 inline nlohmann::json columns_of(const std::string& text, const std::string& name) {
     auto layout = detail::layout_of(text);

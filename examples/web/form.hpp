@@ -5,7 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-/// The questions of `quadrant-gap init` as a form of the page: what the log answers itself stands in the fields.
+/// The questions of `quadrant-gap init` as a form of the page: what the log answers itself stands in the
+/// fields.
 namespace quadrant_web {
 using namespace quadrant::diagnosis;
 

@@ -15,8 +15,8 @@
 
 namespace quadrant_web {
 
-/// What the page asks of the diagnosis: one call with a request and an answer, both JSON. Files are put in by name
-/// first. A refusal is an answer, too: {"error": "..."}.
+/// What the page asks of the diagnosis: one call with a request and an answer, both JSON. Files are put in by
+/// name first. A refusal is an answer, too: {"error": "..."}.
 class session {
 public:
     /// `tell` gets one short line of what is being tried.

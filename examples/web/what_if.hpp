@@ -11,8 +11,8 @@
 namespace quadrant_web {
 using namespace quadrant::diagnosis;
 
-/// The sliders of one value: its interval, and how far it may be moved: from where the effect is absent to twice the
-/// value; a phase goes round once.
+/// The sliders of one value: its interval, and how far it may be moved: from where the effect is absent to
+/// twice the value; a phase goes round once.
 inline nlohmann::json slider(const parameter_estimate& p, std::size_t index, const axis_kind kind,
                              const std::string& command_unit) {
     const quadrant_gap::axis_voice voice{kind, command_unit};
@@ -104,8 +104,8 @@ inline bool has_calibration(const diagnosis_result& d) {
                        [](const axis_result& a) { return !a.calibrated.empty(); });
 }
 
-/// A diagnosis with the causes that are switched on, at the values of their sliders: all of them are then written; and
-/// with the calibration inside the owner's tolerances, or without it.
+/// A diagnosis with the causes that are switched on, at the values of their sliders: all of them are then
+/// written; and with the calibration inside the owner's tolerances, or without it.
 inline diagnosis_result as_set(const diagnosis_result& found, const nlohmann::json& causes, bool calibrated) {
     diagnosis_result d = found;
     bool suspects = false;

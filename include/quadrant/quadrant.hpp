@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-/// All blocks. The diagnosis (quadrant/diagnosis/) is not among them: it allocates, reads files and needs Eigen.
+/// All blocks. The diagnosis (quadrant/diagnosis/) is not among them: it allocates, reads files and needs
+/// Eigen.
 #include "base/dual.hpp"
 #include "base/error.hpp"
 #include "base/fine_sum.hpp"

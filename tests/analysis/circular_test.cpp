@@ -15,7 +15,8 @@ using namespace quadrant::analysis;
 namespace {
 const circle nominal{10_mm, -5_mm, 30_mm};
 const double rate = 100.0 / 30; // 100 mm/s on 30 mm, rad/s
-/// A circle with the deviation dev(angle in degrees, seconds) in micrometres, from `start` degrees over `turn` degrees.
+/// A circle with the deviation dev(angle in degrees, seconds) in micrometres, from `start` degrees over `turn`
+/// degrees.
 template <class F> circular_path run(F dev, double start = 37, double turn = 400, bool plus = true) {
     circular_path p{{}, {}, 0.5_ms};
     const double sign = plus ? 1 : -1;
@@ -82,7 +83,8 @@ TEST_CASE("circular_test: the least zone is below the least-squares one for a on
           doctest::Approx(10).epsilon(0.01)); // a spike narrow against the turn: all of it
 }
 TEST_CASE("circular_test: three-lobed form error: least zone by hand") {
-    // r = cos 3a about its own centre has range 2, and no shift of the centre makes it less (equioscillates six times)
+    // r = cos 3a about its own centre has range 2, and no shift of the centre makes it less (equioscillates six
+    // times)
     const auto lobes = [](double a, double) { return std::cos(3 * a * std::numbers::pi / 180); };
     CHECK(um(circular_test(run(lobes), {nominal}).circular_error) == doctest::Approx(2).epsilon(1e-3));
 }
@@ -103,7 +105,8 @@ TEST_CASE("circular_test: spikes have the height, width and time that were put i
             const double height = s.angle == 90 ? 9 : s.angle == 270 ? -2 : 5, sign = s.angle == 270 ? -1 : 1;
             CHECK(s.visible);
             CHECK(std::abs(um(s.height) - height) < 0.5); // [um]: largest of many noisy samples
-            // three sigma of noise may put the peak wherever the bump is above 94 % (85 % of the small one): 1.2 degrees
+            // three sigma of noise may put the peak wherever the bump is above 94 % (85 % of the small one):
+            // 1.2 degrees
             CHECK(std::abs(s.offset.value() - sign * 3 / degrees_per_second) < 1.2 / degrees_per_second);
             CHECK(std::abs(s.width.value() - (s.angle == 270 ? 4 : 8) / degrees_per_second) < 4e-3);
         }

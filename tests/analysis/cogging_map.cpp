@@ -40,8 +40,8 @@ struct truth {
 const truth truths[] = {{1, 20, 0.4}, {2, 9, -1.3}, {6, 6, std::numbers::pi / 2}};
 
 using run = analysis::cogging_run<signal::force>;
-/// A velocity loop drags a linear motor with Stribeck friction along two pitches at 4 mm/s; encoder of 0.25 um, a force noise
-/// with a memory of 50 ms and a sensor noise. Logged every 10 ms: force, position.
+/// A velocity loop drags a linear motor with Stribeck friction along two pitches at 4 mm/s; encoder of 0.25 um,
+/// a force noise with a memory of 50 ms and a sensor noise. Logged every 10 ms: force, position.
 template <class Feedforward> run slow_move(int direction, std::uint32_t seed, Feedforward feedforward) {
     const auto T = 1_ms;
     linear_motor<stribeck<>> motor{{.mass = 340_kg,
@@ -307,8 +307,8 @@ TEST_CASE("identify_cogging: a real outrunner (odrive_cogging): the published ha
     const options plain{turn, 100, {}, 0, {}}, with_friction{turn, 100, {}, 0, {7, 21}};
     const auto first = analysis::identify_cogging<signal::current, angle>(runs, plain);
     const auto map = analysis::identify_cogging<signal::current, angle>(runs, with_friction);
-    // The directions disagree in orders 7 and 21, by sign: once and three times an electrical turn. A zero half a turn off
-    // would turn all odd orders, but 37 does not.
+    // The directions disagree in orders 7 and 21, by sign: once and three times an electrical turn. A zero half
+    // a turn off would turn all odd orders, but 37 does not.
     const auto order = [](const auto& found, unsigned wanted_order) {
         for (const auto* list : {&found.harmonics, &found.left_out})
             for (const auto& h : *list)
@@ -359,7 +359,8 @@ TEST_CASE("identify_cogging: a real outrunner (odrive_cogging): the published ha
     double best = 0, where = 0;
     for (double shift = -0.1; shift < 0.1; shift += 0.002)
         if (explained(shift) > best) best = explained(shift), where = shift;
-    // 87 % published; from position and current alone we reach 69 %, and that only with the map 0.046 rad earlier.
+    // 87 % published; from position and current alone we reach 69 %, and that only with the map 0.046 rad
+    // earlier.
     CHECK(explained(0) == doctest::Approx(0.394).epsilon(0.01).scale(0));
     CHECK(best == doctest::Approx(0.689).epsilon(0.01).scale(0));
     CHECK(where == doctest::Approx(-0.046).epsilon(0.01).scale(0));

@@ -100,7 +100,8 @@ TEST_CASE(
     "estimated contour error: the line is off by t^2/(2 R), the circle of curvature by nothing on a circle") {
     const double R = 30, lag = 1.2, true_error = 0.004;
     for (const double way : {1.0, -1.0}) { // turns left, turns right
-        // reference at (R, 0), moving to +y (left turn) or -y; measured behind by lag along the circle, inside by 4 um
+        // reference at (R, 0), moving to +y (left turn) or -y; measured behind by lag along the circle, inside
+        // by 4 um
         const double a = -way * lag / R, r = R - true_error;
         const place reference = at(R, 0), measured = at(r * std::cos(a), r * std::sin(a));
         const auto line = estimated_contour_error(reference, measured, 0_mps, way * 0.1 * 1_mps);

@@ -139,8 +139,8 @@ TEST_CASE("frf: with noise on the output H1 stays right within its spread, and c
             squares += std::norm((line.value - h) / (std::abs(line.value) * line.spread)) / 2, ++count;
             coherence += line.coherence - std::norm(h) / (std::norm(h) + 1);
         }
-        // The spread is the spread. Some 200 lines, of which Hann couples neighbours: 1 +- 0.1; windows counted as
-        // if independent would give 1.06 at half overlap and 1.9 at three quarters.
+        // The spread is the spread. Some 200 lines, of which Hann couples neighbours: 1 +- 0.1; windows counted
+        // as if independent would give 1.06 at half overlap and 1.9 at three quarters.
         CHECK(squares / count == doctest::Approx(1).epsilon(0.2));
         CHECK(std::abs(coherence / count) < 0.01);
     }

@@ -32,7 +32,8 @@ private:
     std::normal_distribution<double> gauss_;
     double sigma_, rho_, last_ = 0;
 };
-/// Speeds up for 0.3 s, runs 4 s with a force that settles, brakes for 0.2 s; pushed by 8 N whichever way it goes.
+/// Speeds up for 0.3 s, runs 4 s with a force that settles, brakes for 0.2 s; pushed by 8 N whichever way it
+/// goes.
 axis_log<> run(double v, unsigned seed, double shape = 1) {
     axis_log<> out;
     noise n(seed, 2, 0.9);

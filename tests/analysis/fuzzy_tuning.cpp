@@ -37,7 +37,8 @@ TEST_CASE("fuzzy tuning: the decision table to the four digits that the source p
         }
 }
 TEST_CASE("fuzzy tuning: all 30 entries are the centroid of the cuts of the rules, level by level") {
-    // Memberships are tenths. A level is reached at an output when some rule and some input set have it in all four rows.
+    // Memberships are tenths. A level is reached at an output when some rule and some input set have it in all
+    // four rows.
     const int in[5] = {10, 7, 3, 0, 0};
     const int rules[3][5][2] = {{{-3, -1}, {-2, 0}, {0, 0}, {1, 0}, {2, 1}},
                                 {{-2, -2}, {-1, -2}, {0, 0}, {0, 1}, {1, 2}},

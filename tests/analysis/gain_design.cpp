@@ -32,7 +32,8 @@ qa::flexible_axis_model<> machine(unsigned seed) {
     return {{hertz(pole), gain * 1_mps2 / 1_V, delay * 1_ms},
             {{hertz(base), soft, heavy}, {hertz(structure), zeta, twist}}};
 }
-/// The cascade in time, kicked once: largest speed of the fourth second over that of the second; 0 when all has died away.
+/// The cascade in time, kicked once: largest speed of the fourth second over that of the second; 0 when all has
+/// died away.
 double growth(const qa::flexible_axis_model<>& g, double kp, double ki, double kv) {
     modal_axis axis(g, T.value());
     estimator v = speed;
@@ -94,7 +95,8 @@ TEST_CASE(
     const auto feedback = [](quadrant::frequency f) { return qa::derivative_model{150_Hz}(f); };
     const auto d =
         qa::design_gains(x, feedback, {0.5_Hz, 900_Hz}, {.velocity = {12, 50, 0.6}, .position = {12, 60, 0.6}});
-    // L_v crosses -180 degrees at 171 Hz where 60 V s/m leaves 15.56 dB (tests/analysis/loop.cpp; its notch turns little).
+    // L_v crosses -180 degrees at 171 Hz where 60 V s/m leaves 15.56 dB (tests/analysis/loop.cpp; its notch
+    // turns little).
     CHECK(d.velocity_loop.limited_by == qa::gain_limit::gain_margin);
     CHECK(d.velocity_loop.margins.gain()->value == doctest::Approx(12).epsilon(1e-3));
     CHECK(d.velocity.gain.value() == doctest::Approx(60 * std::pow(10.0, (15.56 - 12) / 20)).epsilon(0.05));

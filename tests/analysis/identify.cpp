@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The identification of the thesis on its own simulated axes: encoder of 0.25 um with jitter, noisy command, DAC, controller and
-// evaluation with 2 % of error in the plant.
+// The identification of the thesis on its own simulated axes: encoder of 0.25 um with jitter, noisy command,
+// DAC, controller and evaluation with 2 % of error in the plant.
 #include "quadrant_reproduce/experiment/identify.hpp"
 
 #include <doctest/doctest.h>

@@ -98,7 +98,8 @@ TEST_CASE("loop with observer: the continuous Q is the block's, but for the bili
     for (const double f : {1.0, 20.0, 60.0}) CHECK(std::abs(q(hertz(f)) / block.q(hertz(f)) - 1.0) < 0.0043);
 }
 TEST_CASE("loop with observer: it helps up to 44.5 and 58.8 Hz and does harm beyond, most at 80 and 95 Hz") {
-    // Found by stepping through the equations at 0.01 Hz with the block's own Q: tests/observer/disturbance_observer.cpp.
+    // Found by stepping through the equations at 0.01 Hz with the block's own Q:
+    // tests/observer/disturbance_observer.cpp.
     struct wanted {
         const axis& a;
         double up_to, worst, at;

@@ -8,9 +8,9 @@
 #include <cstddef>
 #include <vector>
 
-/// The machine behind the tests of the designs: a `flexible_axis_model` in time, behind a hold of one period. Each
-/// oscillator is advanced by its own closed form for a constant force, so no step is too long; the dead time is rounded
-/// to a tenth of the period.
+/// The machine behind the tests of the designs: a `flexible_axis_model` in time, behind a hold of one period.
+/// Each oscillator is advanced by its own closed form for a constant force, so no step is too long; the dead
+/// time is rounded to a tenth of the period.
 class modal_axis {
 public:
     modal_axis(const quadrant::analysis::flexible_axis_model<>& g, double period)
@@ -61,8 +61,8 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Its response as a controller of that period sees it, hold, delay and sampling in it: a multisine in time, exact on its
-/// lines once the speed that the start has left has died away (A of 5 1/s or more).
+/// Its response as a controller of that period sees it, hold, delay and sampling in it: a multisine in time,
+/// exact on its lines once the speed that the start has left has died away (A of 5 1/s or more).
 inline quadrant::analysis::measured_frf measured(const quadrant::analysis::flexible_axis_model<>& g,
                                                  quadrant::duration period) {
     namespace s = quadrant::signal;

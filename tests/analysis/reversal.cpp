@@ -24,11 +24,13 @@ struct run_log {
     std::vector<quantity<si::length>> reference, position;
     std::vector<quantity<si::electric_potential>> compensation;
 };
-/// Friction of the plant: bristles of 120 N/um, or the springs of the thesis. Of the compensation: the static curve, with other levels.
+/// Friction of the plant: bristles of 120 N/um, or the springs of the thesis. Of the compensation: the static
+/// curve, with other levels.
 lugre<>::parameters bristles() {
     return {.curve = {130_N, 150_N, 3_mmps, 1000_N / 1_mps}, .stiffness = newtons_per_um(120)};
 }
-/// Follows the sinusoid of 100 mm/s; compensate(velocity of the reference, `late` ago) [V] is added to the command.
+/// Follows the sinusoid of 100 mm/s; compensate(velocity of the reference, `late` ago) [V] is added to the
+/// command.
 template <class Friction, class Compensate>
 run_log simulate(const Friction& friction, const fault& wrong, double cycles, Compensate&& compensate) {
     using motor = linear_motor<typename Friction::block>;
@@ -147,7 +149,8 @@ TEST_CASE("friction compensation: the scale is that of the simulation within 8 %
 }
 TEST_CASE("friction compensation: too early and too late; where it is judged right the glitch is smaller than "
           "beside it") {
-    // Friction that needs some way to turn comes after the sign of the reference: bristles by about 2 ms, the springs by 4.
+    // Friction that needs some way to turn comes after the sign of the reference: bristles by about 2 ms, the
+    // springs by 4.
     const auto check = [](const auto& friction, double best) {
         const auto early = simulate(friction, {.late = best - 0.006}),
                    right = simulate(friction, {.late = best}),

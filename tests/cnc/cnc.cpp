@@ -19,7 +19,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The least distance to `n` places of every piece: another way than `nearest`, a little too long by what lies between.
+/// The least distance to `n` places of every piece: another way than `nearest`, a little too long by what lies
+/// between.
 double searched(const std::vector<segment>& path, point at, int n) {
     double least = HUGE_VAL;
     for (const segment& piece : path)

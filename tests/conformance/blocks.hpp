@@ -11,8 +11,10 @@
 #include <string>
 #include <tuple>
 
-/// Every block of the library, once. A block is not finished until it has its line in `blocks`, which buys it all
-/// cases of this folder: reset, settle, copies, zero, allocation, NaN, extremes, linearity, number types, derivatives, response.
+/// Every block of the library, once. A block is not finished until it has its line in `blocks`, which buys it
+/// all
+/// cases of this folder: reset, settle, copies, zero, allocation, NaN, extremes, linearity, number types,
+/// derivatives, response.
 namespace conformance {
 
 using namespace quadrant;
@@ -20,8 +22,9 @@ using namespace quadrant::literals;
 inline const duration T = 500_us;
 inline constexpr std::size_t most_parameters = 8;
 
-/// Hands out the parameters of a block under test, numbered in the order of the calls. For a dual the number i is the
-/// variable i; else the one that is `bumped` is scaled, for a difference quotient. `fixed` is for what has no derivative.
+/// Hands out the parameters of a block under test, numbered in the order of the calls. For a dual the number i
+/// is the variable i; else the one that is `bumped` is scaled, for a difference quotient. `fixed` is for what
+/// has no derivative.
 template <class Real> struct values {
     std::size_t bumped = std::size_t(-1);
     double factor = 1;
@@ -515,7 +518,8 @@ concept linear = requires(const Block& b) {
     b.response(1_Hz);
 };
 
-/// Repeatable input between -amplitude and amplitude in steps of 1/1024: exact in float, and never at a switch of a block.
+/// Repeatable input between -amplitude and amplitude in steps of 1/1024: exact in float, and never at a switch
+/// of a block.
 class noise {
 public:
     explicit noise(std::uint32_t seed = 1) : x_(seed) {}

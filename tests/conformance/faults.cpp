@@ -26,8 +26,8 @@ using namespace conformance;
 std::size_t conformance::allocated() { return allocations; }
 
 namespace {
-/// A number that the compiler cannot know: with -ffast-math it may work out one operation with a NaN or an overflow that it
-/// sees as anything at all, and then it would be the test that has no number to give.
+/// A number that the compiler cannot know: with -ffast-math it may work out one operation with a NaN or an
+/// overflow that it sees as anything at all, and then it would be the test that has no number to give.
 template <class Real> Real unknown(Real x) {
     volatile Real hidden = x;
     return hidden;

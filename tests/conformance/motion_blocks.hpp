@@ -12,8 +12,8 @@
 #include <cstddef>
 #include <numbers>
 
-/// Blocks that take a motion, made ones of one scalar for the cases of this folder: x is fed as position, velocity and
-/// acceleration in SI at once.
+/// Blocks that take a motion, made ones of one scalar for the cases of this folder: x is fed as position,
+/// velocity and acceleration in SI at once.
 namespace conformance {
 
 template <class Real> quadrant::axis_motion<Real> as_motion(quadrant::quantity<quadrant::si::length, Real> x) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Linearity, response() against a measured sine, float against double, derivatives against difference quotients.
+// Linearity, response() against a measured sine, float against double, derivatives against difference
+// quotients.
 #include "blocks.hpp"
 
 #include <doctest/doctest.h>
@@ -104,7 +105,8 @@ TEST_CASE("every block: a dual has the value of a double and the derivative of a
             CAPTURE(i);
             const auto up = outputs<double>(e(values<double>{.bumped = i, .factor = 1 + h}), x);
             const auto down = outputs<double>(e(values<double>{.bumped = i, .factor = 1 - h}), x);
-            // d/d(ln p): the parameter itself is its derivative's scale, and the dual's variable i has slope one in p.
+            // d/d(ln p): the parameter itself is its derivative's scale, and the dual's variable i has slope
+            // one in p.
             double worst = 0, size = 0;
             for (std::size_t k = 0; k < x.size(); ++k) {
                 const double quotient = (up[k] - down[k]) / (2 * h);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// After a rest nothing computes with subnormal numbers: the processor itself says so, by the flags that it raises.
+// After a rest nothing computes with subnormal numbers: the processor itself says so, by the flags that it
+// raises.
 #include "blocks.hpp"
 
 #include <doctest/doctest.h>
@@ -31,7 +32,8 @@ struct subnormal_flags {
     }
 };
 
-/// 200 samples of noise, then a rest until everything has died out that ever will, then 1000 samples that are watched.
+/// 200 samples of noise, then a rest until everything has died out that ever will, then 1000 samples that are
+/// watched.
 template <class Real> void rests_cleanly(double at) {
     for_each_block([&](const auto& e) {
         CAPTURE(e.name);

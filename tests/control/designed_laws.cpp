@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// p_pi, state_feedback, rst and its designs: pole placement, zero phase error tracking, generalized predictive control, lead-lag.
+// p_pi, state_feedback, rst and its designs: pole placement, zero phase error tracking, generalized predictive
+// control, lead-lag.
 #include <quadrant/analysis/law_loop.hpp>
 #include <quadrant/analysis/margins.hpp>
 #include <quadrant/base/literals.hpp>
@@ -126,7 +127,8 @@ TEST_CASE(
 TEST_CASE("place_rst: a step is answered by the pair that was asked for, and by nothing else") {
     auto law = designed<pole_placement<>>();
     quick_axis axis;
-    // The sampled pair from its roots, driven through the zeros of the plant: x = g (b1 r[k-1] + b2 r[k-2]) - ...
+    // The sampled pair from its roots, driven through the zeros of the plant: x = g (b1 r[k-1] + b2 r[k-2]) -
+    // ...
     const double w = 2 * std::numbers::pi * 20e-3;
     const cd root = std::exp(cd(-0.8 * w, 0.6 * w));
     const double p1 = -2 * root.real(), p2 = std::norm(root);

@@ -145,7 +145,8 @@ TEST_CASE("place_pid: the characteristic polynomial has the poles that were aske
     CHECK(says([&] { pid<>{place_pid(tough, {.natural = 2_Hz}), 1_ms}; }, "pid.derivative_gain = -62.3"));
 }
 TEST_CASE("design_sliding_mode: a step of disturbance is answered as a mass on spring and damper") {
-    // q = e + sliding * (integral of e) obeys q'' + 2 w q' + w^2 q = -B d with damping 1: q = -B d/w^2 (1 - (1 + w t) e^{-w t})
+    // q = e + sliding * (integral of e) obeys q'' + 2 w q' + w^2 q = -B d with damping 1: q = -B d/w^2 (1 - (1
+    // + w t) e^{-w t})
     const double T = 20e-6, w = 2 * std::numbers::pi * 15, d = 1, B = plant.gain.value();
     sliding_mode<> law{design_sliding_mode(plant, {.sliding = 150.0 / 1_s, .natural = 15_Hz, .damping = 1}),
                        20_us};

@@ -30,7 +30,8 @@ struct axis {
     }
 };
 
-/// The whole plan over the horizon at once: every prediction by running the axis itself, and one least-squares solve.
+/// The whole plan over the horizon at once: every prediction by running the axis itself, and one least-squares
+/// solve.
 template <class Reference>
 double best_first_move(const axis& from, double u, double push, const predictive_weights<>& w, int horizon,
                        const Reference& r, int k) {

@@ -110,7 +110,8 @@ TEST_CASE(
 }
 TEST_CASE("circle table: an encoder's cyclic error is constant to an instrument, but its own signal shows it "
           "with the feed") {
-    // The loop follows what the encoder reads, so the reading hides what is slower than the loop; the table carries it.
+    // The loop follows what the encoder reads, so the reading hides what is slower than the loop; the table
+    // carries it.
     const double period = 4e-3, kv = 60;
     const auto error = [=](double x) { return 2e-6 * std::cos(2 * pi * x / period); };
     const auto amplitude = [&](double feed, bool seen_by_encoder) {

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-/// A two-axis machine on circles, made for the tests of the ball-bar diagnosis and sharing nothing with it: each axis is simulated in
-/// time, the errors of geometry are laid on where the axes are, and the radius is measured from the result.
+/// A two-axis machine on circles, made for the tests of the ball-bar diagnosis and sharing nothing with it:
+/// each axis is simulated in time, the errors of geometry are laid on where the axes are, and the radius is
+/// measured from the result.
 namespace circle_machine {
 
 using quadrant::diagnosis::circle_run, quadrant::diagnosis::circle_source;
@@ -21,8 +22,8 @@ using axis = std::function<double(double reference, double dt)>;
 inline axis rigid() {
     return [](double r, double) { return r; };
 }
-/// Position loop of gain kv without feedforward, integrated exactly along a straight piece of the reference. `encoder(x)` is what
-/// the encoder reads too much at x; the reading is what comes out.
+/// Position loop of gain kv without feedforward, integrated exactly along a straight piece of the reference.
+/// `encoder(x)` is what the encoder reads too much at x; the reading is what comes out.
 inline axis lag(
     double kv, std::function<double(double)> encoder = [](double) { return 0.0; }) {
     return [kv, encoder, x = HUGE_VAL, last = 0.0](double r, double dt) mutable {
@@ -41,8 +42,8 @@ inline axis with_play(axis motor, double play) {
         return table = std::clamp(table, m - play / 2, m + play / 2);
     };
 }
-/// A unit mass under a P/PI cascade with velocity feedforward, and friction that remembers (bristle of stiffness s, level
-/// coulomb + more e^(-(v/stribeck)^2); exact for a constant velocity). Ten steps a sample.
+/// A unit mass under a P/PI cascade with velocity feedforward, and friction that remembers (bristle of
+/// stiffness s, level coulomb + more e^(-(v/stribeck)^2); exact for a constant velocity). Ten steps a sample.
 struct friction {
     double coulomb = 0, more = 0, stribeck = 1e-3, stiffness = 1e4;
 };

@@ -40,7 +40,8 @@ inline const estimate& value_of(const cause& c, const std::string& key) {
     return none;
 }
 
-/// The effect is named first and claimed, nothing else is, its parameter is found, and the gap shrinks to the floor.
+/// The effect is named first and claimed, nothing else is, its parameter is found, and the gap shrinks to the
+/// floor.
 inline void named(const diagnosis_result& d, const std::string& effect, const std::string& key, double truth,
                   double within) {
     CAPTURE(effect);

@@ -8,7 +8,8 @@
 
 #include <doctest/doctest.h>
 
-// The machines are those of workshop.hpp: LuGre bristles, finer steps, another controller code. What was fitted is not right
+// The machines are those of workshop.hpp: LuGre bristles, finer steps, another controller code. What was fitted
+// is not right
 // either: each value of a cause stands as far off as a diagnosis may be, with an interval that holds the truth.
 using namespace quadrant::diagnosis;
 
@@ -62,7 +63,8 @@ double error_rms(const axis_log& log) {
     return std::sqrt(sum / static_cast<double>(log.position.size() - skip));
 }
 
-/// The same machine with a compensation in it, `scale` times: keys in its controller, the rest as a force of the motor.
+/// The same machine with a compensation in it, `scale` times: keys in its controller, the rest as a force of
+/// the motor.
 axis_log with(workshop::machine m, const machine_description& file, const diagnosis_result& d,
               const compensation& c, double scale = 1) {
     for (const key_value& k : c.keys) {

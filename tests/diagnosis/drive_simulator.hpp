@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-/// Machines whose drive closes loops of its own, stepped 400 times a row by an integrator that shares nothing with the library.
+/// Machines whose drive closes loops of its own, stepped 400 times a row by an integrator that shares nothing
+/// with the library.
 namespace drive_simulator {
 
 struct machine {
@@ -21,7 +22,8 @@ struct machine {
     double clock_slip = 0;              ///< its clock's period is longer by this share
     bool enabled_column = false;
     bool stock_pid =
-        false; ///< in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
+        /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
+        false;
     double ff1 = 0, ff2 = 0;
 };
 enum class takes { volts, set_points, servo };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Machines whose drive closes loops of its own, from a simulator that shares nothing with the library (drive_simulator.hpp), through
-// the diagnosis.
+// Machines whose drive closes loops of its own, from a simulator that shares nothing with the library
+// (drive_simulator.hpp), through the diagnosis.
 #include "drive_simulator.hpp"
 
 #include <doctest/doctest.h>

@@ -102,7 +102,8 @@ TEST_CASE("next experiment: what a log showed is its travel and its peaks, whate
     CHECK(near(shown.acceleration, 0.05 * 4 * std::numbers::pi * std::numbers::pi, 0.05));
 }
 
-// Mass against force constant: in opposite ratio they are one model but for the friction, which the owner knows to 5 %.
+// Mass against force constant: in opposite ratio they are one model but for the friction, which the owner knows
+// to 5 %.
 TEST_CASE("next experiment: friction that is known tells mass from force constant in motion, not at rest") {
     auto axis = described(machine{}).axes[0];
     const proving_ground ground(axis, rough, workshop::count, 1e-7, usual);
@@ -145,9 +146,10 @@ TEST_CASE("next experiment: the multi-sine is found for a lag or a delay, and sl
     CHECK(motions[best.motion].words.starts_with("multi-sine"));
 }
 
-// Friction that differs by direction can be a constant force, not the other way round: only its viscous part is its own.
-// Since a proposed motion is evaluated in the scales of its own record, the fit of the second name to a log of the first stops short
-// here, and the motion is said to decide both ways. This fails as soon as that is corrected.
+// Friction that differs by direction can be a constant force, not the other way round: only its viscous part is
+// its own. Since a proposed motion is evaluated in the scales of its own record, the fit of the second name to
+// a log of the first stops short here, and the motion is said to decide both ways. This fails as soon as that
+// is corrected.
 TEST_CASE("next experiment: where one name is a special case of the other, a motion decides one way only" *
           doctest::should_fail()) {
     const auto axis = described(machine{}).axes[0];
@@ -220,9 +222,11 @@ TEST_CASE("next experiment: a record is a log of the machine: noise, steps of th
     CHECK(difference < 2 * workshop::dac);
 }
 
-// Swings of one frequency under noise: a lag and a delay are one signal. The machine is that of the other simulator.
-// Since slow means are judged, the log itself separates lag and delay by 18.7 where 15 decides, and the strokes that are then
-// proposed keep 6 of the 54 that were forecast: the forecast is too high there. This fails as soon as that is corrected.
+// Swings of one frequency under noise: a lag and a delay are one signal. The machine is that of the other
+// simulator. Since slow means are judged, the log itself separates lag and delay by 18.7 where 15 decides, and
+// the strokes that are then
+// proposed keep 6 of the 54 that were forecast: the forecast is too high there. This fails as soon as that is
+// corrected.
 TEST_CASE("diagnose: the next experiment names what the log could not, by at least the gain that was forecast" *
           doctest::should_fail()) {
     machine real;

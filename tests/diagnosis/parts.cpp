@@ -221,7 +221,8 @@ TEST_CASE("controller box: replay agrees to one DAC step, from the start and fro
     double worst = 0;
     for (std::size_t k = 0; k < whole.size(); ++k) worst = std::max(worst, std::abs(whole[k] - log.command[k]));
     CHECK(worst <= 1.01 * workshop::dac);
-    // From 0.5 s on: in the middle of a stroke. Integral and filter are unknown; after 50 ms only rounding is left.
+    // From 0.5 s on: in the middle of a stroke. Integral and filter are unknown; after 50 ms only rounding is
+    // left.
     const auto from = [](const std::vector<double>& v) { return std::span(v).subspan(1000); };
     const auto part = replay_controller(*axis.controller, axis.actuator, workshop::period, from(log.reference),
                                         from(log.position), from(log.command));

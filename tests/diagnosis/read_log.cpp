@@ -326,7 +326,8 @@ TEST_CASE("read_log: a ragged row is refused with its place") {
 TEST_CASE("read_log: a missing column is refused by name") {
     CHECK(refusal("x_ref_m,x_pos_m,x_cmd_V\n0,0,0\n") == "log.csv:1:24: column t_s is missing");
     CHECK(refusal("t_s,x_ref_m,x_cmd_V\n0,0,0\n") == "log.csv:1:20: column x_pos_m is missing");
-    // With a reference the command may be missing: a drive that takes positions needs none (match.hpp refuses the others).
+    // With a reference the command may be missing: a drive that takes positions needs none (match.hpp refuses
+    // the others).
     CHECK(refusal("t_s,x_pos_m\n0,0\n") ==
           "log.csv:1:12: column x_cmd_V is missing (or x_cmd_A, x_cmd_N; measured: x_current_A, x_torque_Nm)");
     CHECK(refusal("t_s,a\n0,0\n") ==

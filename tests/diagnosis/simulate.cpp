@@ -56,7 +56,8 @@ TEST_CASE("simulate: a machine as described is predicted to the noise, one with 
     CHECK(wrong.gap.force_rms_N > 5 * right.gap.force_rms_N);
     CHECK(wrong.gap.position_rms_m > right.gap.position_rms_m);
     CHECK(wrong.gap.command_rms_V > right.gap.command_rms_V);
-    // The floor is the sensor's, not the gap's: the same whatever the model lacks, but for the mass that it is told with.
+    // The floor is the sensor's, not the gap's: the same whatever the model lacks, but for the mass that it is
+    // told with.
     CHECK(wrong.gap.noise_floor_force_rms_N ==
           doctest::Approx(1.2 * right.gap.noise_floor_force_rms_N).epsilon(0.15));
 }

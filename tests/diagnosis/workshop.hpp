@@ -9,8 +9,9 @@
 #include <numbers>
 #include <random>
 
-/// Machines for the tests of the diagnosis, simulated by code that shares nothing with it: bare doubles, twenty steps a
-/// period, friction by LuGre bristles (the diagnosis knows sticking contacts), its own copy of the controller.
+/// Machines for the tests of the diagnosis, simulated by code that shares nothing with it: bare doubles, twenty
+/// steps a period, friction by LuGre bristles (the diagnosis knows sticking contacts), its own copy of the
+/// controller.
 namespace workshop {
 
 struct controller {
@@ -51,7 +52,8 @@ inline constexpr double period = 0.0005, count = 2.5e-7, limit = 10, dac = 20.0 
 inline constexpr quadrant::diagnosis::record_scales usual{
     .travel = 0.2, .speed = 0.25, .command = 10, .count = count, .corner_Hz = 60};
 
-/// Strokes in both directions at three speeds, reversals from 20 mm down to 0.3 mm, rest, and a multi-sine of 15 to 140 Hz.
+/// Strokes in both directions at three speeds, reversals from 20 mm down to 0.3 mm, rest, and a multi-sine of
+/// 15 to 140 Hz.
 inline double motion(double t) {
     struct piece {
         double begin, end;
@@ -189,7 +191,8 @@ inline bool near(double value, double truth, double share) {
     return std::abs(value - truth) <= share * std::abs(truth);
 }
 
-/// The machine file of a machine: its numbers moved inside the owner's tolerance; effects are left out by the caller.
+/// The machine file of a machine: its numbers moved inside the owner's tolerance; effects are left out by the
+/// caller.
 inline quadrant::diagnosis::machine_description described(const machine& m) {
     using namespace quadrant::diagnosis;
     axis_description a;

@@ -2,8 +2,8 @@
 #pragma once
 #include "diagnosis/claims.hpp"
 
-/// A rotary axis that turns an arm, simulated by code that shares nothing with the diagnosis: bare doubles, twenty steps a
-/// period, friction by LuGre bristles, P on the angle and PI on its difference.
+/// A rotary axis that turns an arm, simulated by code that shares nothing with the diagnosis: bare doubles,
+/// twenty steps a period, friction by LuGre bristles, P on the angle and PI on its difference.
 namespace arms {
 
 using namespace workshop;

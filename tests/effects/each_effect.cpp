@@ -82,8 +82,9 @@ TEST_CASE("diagnose: friction that gives way by ten micrometres, not play") {
     machine real;
     const auto file = described(real);
     real.bristle = 1e-5;
-    // After a turn, bristles (LuGre) follow the branch of elements of half their length (effect::by_another_law): what is found
-    // lies between half and the whole, and a quarter more on either side.
+    // After a turn, bristles (LuGre) follow the branch of elements of half their length
+    // (effect::by_another_law): what is found lies between half and the whole, and a quarter more on either
+    // side.
     const auto d = diagnosed(file, real);
     named(d, "presliding_friction", "presliding_length_m", 0.75e-5, 0.5);
     CHECK_FALSE(d.causes.front().described);
@@ -128,7 +129,8 @@ TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction") {
     real.dead_zone = 0.03;
     named(diagnosed(file, real), "actuator_dead_zone", "actuator.dead_zone_V", 0.03, 0.05);
 }
-// Few losses in a record that hardly changes its command do not earn a claim; they are never called something else.
+// Few losses in a record that hardly changes its command do not earn a claim; they are never called something
+// else.
 TEST_CASE(
     "diagnose: lost commands take their pulses out of the gap, a delay does not, and nothing else is claimed") {
     machine real;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// With QUADRANT_TESTS=all. Compiled with -O3 -ffast-math, by which a compiler may take it that there is no NaN: the policy of every block still holds.
+// With QUADRANT_TESTS=all. Compiled with -O3 -ffast-math, by which a compiler may take it that there is no NaN:
+// the policy of every block still holds.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 

@@ -41,7 +41,8 @@ std::string refusal(const block::parameters& p) {
     return "";
 }
 
-/// Largest glitch [um] of the thesis' x axis on a plant with LuGre friction (a memory, levels 10 % off), 30 mm at `peak`.
+/// Largest glitch [um] of the thesis' x axis on a plant with LuGre friction (a memory, levels 10 % off), 30 mm
+/// at `peak`.
 template <class Friction> double glitch(const typename Friction::parameters& p, quantity<si::velocity> peak) {
     using boxes = milling_axis_boxes<Friction>;
     using axis = milling_axis<boxes>;

@@ -83,7 +83,8 @@ TEST_CASE("inverse_model: is the inertia and drag of a milling_axis in one box")
 TEST_CASE("inverse_model: advanced by the delay the error of the whole loop is zero to rounding (1e-13 m), for "
           "a path "
           "whose exact command changes at the samples only") {
-    // The path that u[k], held for a period each, drives without delay; T = 0.325 ms, so that 0.65 ms are two of them.
+    // The path that u[k], held for a period each, drives without delay; T = 0.325 ms, so that 0.65 ms are two
+    // of them.
     const double T = 0.325e-3;
     struct {
         double x = 0, v = 0;

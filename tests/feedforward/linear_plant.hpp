@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-/// dv/dt = B u(t - delay) - A v, dx/dt = v, with u held over the period: solved exactly (exponentials), bare numbers. The
-/// tests' own plant: it shares nothing with quadrant::linear_motor.
+/// dv/dt = B u(t - delay) - A v, dx/dt = v, with u held over the period: solved exactly (exponentials), bare
+/// numbers. The tests' own plant: it shares nothing with quadrant::linear_motor.
 class linear_plant {
 public:
     linear_plant(double a, double b, double delay, double period) : a_(a), b_(b), period_(period) {

@@ -22,7 +22,8 @@ constexpr double A = 28.57, B = 4.526; // x axis of [Jamaludin2008]
 using block = sampled_inverse_model<signal::voltage>;
 const block::parameters x_axis = axis_model<signal::voltage>{B * 1_mps2 / 1_V, A / 1_s};
 
-/// sum d_i s^i / n0 with s = 2 (z - 1) / (T (z + 1)), times ((1 + 1/z) / 2)^N: the other way to write the same filter.
+/// sum d_i s^i / n0 with s = 2 (z - 1) / (T (z + 1)), times ((1 + 1/z) / 2)^N: the other way to write the same
+/// filter.
 template <std::size_t N> std::complex<double> bilinear(const nominal_plant<N>& p, double f) {
     const double T = 5e-4;
     const std::complex<double> z = std::polar(1.0, 2 * std::numbers::pi * f * T),

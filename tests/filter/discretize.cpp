@@ -54,8 +54,8 @@ TEST_CASE("discretize, zero-order hold: agrees with scipy where scipy is accurat
     // scipy.signal.cont2discrete(([1,0,4e6],[1,40,4.2e6]), 5e-4, 'zoh')
     same(zero_order_hold(resonance, 500_us),
          {{1, -1.0677182482440455, 0.9741302126095934}, {1, -1.0284661107229298, 0.9801986733067554}}, 1e-14);
-    // scipy.signal.cont2discrete(([50,1000],[1,30,400,1000]), .01, 'zoh') gives the same to 4e-13; these digits are
-    // from mpmath, 80 digits, expm of the enlarged matrix.
+    // scipy.signal.cont2discrete(([50,1000],[1,30,400,1000]), .01, 'zoh') gives the same to 4e-13; these digits
+    // are from mpmath, 80 digits, expm of the enlarged matrix.
     same(zero_order_hold(third, 10_ms),
          {{0, 0.00241482446397741965, 0.000358287805347799394, -0.00191204502191056399},
           {1, -2.705923463313794, 2.4476027512429273, -0.7408182206817188}},
@@ -63,10 +63,12 @@ TEST_CASE("discretize, zero-order hold: agrees with scipy where scipy is accurat
 }
 TEST_CASE(
     "discretize, zero-order hold: a motor's numerator to full accuracy, where scipy has lost seven digits") {
-    // The textbook pair k/(s(s+a)) -> k/a^2 ((aT-1+E) z^-1 + (1-E-aTE) z^-2) / ((1-z^-1)(1-E z^-1)), E = exp(-aT)
+    // The textbook pair k/(s(s+a)) -> k/a^2 ((aT-1+E) z^-1 + (1-E-aTE) z^-2) / ((1-z^-1)(1-E z^-1)), E =
+    // exp(-aT)
     const long double a = 850.0L / 340, k = 1450.0L / 340, T = 500e-6L, E = std::exp(-a * T);
     const long double less = std::expm1(-a * T); // E - 1
-    // aT-1+E and 1-E-aTE cancel; by their series instead: (aT)^2/2 - (aT)^3/6 + ... and (aT)^2/2 - (aT)^3/3 + ...
+    // aT-1+E and 1-E-aTE cancel; by their series instead: (aT)^2/2 - (aT)^3/6 + ... and (aT)^2/2 - (aT)^3/3 +
+    // ...
     const long double x = a * T;
     long double first = 0, second = 0, term = x; // term = x^n / n!
     for (int n = 2; n < 20; ++n) {
@@ -88,7 +90,8 @@ TEST_CASE(
         CHECK(f(1.0).value() == doctest::Approx(1 - std::exp(-62.8 * k * 1e-3)).epsilon(1e-12).scale(1));
 }
 TEST_CASE("discretize, zero-order hold: multiple and fast poles do no harm") {
-    // (1 + s/p)^-4 with p T = 0.003: 80-digit reference, mpmath expm of the enlarged matrix (docs/blocks/discretize.md)
+    // (1 + s/p)^-4 with p T = 0.003: 80-digit reference, mpmath expm of the enlarged matrix
+    // (docs/blocks/discretize.md)
     const double p = 2 * std::numbers::pi, T = 500e-6;
     const auto slow =
         zero_order_hold(continuous<4>{{p * p * p * p}, {p * p * p * p, 4 * p * p * p, 6 * p * p, 4 * p, 1}},

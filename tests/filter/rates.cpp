@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Every block with a corner, from a hundred thousandth of the sampling rate to half of it: float and lanes beside double.
+// Every block with a corner, from a hundred thousandth of the sampling rate to half of it: float and lanes
+// beside double.
 #include <quadrant/base/lanes.hpp>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/series.hpp>
@@ -114,8 +115,8 @@ std::vector<float> signal_of(int kind, double ratio) {
     }
     return x;
 }
-/// A rounding error of every sample stays for 1/(pi damping ratio) samples, damping from 0.1 on; near half the sampling rate it
-/// grows as tan^2.
+/// A rounding error of every sample stays for 1/(pi damping ratio) samples, damping from 0.1 on; near half the
+/// sampling rate it grows as tan^2.
 double bound(double ratio) {
     const double t = std::tan(pi * ratio);
     return double(std::numeric_limits<float>::epsilon()) * (8 + 1 / (0.1 * pi * ratio) + 4 * t * t);

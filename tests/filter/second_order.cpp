@@ -49,7 +49,8 @@ TEST_CASE("second_order: notch and butterworth are their difference equations, f
     std::uniform_real_distribution<double> unit(-100, 100);
     const duration T = 50_us;
     for (const double ratio : ratios) {
-        // A rounding error stays for 1/(pi damping ratio) samples, near half the sampling rate it grows as tan^2.
+        // A rounding error stays for 1/(pi damping ratio) samples, near half the sampling rate it grows as
+        // tan^2.
         const double t = std::tan(pi * ratio);
         const double bound = 2.2e-16 * (8 + 1 / (0.1 * pi * ratio) + 4 * t * t);
         CAPTURE(ratio);

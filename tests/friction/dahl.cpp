@@ -106,14 +106,16 @@ TEST_CASE("dahl: exponent 1 is the limit of the others, to 0.1 mN") {
     }
 }
 TEST_CASE("dahl: has no memory of inner loops: a loop of 1 um half way up leaves the force 19.78 N lower") {
-    // u: F/Fc. Back by a: (1 + u) e^-a - 1, on by a again: 1 - (2 - (1 + u) e^-a) e^-a. maxwell_slip comes back to u.
+    // u: F/Fc. Back by a: (1 + u) e^-a - 1, on by a again: 1 - (2 - (1 + u) e^-a) e^-a. maxwell_slip comes back
+    // to u.
     dahl<> law{contact(), Ts};
     law.become({newtons(61)});
     go(law, -1 * um);
     const double e = std::exp(-60.0 / 122), f = go(law, 1 * um);
     CHECK(f == doctest::Approx(122 * (1 - (2 - 1.5 * e) * e)).epsilon(1e-12));
     CHECK(std::abs(61 - f - 19.78) < 0.01);
-    // Nor does Masing's rule hold: from the level back by 2 um the force falls by 152.8 N, not by twice the 47.4 N of 1 um.
+    // Nor does Masing's rule hold: from the level back by 2 um the force falls by 152.8 N, not by twice the
+    // 47.4 N of 1 um.
     dahl<> slides{contact(), Ts};
     slides.settle(1_mmps);
     CHECK(122 - go(slides, -2 * um) == doctest::Approx(2 * 122 * (1 - e * e)).epsilon(1e-12));

@@ -71,7 +71,8 @@ TEST_CASE("lugre: while the speed stands, one step is as good as many, and z goe
 }
 TEST_CASE("lugre: the implicit update z' = (z + h v)/(1 + h s0 |v|/g) is its form for short ways, same bound, "
           "same rest") {
-    // [LowKeck2003] notes. 0.1 bend apart by half its square; at 2 ms and 10 mm/s, 3.6 bends, 0.79 against 0.98.
+    // [LowKeck2003] notes. 0.1 bend apart by half its square; at 2 ms and 10 mm/s, 3.6 bends, 0.79 against
+    // 0.98.
     const auto implicit = [](double force, double v, double h) {
         return (force + 1.5e6 * h * v) / (1 + h * 1.5e6 * std::abs(v) / level(v));
     };

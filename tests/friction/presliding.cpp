@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// One implicit step of a mass on friction that remembers, over random axes: from 0.1 to 1000 kg, steps from 1 us to 2 ms.
+// One implicit step of a mass on friction that remembers, over random axes: from 0.1 to 1000 kg, steps from 1
+// us to 2 ms.
 #include "hysteresis.hpp"
 
 #include <quadrant/base/dual.hpp>
@@ -39,7 +40,8 @@ double stored(const maxwell_slip<3>& law) {
     return sum;
 }
 
-/// Calls f(law, situation, level) for random axes of each kind, each in a random state. `falling`: with a Stribeck curve.
+/// Calls f(law, situation, level) for random axes of each kind, each in a random state. `falling`: with a
+/// Stribeck curve.
 template <class F> void random_axes(bool falling, F&& f) {
     dice roll;
     for (int n = 0; n < 4000; ++n) {
@@ -109,7 +111,8 @@ TEST_CASE("presliding: the slope that a law gives is the derivative of its force
     CHECK(kinks < 0.01 * compared);
 }
 TEST_CASE("presliding: no step gives more energy than drive and springs") {
-    // M/2 (v'^2 - v^2) + stored' - stored <= drive v' h, with one level; the falling level adds what dwell time adds.
+    // M/2 (v'^2 - v^2) + stored' - stored <= drive v' h, with one level; the falling level adds what dwell time
+    // adds.
     random_axes(false, [](auto law, const situation& s, double) {
         const double before = stored(law);
         const auto to = s.step(law);
@@ -162,7 +165,8 @@ TEST_CASE("presliding: odd in velocity, drive and memory, bit for bit") {
 }
 TEST_CASE("presliding: below breakaway the axis rings about its spring at sqrt(k/M), and its place is drive "
           "over stiffness") {
-    // 340 kg on 76.467 N/um: 75.5 Hz. One newton more at 1 us steps, each of which takes 1/2 (w h)^2 of the swing's energy.
+    // 340 kg on 76.467 N/um: 75.5 Hz. One newton more at 1 us steps, each of which takes 1/2 (w h)^2 of the
+    // swing's energy.
     maxwell_slip<4> law{{.curve = {122_N, 177_N, 1_mps / 450.0, {}},
                          .weights = {},
                          .forces = {65_N, 55_N, 26_N, 6.5_N},

@@ -90,7 +90,8 @@ template <class F> void random_axes(F&& f) {
 } // namespace
 
 TEST_CASE("stick_slip: friction on a moving axis is the slip force of its new velocity, against the motion") {
-    // To 1e-6 of the level where the law falls less than half as fast as inertia resists, on the way and at its end.
+    // To 1e-6 of the level where the law falls less than half as fast as inertia resists, on the way and at its
+    // end.
     int moving = 0, steep = 0;
     random_axes([&](const auto& law, const situation& s) {
         const double v = std::abs(s.step(law));
@@ -170,7 +171,8 @@ TEST_CASE("stick_slip: an axis is driven through rest only by more than its mome
 }
 TEST_CASE("stick_slip: driven between slip and breakaway, an axis that comes to rest stays there") {
     const dropping law{177, 122, 0};
-    // 150 N forwards, coming backwards at 1 um/s: 6.8 N s/h of momentum at 50 us. Alone, 150 N could not start it.
+    // 150 N forwards, coming backwards at 1 um/s: 6.8 N s/h of momentum at 50 us. Alone, 150 N could not start
+    // it.
     CHECK(situation{340, -1e-6, 150, 50e-6}.step(law) == 0);
     CHECK(situation{340, 0, 150, 50e-6}.step(law) == 0);
     CHECK(situation{340, 1e-6, 150, 50e-6}.step(law) > 1e-6); // an axis that slides is not held
@@ -204,7 +206,8 @@ TEST_CASE("stick_slip: odd in velocity and drive, bit for bit") {
     });
 }
 TEST_CASE("stick_slip: the new velocity is the fastest solution of the implicit equation, found by bisection") {
-    // slope v' + slip(v') - |push|: from the frictionless velocity down, in steps of 1/2000, then bisected. 1e-6 of it.
+    // slope v' + slip(v') - |push|: from the frictionless velocity down, in steps of 1/2000, then bisected.
+    // 1e-6 of it.
     int found = 0;
     random_axes([&](const auto& law, const situation& s) {
         const double p = push(s), k = slope(law, s), size = std::abs(p);

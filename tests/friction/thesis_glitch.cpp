@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// The thesis' friction experiment beside the figures of reference/thesis.md ("our computation"), to its 10 %. Readings:
-// encoder of 0.25 um, sub-steps of 10 us, friction feedforward from the mean velocity of the last period, glitch = mean over the
-// reversals of the largest error after each. Without the encoder GMS at 10 mm/s leaves 0.08 and 0.07 um: what is published
-// there is the encoder's count.
+// The thesis' friction experiment beside the figures of reference/thesis.md ("our computation"), to its 10 %.
+// Readings: encoder of 0.25 um, sub-steps of 10 us, friction feedforward from the mean velocity of the last
+// period, glitch = mean over the reversals of the largest error after each. Without the encoder GMS at 10 mm/s
+// leaves 0.08 and 0.07 um: what is published there is the encoder's count.
 #include "quadrant_reproduce/friction_run.hpp"
 
 #include <doctest/doctest.h>
@@ -39,7 +39,8 @@ TEST_CASE("thesis.friction: 10 mm/s: none 16.8 and 20.9 um, static 9.7 and 20.4 
     check(run<static_curve>(y, slow), 20.4);
 }
 TEST_CASE("thesis.friction: 10 mm/s with the GMS model: 0.17 um (x), 0.41 um (y)") {
-    // Counts of the encoder: single reversals lie between 0.17 and 0.68 um on y; over 80 of them the mean is 0.165, 0.415.
+    // Counts of the encoder: single reversals lie between 0.17 and 0.68 um on y; over 80 of them the mean is
+    // 0.165, 0.415.
     reading each{.peak_speed = 0.01, .substeps = 50, .cycles = 4};
     check(run<gms_model>(x, each), 0.17);
     each.cycles = 12;

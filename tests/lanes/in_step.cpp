@@ -108,7 +108,8 @@ TEST_CASE_TEMPLATE("maxwell_slip in lanes: per lane that of double, through reve
         for (std::size_t i = 0; i < L::size; ++i) {
             CAPTURE(i);
             const double one = alone[i](quantity_of<s::velocity>::from_value(v[i])).value();
-            // Each spring's level is off by an ulp or two of the exponentials, and keeps it until it sticks again.
+            // Each spring's level is off by an ulp or two of the exponentials, and keeps it until it sticks
+            // again.
             REQUIRE(std::abs(y[i] - one) <= 1e-12 * 200);
         }
     }
@@ -167,7 +168,8 @@ TEST_CASE_TEMPLATE("repetitive in lanes in step: per lane that of double to roun
         for (std::size_t i = 0; i < L::size; ++i) {
             const double one = alone[i](at_one(e[i])).value();
             largest = std::max(largest, std::abs(one));
-            // 13 + 7 + 8 products a sample in another order, some 20 cycles of a memory that forgets half of it in four.
+            // 13 + 7 + 8 products a sample in another order, some 20 cycles of a memory that forgets half of it
+            // in four.
             REQUIRE(std::abs(y[i] - one) <= 1e3 * std::numeric_limits<double>::epsilon() * (1 + largest));
         }
     }

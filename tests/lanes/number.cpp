@@ -183,7 +183,8 @@ TEST_CASE_TEMPLATE("lanes: floor, round, trunc, abs and copysign are those of do
 }
 
 namespace {
-/// The largest distance from the C library's result, in units in the last place, over `range` evenly and at random.
+/// The largest distance from the C library's result, in units in the last place, over `range` evenly and at
+/// random.
 template <class L, class F, class G> double worst(F of_lanes, G of_double, double low, double high) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(low, high);

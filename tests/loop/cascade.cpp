@@ -147,7 +147,8 @@ TEST_CASE("cascade: settled in the middle of a motion it goes on without a bump"
     CHECK(a.wire.command.value() == doctest::Approx(1.5));
     const double more = 384.125 * 1e-3 * 104.861 * 20e-6; // what the integral gains per row, 0.8 mV
     CHECK(a(30.1_mm, 30.08_mm).value() == doctest::Approx(1.5).epsilon(1e-9));
-    // The notch passes the slow ramp of the integral with a delay of its own; a bump would be 39 V/(m/s) times an error.
+    // The notch passes the slow ramp of the integral with a delay of its own; a bump would be 39 V/(m/s) times
+    // an error.
     for (int k = 2; k < 50; ++k)
         CHECK(a(metres(0.03 + 1e-4 * k), metres(0.02998 + 1e-4 * k)).value() ==
               doctest::Approx(1.5 + more * (k - 1)).epsilon(1e-3));
@@ -225,7 +226,8 @@ TEST_CASE("cascade: the PI is charged with what the amplifier cut off, feedforwa
     auto p = machine<cascade_p_pi_boxes<>>();
     p.coulomb_feedforward = 7.9_V;
     cascade<learning_boxes> a{.box = {p, Ts}};
-    // 1 mm behind at a steady crawl: PI 4.2 V, feedforward 7.9 V: 4.1 V beyond the 8 V. PI alone is within its limit.
+    // 1 mm behind at a steady crawl: PI 4.2 V, feedforward 7.9 V: 4.1 V beyond the 8 V. PI alone is within its
+    // limit.
     for (int k = 0; k < 5; ++k) a(metres(1e-3 + 1e-7 * k), metres(1e-7 * k));
     CHECK(a.limited());
     CHECK(a.wire.feedback < 8_V);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// feed_control and feed_drive: the two sides of an axis of the Virtual CNC, and the figures of [Yeung2006] Table 11.
+// feed_control and feed_drive: the two sides of an axis of the Virtual CNC, and the figures of [Yeung2006]
+// Table 11.
 #include "quadrant_reproduce/virtual_cnc.hpp"
 
 #include <quadrant/feedforward/friction_feedforward.hpp>

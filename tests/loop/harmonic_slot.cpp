@@ -20,7 +20,8 @@ using nothing = absent<signal::position, signal::voltage>;
 using harmonics = harmonic_force_observer<signal::voltage, 2>;
 template <class Observer> using boxes = milling_axis_boxes<absent<signal::velocity, signal::voltage>, Observer>;
 
-/// The y axis of [Jamaludin2008], shaken at 46 and 69 Hz; error in the fourth second, um rms, or -1 where the loop clipped.
+/// The y axis of [Jamaludin2008], shaken at 46 and 69 Hz; error in the fourth second, um rms, or -1 where the
+/// loop clipped.
 template <class Observer> double shaken() {
     typename boxes<Observer>::parameters p{.position_gain = 150.0 / 1_s,
                                            .velocity_gain = 30_V / 1_mps,

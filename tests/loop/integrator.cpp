@@ -106,7 +106,8 @@ TEST_CASE(
     p.memory = {.cycle = 40_ms, .learning = {0.1, 0.1, 0.1}, .ahead = 1, .smoothing = {0.25, 0.5, 0.25}};
     milling_axis<learning> axis{.box = {p, T}};
     using motion = milling_axis<learning>::motion;
-    // A spring of 500 V/m pulls; another controller holds the axis at 1 mm with 0.5 V and lets it sway a little.
+    // A spring of 500 V/m pulls; another controller holds the axis at 1 mm with 0.5 V and lets it sway a
+    // little.
     double d = 0;
     for (int k = 0; k < 3000; ++k)
         axis({1_mm * std::sin(0.1 * k)}, 0_m); // has learnt, wound up and estimated nonsense

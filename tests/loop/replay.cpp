@@ -41,8 +41,9 @@ difference replay(const char* number, const typename Boxes::parameters& p, durat
 }
 } // namespace
 
-// A reference written to 12 decimals is off by 5e-13 m; over T^2 and the acceleration feedforward that is 0.001, 0.004 and
-// 0.01 DAC steps. The command is written to 6 decimals: 0.0016 steps. So: one step at a tie, never two.
+// A reference written to 12 decimals is off by 5e-13 m; over T^2 and the acceleration feedforward that is
+// 0.001, 0.004 and 0.01 DAC steps. The command is written to 6 decimals: 0.0016 steps. So: one step at a tie,
+// never two.
 TEST_CASE("cascade: gives the recorded command of practice 003, 005 and 015 to one DAC step" *
           doctest::skip(shared_missing())) {
     using plain = cascade_p_pi_boxes<>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// Other parameters in the middle of a random signal, beside a twin that keeps its own: what the coming output is off by is
-// bounded by the formula in the block's doc comment, for every pair of parameters, and the bound is reached.
+// Other parameters in the middle of a random signal, beside a twin that keeps its own: what the coming output
+// is off by is bounded by the formula in the block's doc comment, for every pair of parameters, and the bound
+// is reached.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/series.hpp>
 #include <quadrant/control/proportional.hpp>
@@ -240,7 +241,8 @@ TEST_CASE(
     std::array<verdict, 3> said;
     for (int trial = 0; trial < 3000; ++trial) {
         const auto x = random.signal(40);
-        // The steepest step that either delay, or what lies between, is read from; one more beside, for the cubic.
+        // The steepest step that either delay, or what lies between, is read from; one more beside, for the
+        // cubic.
         const auto steepest = [&](double a, double b) {
             double most = 0;
             const auto from = std::size_t(std::min(a, b)), to = std::size_t(std::ceil(std::max(a, b)));

@@ -71,7 +71,8 @@ double volts_apart(const alone::commands& a, const alone::commands& b) {
     return std::max(std::abs((a.x.plain() - b.x.plain()).value()),
                     std::abs((a.y.plain() - b.y.plain()).value()));
 }
-/// Rounding of 10 V, times the gain of the loop from a position to the command in a sample, some 1e4 rounded operations.
+/// Rounding of 10 V, times the gain of the loop from a position to the command in a sample, some 1e4 rounded
+/// operations.
 constexpr double rounding = 1e-11;
 } // namespace
 

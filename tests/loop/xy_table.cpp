@@ -40,7 +40,8 @@ using x_boxes = table_axis_boxes<x_motor, cyclic_error<>>;
 using y_boxes = table_axis_boxes<y_motor, cyclic_error<>>;
 using milling_table = xy_table<x_boxes, y_boxes>;
 
-/// The table of [Jamaludin2008] with every effect; sizes of cogging, ripple, cyclic error and coupling are ours.
+/// The table of [Jamaludin2008] with every effect; sizes of cogging, ripple, cyclic error and coupling are
+/// ours.
 const milling_table::parameters thesis{
     .x = {.motor = {.mass = 340_kg,
                     .force_constant = 1450_N / 1_V,

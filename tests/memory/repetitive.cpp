@@ -32,7 +32,8 @@ template <class Block> double left(Block& memory, double cycle, int cycles) {
     }
     return most * 1e6;
 }
-/// The sum over a window against the exact one, in units of the bound that detail::fir_taps states, and of the plain sum's.
+/// The sum over a window against the exact one, in units of the bound that detail::fir_taps states, and of the
+/// plain sum's.
 template <class Real, std::size_t Taps> void sums_within_bound(std::mt19937& random) {
     std::uniform_real_distribution<double> any(-1, 1);
     detail::fir_taps<Real, Taps> taps;
@@ -126,7 +127,8 @@ TEST_CASE("repetitive: order 2 with weights 2, -1 answers an impulse by 2, 3, 4"
     CHECK(at30 == doctest::Approx(4));
 }
 TEST_CASE("repetitive: look-ahead of L and Q goes into the delay, an impulse shows it tap by tap") {
-    // L: 2 ahead; Q: 1 ahead. y[k] = sum l q e[k - N + ...]: the convolution of both, centred on one cycle later.
+    // L: 2 ahead; Q: 1 ahead. y[k] = sum l q e[k - N + ...]: the convolution of both, centred on one cycle
+    // later.
     full m{
         {.cycle = 20_ms, .weights = {1, 0}, .learning = {1, 2, 3, 4, 5}, .ahead = 2, .smoothing = {7, 11, 7}},
         1_ms};
@@ -142,7 +144,8 @@ TEST_CASE("repetitive: what repeats dies out, with a cycle of whole and of broke
     for (const double cycle : {80.0, 85.87, 60.5, 200.0}) {
         CAPTURE(cycle);
         inverse m{{.cycle = cycle * 1_ms, .learning = {1, 0}, .ahead = 1}, 1_ms};
-        // 2 um before; what is left is the interpolation of a third harmonic between samples, learnt over and over
+        // 2 um before; what is left is the interpolation of a third harmonic between samples, learnt over and
+        // over
         CHECK(left(m, cycle, 20) < 2e-3);
     }
     inverse rounded{{.cycle = 85_ms, .learning = {1, 0}, .ahead = 1}, 1_ms};

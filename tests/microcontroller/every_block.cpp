@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Every block of tests/conformance/blocks.hpp in float and in double: a line "float|notch|bits bits ...", outputs in
-// hexadecimal. Run on the host and on the microcontroller; compare.py says how far they are apart.
+// Every block of tests/conformance/blocks.hpp in float and in double: a line "float|notch|bits bits ...",
+// outputs in hexadecimal. Run on the host and on the microcontroller; compare.py says how far they are apart.
 #include "conformance/blocks.hpp"
 
 #include <bit>

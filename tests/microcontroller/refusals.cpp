@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// All blocks, with exceptions and without: the same refusals in the same words. Built twice by host.sh, which compares.
+// All blocks, with exceptions and without: the same refusals in the same words. Built twice by host.sh, which
+// compares.
 // usage: refusals           prints what is made and what is refused
 //        refusals direct    (without exceptions) a constructor refuses outside of make(): handler, then trap
 #include <quadrant/quadrant.hpp>

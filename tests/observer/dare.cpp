@@ -32,7 +32,8 @@ double residual(const matrix<N>& a, const matrix<N, M>& b, const matrix<N>& q, c
 } // namespace
 
 TEST_CASE("dare: gives scipy's solution for three unstable states and two inputs") {
-    // scipy.linalg.solve_discrete_are([[1,.1,0],[0,.9,.2],[.3,0,1.1]], [[0,1],[.5,0],[1,.2]], diag([2,1,.5]), [[1,.1],[.1,.5]])
+    // scipy.linalg.solve_discrete_are([[1,.1,0],[0,.9,.2],[.3,0,1.1]], [[0,1],[.5,0],[1,.2]], diag([2,1,.5]),
+    // [[1,.1],[.1,.5]])
     const matrix<3> X{{{2.4403349940940458, -0.03268542188392094, 0.15103055675054933},
                        {-0.03268542188392094, 3.0220275378054033, -0.32633787001093295},
                        {0.15103055675054933, -0.32633787001093295, 1.1953213105752867}}};
@@ -50,7 +51,8 @@ TEST_CASE("dare: a double integrator weighted by its position alone: {{2, 1}, {1
     CHECK(x[1][1] == Approx(1.5).epsilon(1e-14));
 }
 TEST_CASE("dare: a scalar equation has the root of its quadratic, and a dual the slope of that root") {
-    // a = b = q = r = 1: x^2 - x - 1 = 0, the golden ratio; by q: x = (q + sqrt(q^2 + 4 q)) / 2, slope 1/2 + 3/(2 sqrt 5)
+    // a = b = q = r = 1: x^2 - x - 1 = 0, the golden ratio; by q: x = (q + sqrt(q^2 + 4 q)) / 2, slope 1/2 +
+    // 3/(2 sqrt 5)
     using D = dual<1>;
     const auto x = dare<1, 1, D>({{{1}}}, {{{1}}}, {{{D::variable(1, 0)}}}, {{{1}}});
     CHECK(x[0][0].value == Approx((1 + std::sqrt(5)) / 2).epsilon(1e-15));

@@ -128,7 +128,8 @@ TEST_CASE("disturbance_observer: the estimate of a sine is Q times the sine, but
             if (k >= 4000) sum += d.value() * std::polar(2.0 / 400, -angle);
             p(std::cos(angle) * 1_V - d);
         }
-        // The hold delays the axis by half a sample, r, which Gn does not know: d = Q (r (u + push) - u), u = -d.
+        // The hold delays the axis by half a sample, r, which Gn does not know: d = Q (r (u + push) - u), u =
+        // -d.
         const auto q = ob.q(f * 1_Hz), r = std::polar(1.0, -pi * f * T.value());
         CHECK(std::abs(sum - q * r / (1.0 + q * (r - 1.0))) < 2e-3); // (w T)^2 / 12 of the bilinear form
     }
@@ -197,7 +198,8 @@ TEST_CASE("disturbance_observer: m = 1 follows a ramp that m = 0 lags behind") {
         p(push - d), q(push - e);
         behind = (push - d).value(), lag = (push - e).value();
     }
-    // 1 - Q = 2 s / wc: slope times 2 / wc. The hold, which Gn does not know, delays wanted and push alike: no lag of its own.
+    // 1 - Q = 2 s / wc: slope times 2 / wc. The hold, which Gn does not know, delays wanted and push alike: no
+    // lag of its own.
     CHECK(lag == Approx(2.0 * 2 / (2 * pi * 60)).epsilon(1e-9).scale(0));
     CHECK(std::abs(behind) < 1e-9);
 }
@@ -280,7 +282,8 @@ TEST_CASE(
 }
 
 namespace {
-/// The thesis' loop on its model with delay: position error loop, sensitivity, position per disturbance at the command.
+/// The thesis' loop on its model with delay: position error loop, sensitivity, position per disturbance at the
+/// command.
 struct loop_figures {
     std::complex<double> position_loop, sensitivity, compliance;
 };
@@ -299,8 +302,9 @@ loop_figures figures(const axis& a, const observer* ob, double hertz) {
 
 TEST_CASE(
     "disturbance_observer: margins and bandwidth of the thesis' loops with it are those of the reference") {
-    // shared/reference/thesis.md, "On the model (ours)": 13.7 dB, 71.9 deg, 33.7 Hz (x), 12.9 dB, 71.0 deg, 38.0 Hz (y);
-    // the sensitivity is 1 / (1 + all that is fed back). Q is bilinear here, continuous there: 0.1 dB.
+    // shared/reference/thesis.md, "On the model (ours)": 13.7 dB, 71.9 deg, 33.7 Hz (x), 12.9 dB, 71.0 deg,
+    // 38.0 Hz (y); the sensitivity is 1 / (1 + all that is fed back). Q is bilinear here, continuous there: 0.1
+    // dB.
     struct wanted {
         const axis& a;
         double gain_margin, phase_margin, bandwidth;

@@ -24,7 +24,8 @@ struct record {
     std::vector<quantity_of<signal::voltage>> sensor;
     ferraris_calibration fit() const { return calibrate_ferraris(position, sensor, T); }
 };
-/// Sines of 0.5 and 4 Hz seen by an encoder of 0.25 um, started in the middle of the motion, the axis not at zero.
+/// Sines of 0.5 and 4 Hz seen by an encoder of 0.25 um, started in the middle of the motion, the axis not at
+/// zero.
 record run(double step, double noise, double amplitude = 5e-3, std::uint32_t seed = 3) {
     record r;
     std::mt19937 bits(seed);

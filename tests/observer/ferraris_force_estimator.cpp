@@ -16,7 +16,8 @@ const duration T = 500_us;
 using estimator = ferraris_force_estimator<s::voltage>;
 const estimator::parameters y{.mass = 170_kg, .force_constant = 1470_N / 1_V, .corner = 90_Hz};
 
-/// The mass with viscous friction, exact for a held command and force; its acceleration as the next sample finds it.
+/// The mass with viscous friction, exact for a held command and force; its acceleration as the next sample
+/// finds it.
 struct plant {
     double x = 0, v = 0, a = 0;
     void step(double u, double push) {

@@ -40,8 +40,8 @@ private:
     std::vector<double> past_;
 };
 
-/// The thesis' y axis in its loop (without notch), the observer in it; error over time [m]. The observer gets the command
-/// `late` periods late.
+/// The thesis' y axis in its loop (without notch), the observer in it; error over time [m]. The observer gets
+/// the command `late` periods late.
 template <class Observer>
 std::vector<double> errors(Observer ob, std::size_t delay, std::size_t late, const std::vector<double>& push) {
     plant p(delay);
@@ -86,9 +86,9 @@ std::vector<double> knock() {
 } // namespace
 
 TEST_CASE("harmonic_force_observer: the gain is that of scipy's pole placement") {
-    // F: scipy.linalg.expm of the axis and its held command over 0.5 ms, and the rotation by 46 Hz; states scaled by
-    // D=diag(1,T,B T^2,B T^2); Lp=scipy.signal.place_poles(F.T, C.T, exp([-150+100j,-150-100j,-200,-260]*T)).gain_matrix.T;
-    // inv(D) inv(F) Lp
+    // F: scipy.linalg.expm of the axis and its held command over 0.5 ms, and the rotation by 46 Hz; states
+    // scaled by D=diag(1,T,B T^2,B T^2); Lp=scipy.signal.place_poles(F.T, C.T,
+    // exp([-150+100j,-150-100j,-200,-260]*T)).gain_matrix.T; inv(D) inv(F) Lp
     constexpr std::array L{0.3092656693626454, 51.61555689103484, -1659.8150771293806, -1482.9828335788309};
     placed<1> design{{std::complex{-150.0, 100.0}, {-150, -100}, {-200, 0}, {-260, 0}}};
     observer<1> ob{{y, {46_Hz}, design}, T};
@@ -100,8 +100,8 @@ TEST_CASE("harmonic_force_observer: the gain is that of scipy's pole placement")
     CHECK(ob.radius() == Approx(std::exp(-150 * T.value())).epsilon(1e-9));
 }
 TEST_CASE("harmonic_force_observer: the gain from noise is that of scipy's Riccati solution") {
-    // the same F; s=.25e-6/sqrt(12), Q=diag(0,0,1,1)*.5^2*T*(B T^2/s)^2, P=scipy.linalg.solve_discrete_are(F.T, C.T, Q, [[1]]),
-    // inv(D) P[:,:1]/(P[0,0]+1)
+    // the same F; s=.25e-6/sqrt(12), Q=diag(0,0,1,1)*.5^2*T*(B T^2/s)^2, P=scipy.linalg.solve_discrete_are(F.T,
+    // C.T, Q, [[1]]), inv(D) P[:,:1]/(P[0,0]+1)
     constexpr std::array K{0.7784274352029832, 1120.220211741371, 98946.84858317021, 29068.957079949563};
     using noisy = harmonic_force_observer<s::voltage, 1, expected_noise<s::voltage>>;
     noisy ob{{y, {46_Hz}, {0.25_um / std::sqrt(12.0), 0.5_V}}, T};
@@ -136,7 +136,8 @@ TEST_CASE("harmonic_force_observer: in the loop nothing but rounding is left of 
                  with = last_peak(errors(ob, 0, 0, push));
     CHECK(without > 5e-6);
     CHECK(with < 1e-10 * without);
-    // In frequency: u = wanted - Hz z - Hu u z^-1, so a force is multiplied by 1 + Hu z^-1 and what remains of the loop.
+    // In frequency: u = wanted - Hz z - Hu u z^-1, so a force is multiplied by 1 + Hu z^-1 and what remains of
+    // the loop.
     for (const frequency& f : two) {
         const auto hu = ob.response_to_command(f) * std::polar(1.0, -2 * pi * f.value() * T.value());
         CHECK(20 * std::log10(std::abs(1.0 + hu) + 1e-300) < -280);

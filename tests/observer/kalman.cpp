@@ -64,7 +64,8 @@ struct two_states {
 TEST_CASE("kalman: gain and deviations are those of scipy's Riccati solution") {
     // F=[[0,1,0],[0,-28.57,1/340],[0,0,0]], Qc=diag(0,0,20^2), van Loan's Phi, Qd over 0.5 ms;
     // states scaled by S=diag(1/s, T/s, T^2/(340 s)), s=.25e-6/sqrt(12):
-    // P=scipy.linalg.solve_discrete_are((S@Phi@inv(S)).T, [[1],[0],[0]], S@Qd@S, [[1]]); K=inv(S)@P[:,:1]/(P[0,0]+1)/s
+    // P=scipy.linalg.solve_discrete_are((S@Phi@inv(S)).T, [[1],[0],[0]], S@Qd@S, [[1]]);
+    // K=inv(S)@P[:,:1]/(P[0,0]+1)/s
     constexpr std::array K{0.2721735310252471, 86.27823279110281, 5286637.533312757};
     filter f{x_axis, T};
     f(1_m); // from rest at zero, the first reading moves every state by its gain

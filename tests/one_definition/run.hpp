@@ -4,8 +4,9 @@
 
 #include <array>
 
-/// Eight machines for a second, in the instruction set of whoever compiles run.hpp; one entry for each set. `through` are
-/// results of + - * / alone, `curved` of exp and sin too. `refused`: what a constructor says of a bad lane.
+/// Eight machines for a second, in the instruction set of whoever compiles run.hpp; one entry for each set.
+/// `through` are results of + - * / alone, `curved` of exp and sin too. `refused`: what a constructor says of a
+/// bad lane.
 struct result {
     std::array<double, 8> through, curved;
     quadrant::refused_parameter refused;

@@ -295,7 +295,8 @@ TEST_CASE("readers: the example programs say the same in both languages") {
         for (const move& m : moves) sum += m.path.length();
         return sum;
     };
-    // Length of r = 10 mm exp(cos t) - 20 mm cos 4t: the integral of hypot(r, r'), rectangles of a periodic function.
+    // Length of r = 10 mm exp(cos t) - 20 mm cos 4t: the integral of hypot(r, r'), rectangles of a periodic
+    // function.
     double length = 0;
     for (int i = 0; i < 5000; ++i) {
         const double t = 2 * pi_ * i / 5000, e = 0.01 * std::exp(std::cos(t));

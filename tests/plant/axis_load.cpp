@@ -61,7 +61,8 @@ struct machine {
         }
     }
 };
-/// Largest distance in x of 2 s at 100 mm/s over cogging of 10 N and 30 mm, free 340 kg, from a step of a microsecond;
+/// Largest distance in x of 2 s at 100 mm/s over cogging of 10 N and 30 mm, free 340 kg, from a step of a
+/// microsecond;
 /// per sample: the force at the sample held over the period. [m]
 double cogging_error(std::size_t substeps, bool per_sample) {
     const auto p = [](std::size_t n) {

@@ -123,7 +123,8 @@ TEST_CASE("ball_screw_drive: through a reversal it stops once, then leaves to th
 }
 TEST_CASE("ball_screw_drive: ten reversals in a second and 4 mm of way, no loop closed: right to 1.2 um with 4 "
           "sub-steps, 0.15 um with 40") {
-    // Reference: classical Runge-Kutta at 1 us between stops, its own law, the stop found by halving the last step.
+    // Reference: classical Runge-Kutta at 1 us between stops, its own law, the stop found by halving the last
+    // step.
     const auto torque = [](double t) {
         return 4.5 * std::sin(2 * std::numbers::pi * 5 * std::floor(t / 1e-3 + 1e-6) * 1e-3);
     };

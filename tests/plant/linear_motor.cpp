@@ -43,7 +43,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 } // namespace
 
 TEST_CASE("linear_motor: free motion is the exponential, for 0.4 s at 0.3 V, v to 0.012 mm/s and x to 4 um") {
-    // An implicit step of h is late by h/2 in the decay: at most h/(2 tau e) of the final 512 mm/s, 0.0118 mm/s.
+    // An implicit step of h is late by h/2 in the decay: at most h/(2 tau e) of the final 512 mm/s, 0.0118
+    // mm/s.
     auto p = x_axis;
     p.friction.coulomb = 0_N;
     motor m{p, Ts};

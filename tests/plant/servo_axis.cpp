@@ -143,7 +143,8 @@ TEST_CASE("servo_axis: a second mass moves the reading as the mode of flexible_m
     const double fine = 2e-5;
     const axis plant(p, fine);
     auto s = axis::state::at(0);
-    // Two masses on a spring, both modes exact: the free one at centre sqrt(M / M1), share mass / M1 [docs/derivations].
+    // Two masses on a spring, both modes exact: the free one at centre sqrt(M / M1), share mass / M1
+    // [docs/derivations].
     const double first = 80, whole = 100;
     flexible_modes<1> mode({.mass = quantity<si::mass>::from_value(whole),
                             .modes = {{{quantity<si::frequency>::from_value(50 * std::sqrt(whole / first)),

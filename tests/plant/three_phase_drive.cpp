@@ -71,7 +71,8 @@ TEST_CASE("three_phase_drive: magnets taken for elsewhere cost the cosine") {
 }
 TEST_CASE(
     "three_phase_drive: a sensor 3 % off makes ripple of twice the pole pair, an offset of once, as computed") {
-    // i_a = -I sin: read (1 + g) i_a, both PI see what they want, so i_q is off by g I/2 (1 - cos 2a) - g I/(2 sqrt 3) sin 2a.
+    // i_a = -I sin: read (1 + g) i_a, both PI see what they want, so i_q is off by g I/2 (1 - cos 2a) - g I/(2
+    // sqrt 3) sin 2a.
     auto p = stage();
     p.gain_error = 0.03;
     three_phase_drive<> drive(p, T);

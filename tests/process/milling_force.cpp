@@ -22,8 +22,8 @@ using four = milling_force<4>;
 const auto N_per_mm2 = 1e6 * 1_N / (1_m * 1_m);
 const auto N_per_mm = 1e3 * 1_N / 1_m;
 
-/// The real cut of [Jamaludin2008] Table 5.6: 16 mm, 4 edges, 0.1 mm a tooth, 4 mm deep, 1 mm wide, 5 mm/s, so 12.5
-/// turns a second; coefficients as for a hard aluminium.
+/// The real cut of [Jamaludin2008] Table 5.6: 16 mm, 4 edges, 0.1 mm a tooth, 4 mm deep, 1 mm wide, 5 mm/s, so
+/// 12.5 turns a second; coefficients as for a hard aluminium.
 const four::parameters contour{.spindle = 12.5_Hz,
                                .diameter = 16_mm,
                                .feed_per_tooth = 0.1_mm,
@@ -68,8 +68,8 @@ pair closed_form(const four::parameters& p, double from, double to) {
     };
     return {x(to) - x(from), y(to) - y(from)};
 }
-/// A cutter drawn edge by edge: radial places of all paths ever cut, no formula for the chip. Force at one moment, x along
-/// the feed; phi0 of edge 0.
+/// A cutter drawn edge by edge: radial places of all paths ever cut, no formula for the chip. Force at one
+/// moment, x along the feed; phi0 of edge 0.
 pair drawn(const four::parameters& p, double turns, double from, double to) {
     const double c = p.feed_per_tooth.value(), a = p.axial_depth.value(), e = p.runout.value();
     pair sum;

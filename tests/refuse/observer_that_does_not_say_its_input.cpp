@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// An observer of two inputs that does not say which command it is fed: this cycle's wish or the last one that acted.
+// An observer of two inputs that does not say which command it is fed: this cycle's wish or the last one that
+// acted.
 // MUST SAY: observes_disturbance
 // AT MOST: gcc 1900, clang 2900
 #include "quadrant/loop/milling_axis_boxes.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Boxes whose amplifier carries another signal than the velocity loop puts out, without a static_assert under them.
+// Boxes whose amplifier carries another signal than the velocity loop puts out, without a static_assert under
+// them.
 // MUST SAY: axis_boxes
 // MUST SAY: decltype (B::amplifier) | decltype(my_axis::amplifier)
 // AT MOST: gcc 1700, clang 1100

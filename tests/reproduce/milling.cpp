@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The combined loop on the milling table: what examples/05_milling_table.cpp shows, and the experiments cutting, robustness
-// and sensitivity.
+// The combined loop on the milling table: what examples/05_milling_table.cpp shows, and the experiments
+// cutting, robustness and sensitivity.
 #include "quadrant_reproduce/experiment/robustness.hpp"
 #include "quadrant_reproduce/experiment/sensitivity.hpp"
 

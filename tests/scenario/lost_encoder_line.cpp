@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// Situation: the encoder line breaks for milliseconds at 100 mm/s: readings that are no numbers, or stand still.
-// From: driving on without feedback (MaslowCNC/GroundControl #379); reset transients (PX4 #20449, field.md 6.14).
+// Situation: the encoder line breaks for milliseconds at 100 mm/s: readings that are no numbers, or stand
+// still.
+// From: driving on without feedback (MaslowCNC/GroundControl #379); reset transients (PX4 #20449, field.md
+// 6.14).
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/loop/cascade_p_pi.hpp>
@@ -92,7 +94,8 @@ TEST_CASE("lost encoder line: while there is no reading the last command is held
     CHECK_FALSE(b.motor.faulted()); // the machine was given numbers
 }
 TEST_CASE("lost encoder line: 5 ms on the last command cost less than 2 um, not a runaway") {
-    // The command is off by what the acceleration changes meanwhile: 1.1 m/s^3 for 5 ms is 0.02 um, and encoder counts.
+    // The command is off by what the acceleration changes meanwhile: 1.1 m/s^3 for 5 ms is 0.02 um, and encoder
+    // counts.
     bench b;
     const double before = std::abs(b.error());
     for (int k = 0; k < 10; ++k) b.step(no_reading);
@@ -124,7 +127,8 @@ TEST_CASE("lost encoder line: settled when the line is back, the axis goes on wi
 }
 TEST_CASE("lost encoder line: without settle one lost reading is a blow at the limit of the amplifier, and "
           "stays told") {
-    // The next difference spans two periods and reads as twice the speed: 0.1 m/s / 0.5 ms * 0.2345 V s^2/m = 47 V.
+    // The next difference spans two periods and reads as twice the speed: 0.1 m/s / 0.5 ms * 0.2345 V s^2/m =
+    // 47 V.
     bench b;
     b.step(no_reading);
     b.step(b.reading);

@@ -2,7 +2,8 @@
 // Situation: an axis reverses under dry friction and is late for a while: the quadrant glitch of a circle.
 // From: 0.17 mm of quadrant error, a friction compensation that did not act (SINUMERIK, field.md 6.17).
 //
-// The machine's friction is stribeck; the controller believes in one Coulomb level that is none of the machine's.
+// The machine's friction is stribeck; the controller believes in one Coulomb level that is none of the
+// machine's.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/loop/cascade_p_pi.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Situation: moves that ask for more than the amplifier has; meanwhile the velocity loop must not wind up.
-// From: an anti-windup switch that changed nothing (control_toolbox #38, #298), hunting (Tinymovr #166); field.md 6.13.
+// From: an anti-windup switch that changed nothing (control_toolbox #38, #298), hunting (Tinymovr #166);
+// field.md 6.13.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/loop/cascade_p_pi.hpp>
@@ -81,8 +82,8 @@ outcome to_and_fro(const AntiWindup& rule, quantity<si::electric_potential> limi
 const auto infinite = std::numeric_limits<double>::infinity() * 1_V;
 const back_calculation tracking{.tracking_time = 133_ms}; // gain over integral gain, [Astrom1995] ch. 3.5
 
-/// Pushed with 725 N up to the target, braked with 725 N from there: what a loop with no wound-up integral stays below.
-/// Friction is against the push and with the brake; viscous friction left out. 14.2 mm.
+/// Pushed with 725 N up to the target, braked with 725 N from there: what a loop with no wound-up integral
+/// stays below. Friction is against the push and with the brake; viscous friction left out. 14.2 mm.
 const double braking_at_the_target = 20 * (725.0 - 122) / (725 + 122);
 } // namespace
 
@@ -110,7 +111,8 @@ TEST_CASE("saturation: without a rule the axis is still pushed beyond the target
 }
 TEST_CASE(
     "saturation: two rules cost no more than a loop without an integral, the clamp up to its own charge") {
-    // The clamp lets the integral stand at the whole limit when braking should begin: late by its unloading, some ms.
+    // The clamp lets the integral stand at the whole limit when braking should begin: late by its unloading,
+    // some ms.
     const double none = to_and_fro(integral_clamp{}, amplifier, {}).overshoot[0];
     const double conditional = to_and_fro(conditional_integration{}).overshoot[0];
     const double tracked = to_and_fro(tracking).overshoot[0],
@@ -127,7 +129,8 @@ TEST_CASE("saturation: a shorter tracking time unwinds the integral beyond zero:
     CHECK(quick.settled > 1.5 * even.settled);
 }
 TEST_CASE("saturation: the loop learns of what feedforward took from the amplifier") {
-    // Pressed against a stop that takes any force: 1 um behind for ten seconds, with 90 % of the amplifier fed forward.
+    // Pressed against a stop that takes any force: 1 um behind for ten seconds, with 90 % of the amplifier fed
+    // forward.
     const auto charge = [](auto rule) {
         auto p = tuning;
         p.coulomb_feedforward = 0.45_V;

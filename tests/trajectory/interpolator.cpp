@@ -153,8 +153,8 @@ struct draw {
 
 TEST_CASE("interpolator: over thousands of random paths every axis stays within its limits and the path within "
           "its tolerance") {
-    // Bounds: 1e-9 of a limit for what is reported and for differences of the positions; eight positions in a third
-    // difference, each rounded to 1e-16 m or better, are taken off it as 1e-15 m; 1e-10 m for the place.
+    // Bounds: 1e-9 of a limit for what is reported and for differences of the positions; eight positions in a
+    // third difference, each rounded to 1e-16 m or better, are taken off it as 1e-15 m; 1e-10 m for the place.
     double speed = 0, feed = 0, along_path = 0, acceleration = 0, jerk = 0, first = 0, second = 0, third = 0,
            beyond = -1, off_v = 0, off_a = 0;
     std::size_t samples = 0, never_at_end = 0, missed_stops = 0, between_periods = 0;
@@ -204,7 +204,8 @@ TEST_CASE("interpolator: over thousands of random paths every axis stays within 
                 along_path =
                     std::max({along_path, magnitude(p.a) / path.acceleration, magnitude(p.j) / path.jerk});
             if (k == 0) continue;
-            // Moves that follow smoothly are one piece; the corners of a piece reach into it and into its neighbours.
+            // Moves that follow smoothly are one piece; the corners of a piece reach into it and into its
+            // neighbours.
             std::size_t low = m, high = m;
             while (low > 0 && smooth(moves, low - 1)) --low;
             while (high + 1 < moves.size() && smooth(moves, high)) ++high;

@@ -300,7 +300,8 @@ TEST_CASE("trial's controller: the notch is deepest where it is put, and leaves 
     };
     CHECK(gain(120) < 1e-3);
     CHECK(near(gain(5), 1, 1e-3));
-    // (s^2 + w^2) / (s^2 + damping w s + w^2) at the frequency that the bilinear form, true at 120 Hz, maps 150 Hz to
+    // (s^2 + w^2) / (s^2 + damping w s + w^2) at the frequency that the bilinear form, true at 120 Hz, maps 150
+    // Hz to
     const double w = 2 * pi * 120, s = w * std::tan(pi * 150 * 0.0005) / std::tan(pi * 120 * 0.0005);
     const std::complex<double> wanted = (w * w - s * s) / std::complex<double>(w * w - s * s, 0.2 * w * s);
     CHECK(near(gain(150), std::abs(wanted), 1e-3));
@@ -322,7 +323,8 @@ constexpr std::array constants{constant_at(joint::command),      constant_at(joi
                                constant_at(joint::force),        constant_at(joint::friction),
                                constant_at(joint::transmission), constant_at(joint::reading)};
 
-/// Last reading of a mass of 50 kg without a controller, 100 N/V, after 0.1 s with these constants at these joints.
+/// Last reading of a mass of 50 kg without a controller, 100 N/V, after 0.1 s with these constants at these
+/// joints.
 double reading_with(const std::vector<std::pair<joint, double>>& added, double coulomb = 0) {
     axis_truth a = free_mass();
     a.friction.coulomb = coulomb;

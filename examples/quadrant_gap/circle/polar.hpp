@@ -9,7 +9,8 @@ namespace quadrant_gap::circle {
 
 namespace detail {
 
-/// What is drawn of a run: an instrument's deviation is about the fitted centre, for where it stood is no error.
+/// What is drawn of a run: an instrument's deviation is about the fitted centre, for where it stood is no
+/// error.
 inline std::vector<double> drawn_deviation(const circle_run_result& k) {
     std::vector<double> out = k.run.deviation;
     if (k.run.source == circle_source::instrument)

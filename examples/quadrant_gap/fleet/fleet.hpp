@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-/// Many logs, each diagnosed by a process of its own: by one program (quadrant-gap fleet), or by one on every host
-/// (quadrant-gap-mpi), with the same code for a log and for what is still to do.
+/// Many logs, each diagnosed by a process of its own: by one program (quadrant-gap fleet), or by one on every
+/// host (quadrant-gap-mpi), with the same code for a log and for what is still to do.
 namespace quadrant_gap::fleet {
 
 struct options {
@@ -29,7 +29,8 @@ struct crew {
     virtual std::optional<std::pair<int, std::string>> hear() { return std::nullopt; } ///< from whom, what
 };
 
-/// Lists what is to do, has it done, writes the overview. Throws bad_input, also when a log has no diagnosis in the end.
+/// Lists what is to do, has it done, writes the overview. Throws bad_input, also when a log has no diagnosis in
+/// the end.
 void lead(options o, crew& others);
 
 /// The other end of a crew.

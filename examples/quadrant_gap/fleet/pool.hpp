@@ -5,8 +5,8 @@
 
 #include <memory>
 
-/// The unit of work, the same in one process and under MPI: a log is diagnosed by a process of its own, and its results
-/// get their names when they are whole.
+/// The unit of work, the same in one process and under MPI: a log is diagnosed by a process of its own, and its
+/// results get their names when they are whole.
 namespace quadrant_gap::fleet {
 
 struct workshop {

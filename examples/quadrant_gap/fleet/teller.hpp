@@ -9,7 +9,8 @@
 
 namespace quadrant_gap::fleet {
 
-/// One line on a terminal that is overwritten; into a file a line every half minute; with --verbose a line a log.
+/// One line on a terminal that is overwritten; into a file a line every half minute; with --verbose a line a
+/// log.
 class teller {
 public:
     explicit teller(const options& o) : quiet_(o.quiet), verbose_(o.verbose), live_(isatty(STDERR_FILENO)) {}

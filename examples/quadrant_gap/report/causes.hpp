@@ -12,8 +12,8 @@ inline std::string lines(const std::vector<std::string>& all) {
     return html;
 }
 
-/// The 95 % interval as a band on a track that begins at zero and reaches `to` at least; the value is the stroke in it.
-/// The ends of the track are written below it in `unit`.
+/// The 95 % interval as a band on a track that begins at zero and reaches `to` at least; the value is the
+/// stroke in it. The ends of the track are written below it in `unit`.
 inline std::string interval_bar(const estimate& e, std::string_view unit, double to = 0) {
     const double low = std::min(0.0, e.low), high = std::max(to, e.high);
     if (!(e.high > e.low) || !std::isfinite(high - low)) return "";

@@ -52,7 +52,8 @@ inline std::string json(const std::vector<double>& values, const std::vector<std
     return text + "]";
 }
 
-/// Medians of the series in 40 bins of x, of the samples that belong: {bin centres, medians of the first series, ...}.
+/// Medians of the series in 40 bins of x, of the samples that belong: {bin centres, medians of the first
+/// series, ...}.
 template <class Belongs>
 std::vector<std::vector<double>> binned_medians(const std::vector<double>& x, const std::vector<series>& all,
                                                 Belongs belongs) {

@@ -23,8 +23,8 @@ inline std::string chain_picture(const axis_result& a, const std::string& boxes,
         escape(a.name), text, boxes, capital(text));
 }
 
-/// The servo loop as boxes, narrow enough for a phone: the share of each box in it, and a box at fault marked by a thick
-/// frame, bold letters and an exclamation mark, so that it is seen without colour too.
+/// The servo loop as boxes, narrow enough for a phone: the share of each box in it, and a box at fault marked
+/// by a thick frame, bold letters and an exclamation mark, so that it is seen without colour too.
 inline std::string loop(const axis_result& a) {
     std::vector<std::string> guilty;
     const bool two_encoders =
@@ -64,8 +64,8 @@ inline std::string loop(const axis_result& a) {
         return chain_picture(
             a, boxes, guilty.empty() ? "no box stands out" : fmt::format("the gap sits in {}", listed(guilty)));
     }
-    // From the command down to the mechanics, one row each: a drive with loops of its own in front of the actuator, a
-    // transmission between two encoders behind it.
+    // From the command down to the mechanics, one row each: a drive with loops of its own in front of the
+    // actuator, a transmission between two encoders behind it.
     std::vector<std::string_view> column;
     if (a.driven) column.push_back("drive");
     column.push_back("actuator");

@@ -183,8 +183,9 @@ inline void insertion::change_controller() {
     parameters[std::string("controller.") + chosen.name] = *chosen.value;
 }
 
-/// Whether a machine with this kind of drive can have the effect. Behind a drive that closes loops of its own there is one axis, and
-/// its encoder is the motor's: no play, no error of a scale, no neighbour, and the limits and delays are the drive's.
+/// Whether a machine with this kind of drive can have the effect. Behind a drive that closes loops of its own
+/// there is one axis, and its encoder is the motor's: no play, no error of a scale, no neighbour, and the
+/// limits and delays are the drive's.
 inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::drive_kind kind) {
     using enum quadrant::diagnosis::drive_kind;
     if (kind == current) return e.box != "drive";

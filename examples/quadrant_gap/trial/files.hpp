@@ -14,7 +14,8 @@ namespace quadrant_gap::trial {
 
 using nlohmann::ordered_json;
 
-/// An axis whose drive closes loops of its own. Its controller, if there is one, is not described: the set-points are logged.
+/// An axis whose drive closes loops of its own. Its controller, if there is one, is not described: the
+/// set-points are logged.
 inline ordered_json driven_axis(const drawn_machine& m, const axis_truth& a, ordered_json plant) {
     const drive_truth& d = a.drive;
     const tolerances& t = m.tolerance;

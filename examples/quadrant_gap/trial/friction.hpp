@@ -29,7 +29,8 @@ inline double way_to_63_percent(const std::vector<double>& weights, const std::v
     return (low + high) / 2;
 }
 
-/// The part of friction with memory. `level` is what it slips at now, `stiff_level` what its stiffness belongs to.
+/// The part of friction with memory. `level` is what it slips at now, `stiff_level` what its stiffness belongs
+/// to.
 class contact {
 public:
     contact(const friction_truth& f, double mass)
@@ -92,7 +93,8 @@ private:
     std::vector<double> elements_;
 };
 
-/// What the contact slips at: Coulomb level along the travel and over time, by direction, and the Stribeck excess.
+/// What the contact slips at: Coulomb level along the travel and over time, by direction, and the Stribeck
+/// excess.
 inline double slip_level(const friction_truth& f, double x, double v, double t) {
     double level = f.coulomb * (1 + at(f.along, x));
     if (f.drift != 0) level *= 1 + f.drift * (1 - std::exp(-t / f.drift_time));

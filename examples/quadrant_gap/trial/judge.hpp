@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-/// What was said of one machine beside what is true of it, judged as gap/check.py judges. Pure functions of two files.
+/// What was said of one machine beside what is true of it, judged as gap/check.py judges. Pure functions of two
+/// files.
 namespace quadrant_gap::trial {
 
 using nlohmann::ordered_json;
@@ -182,8 +183,8 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
     return j;
 }
 
-/// How far the gap in force shrinks on another log of another motion: forecast from its reference, and achieved on what the
-/// machine recorded.
+/// How far the gap in force shrinks on another log of another motion: forecast from its reference, and achieved
+/// on what the machine recorded.
 struct shrink_pair {
     double forecast = 0, achieved = 0;
 };

@@ -28,15 +28,16 @@ inline std::optional<logs> logs_named(std::string_view name) {
     return static_cast<logs>(found - names_of_logs.begin());
 }
 
-/// Whether a log of this kind holds anything of an effect: behind the amplifier nothing is seen of what acts on the
-/// command, and without reference or asked command nothing of the controller.
+/// Whether a log of this kind holds anything of an effect: behind the amplifier nothing is seen of what acts on
+/// the command, and without reference or asked command nothing of the controller.
 inline bool shows(logs kind, const quadrant::diagnosis::effect& e) {
     const bool controller = e.box == "controller";
     if (kind == logs::measured) return !controller && e.joins != quadrant::diagnosis::joint::command;
     return kind != logs::no_reference || !controller;
 }
 
-/// Counts of 1 to 20 um: the gains come down until one count moves the command by at most a twentieth of its range.
+/// Counts of 1 to 20 um: the gains come down until one count moves the command by at most a twentieth of its
+/// range.
 inline void make_coarse(axis_truth& a, double period, dice& random) {
     controller_truth& c = a.controller;
     a.encoder.resolution = random.one_of(std::vector<double>{1e-6, 2.5e-6, 5e-6, 1e-5, 2e-5});

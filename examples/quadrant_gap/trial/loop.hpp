@@ -108,7 +108,8 @@ inline axis_truth ideal(axis_truth a) {
 
 namespace detail {
 
-/// What a drive with loops of its own gets in row k: the reference, or for a velocity drive the volts of a P loop with velocity feedforward.
+/// What a drive with loops of its own gets in row k: the reference, or for a velocity drive the volts of a P
+/// loop with velocity feedforward.
 inline double set_point(const axis_truth& a, const std::vector<double>& reference, std::size_t k, double y,
                         double period) {
     if (a.drive.kind != drive_truth::drive_kind::velocity) return reference[k];
@@ -119,8 +120,8 @@ inline double set_point(const axis_truth& a, const std::vector<double>& referenc
 
 } // namespace detail
 
-/// The axes of a machine under their references, at least 20 fine steps a period and none above 25 us. A run that leaves
-/// the travel has a NaN as its last position.
+/// The axes of a machine under their references, at least 20 fine steps a period and none above 25 us. A run
+/// that leaves the travel has a NaN as its last position.
 inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                                     const std::vector<std::vector<double>>& references, double period,
                                     std::uint64_t seed) {

@@ -11,7 +11,8 @@
 /// diagnosis but the laws of effects that this simulator has no law of its own for.
 namespace quadrant_gap::trial {
 
-/// A force, a gain or an error that repeats along the travel: sum of size[i] sin(2 pi (i + 1) x / period + phase[i]).
+/// A force, a gain or an error that repeats along the travel: sum of size[i] sin(2 pi (i + 1) x / period +
+/// phase[i]).
 struct wave {
     double period = 1;
     std::vector<double> size{}, phase{};

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-/// Motions as people record them on a machine: strokes, reversals, sinusoids, a multi-sine, rest; or one slow stroke only.
+/// Motions as people record them on a machine: strokes, reversals, sinusoids, a multi-sine, rest; or one slow
+/// stroke only.
 namespace quadrant_gap::trial {
 
 struct motion_limits {

@@ -6,11 +6,12 @@
 #include <array>
 #include <string>
 
-/// Which machines a trial holds: kinds in fixed shares, effects in turn, so that a population of any size is balanced.
+/// Which machines a trial holds: kinds in fixed shares, effects in turn, so that a population of any size is
+/// balanced.
 namespace quadrant_gap::trial {
 
-/// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format), or with drives that close
-/// loops of their own.
+/// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format), or
+/// with drives that close loops of their own.
 enum class population { current, velocity_p, velocity_pi, position, position_servo };
 inline constexpr std::array<const char*, 5> populations{"current", "velocity_p", "velocity_pi", "position",
                                                         "position_servo"};
@@ -65,15 +66,16 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
     return a == b;
 }
 
-/// Names that are one model on any motion (gap/FORMAT.md): with one of them out of the candidates the other is no lie.
+/// Names that are one model on any motion (gap/FORMAT.md): with one of them out of the candidates the other is
+/// no lie.
 inline bool has_a_twin(std::string_view effect) {
     return effect == "mass" || effect == "force_constant" || effect == "constant_force" ||
            effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain";
 }
 
-/// Of every 20 machines: 6 without an effect (one with slow strokes only), 6 with one, 3 with two, 2 with something that is in no
-/// list, 2 with an effect that the machine file excludes from the candidates, 1 with slow strokes only. One in ten has two axes, and
-/// all with cross-coupling.
+/// Of every 20 machines: 6 without an effect (one with slow strokes only), 6 with one, 3 with two, 2 with
+/// something that is in no list, 2 with an effect that the machine file excludes from the candidates, 1 with
+/// slow strokes only. One in ten has two axes, and all with cross-coupling.
 inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, population of = population::current,
                                  logs how = logs::plain) {
     using enum kind;

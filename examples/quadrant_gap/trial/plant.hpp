@@ -6,8 +6,8 @@
 /// Actuator and mechanics of the trial's machines, stepped much finer than the servo period.
 namespace quadrant_gap::trial {
 
-/// From commands to force: loss, delay, hold, dead zone, limits and lag. Events act at their own instant, also between two
-/// fine steps.
+/// From commands to force: loss, delay, hold, dead zone, limits and lag. Events act at their own instant, also
+/// between two fine steps.
 class actuator {
 public:
     actuator(const actuator_truth& a, double period, dice random) : a_(a), period_(period), random_(random) {}
@@ -105,7 +105,8 @@ private:
     std::vector<double> wander_;
 };
 
-/// The moving mass: half a step of way, the forces there, half a step of way. Second order, and keeps the energy of a mode.
+/// The moving mass: half a step of way, the forces there, half a step of way. Second order, and keeps the
+/// energy of a mode.
 class mechanics {
 public:
     mechanics(const axis_truth& a, double seconds)

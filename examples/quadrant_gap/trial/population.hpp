@@ -2,12 +2,14 @@
 #pragma once
 #include "gap_meter.hpp"
 
-/// One machine of the trial: drawn, with its effects put in at a size measured against what its tolerances alone can do.
+/// One machine of the trial: drawn, with its effects put in at a size measured against what its tolerances
+/// alone can do.
 namespace quadrant_gap::trial {
 
 namespace detail {
 
-/// Puts an effect into the machine at the amplitude whose own gap is `target` clouds, or as near as its range allows.
+/// Puts an effect into the machine at the amplitude whose own gap is `target` clouds, or as near as its range
+/// allows.
 template <class Into>
 void put_in(drawn_machine& m, const std::string& name, double low, double high, Into&& into, double target,
             std::uint64_t seed) {

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-/// Random numbers that are the same with every standard library: the engine is the standard's, the distributions are ours.
+/// Random numbers that are the same with every standard library: the engine is the standard's, the
+/// distributions are ours.
 namespace quadrant_gap::trial {
 
 class dice {

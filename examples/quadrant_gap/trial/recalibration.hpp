@@ -7,15 +7,17 @@
 
 namespace quadrant_gap::trial {
 
-/// What a probability said should have been: logit(true) = offset + slope logit(said) [Cox1958]. Slope 1 and offset 0: calibrated.
+/// What a probability said should have been: logit(true) = offset + slope logit(said) [Cox1958]. Slope 1 and
+/// offset 0: calibrated.
 /// Slope below 1: too sure of itself. A positive offset: too modest on the whole.
 struct recalibration {
     double slope = 1, offset = 0;
     std::pair<double, double> slope_95{}, offset_95{};
 };
 
-/// The most probable line with a normal prior of width 1 about (1, 0), which keeps it finite when everything was right; intervals from
-/// the curvature there. Newton's iteration with halved steps; the objective is convex.
+/// The most probable line with a normal prior of width 1 about (1, 0), which keeps it finite when everything
+/// was right; intervals from the curvature there. Newton's iteration with halved steps; the objective is
+/// convex.
 inline recalibration recalibrate(const std::vector<std::pair<double, bool>>& said) {
     const auto logit = [](double p) {
         const double safe = std::clamp(p, 1e-6, 1 - 1e-6);

@@ -7,8 +7,8 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <map>
 
-/// From judgements to the figures of a trial, as the JSON that --json writes. Intervals of shares are those of Clopper and
-/// Pearson.
+/// From judgements to the figures of a trial, as the JSON that --json writes. Intervals of shares are those of
+/// Clopper and Pearson.
 namespace quadrant_gap::trial {
 
 struct judged_machine {
@@ -18,8 +18,8 @@ struct judged_machine {
 
 namespace detail {
 
-/// In double throughout: Boost.Math's long double tables are filled when a program starts, and valgrind, which has no long double,
-/// ends it there.
+/// In double throughout: Boost.Math's long double tables are filled when a program starts, and valgrind, which
+/// has no long double, ends it there.
 using binomial = boost::math::binomial_distribution<
     double, boost::math::policies::policy<boost::math::policies::promote_double<false>>>;
 

@@ -7,8 +7,8 @@
 
 namespace quadrant_reproduce {
 
-/// Both axes along a circle of 30 mm at 100 mm/s: half a turn to get going, one and a half turns at speed; the middle turn is
-/// judged. Radii are those of the axes, not of their encoders.
+/// Both axes along a circle of 30 mm at 100 mm/s: half a turn to get going, one and a half turns at speed; the
+/// middle turn is judged. Radii are those of the axes, not of their encoders.
 template <class Compensation, class Observer>
 outcome circle_case(const std::string& id, const std::string& name) {
     using namespace quadrant;

@@ -16,7 +16,8 @@ inline row radial_row(const std::string& id, const std::string& quantity, const 
     return {id, quantity, "um", found.rms, {}, {}, {}, note};
 }
 
-/// Amplitudes of the radial error up to 400 Hz, under a Hann window over all turns that count, one line for each of theirs.
+/// Amplitudes of the radial error up to 400 Hz, under a Hann window over all turns that count, one line for
+/// each of theirs.
 inline line radial_spectrum(const std::string& name, const std::vector<double>& radial) {
     line out{.name = name, .x = {}, .y = {}};
     const std::size_t n = radial.size();

@@ -10,7 +10,8 @@
 
 namespace quadrant_reproduce {
 
-/// Amplitude [um] of the error that a sinusoidal push of 1 V leaves on the resting, linear axis; nothing when it diverges.
+/// Amplitude [um] of the error that a sinusoidal push of 1 V leaves on the resting, linear axis; nothing when
+/// it diverges.
 template <class Observer>
 std::optional<double> error_under_push(const thesis::axis& a, typename Observer::box::parameters observer,
                                        double hertz) {

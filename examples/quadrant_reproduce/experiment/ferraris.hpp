@@ -16,8 +16,8 @@ namespace quadrant_reproduce {
 /// What Appendix B gives for the sensor [m/(V s^2)], [m/s^2].
 inline constexpr double ferraris_gain = 32.98, ferraris_offset = -8.58e-3;
 
-/// Appendix B: an ideal sensor of the printed gain and offset on a table that moves as a sinusoid, read with noise, calibrated by
-/// least squares against the encoder of 0.25 um.
+/// Appendix B: an ideal sensor of the printed gain and offset on a table that moves as a sinusoid, read with
+/// noise, calibrated by least squares against the encoder of 0.25 um.
 inline outcome ferraris_calibration_case(const std::string& id) {
     using namespace quadrant;
     using namespace quadrant::literals;

@@ -91,7 +91,8 @@ inline experiment friction() {
     const auto of = [](const axis& a, const char* what) {
         return std::string("thesis.friction.") + a.name + what;
     };
-    // Simulated: Table 4.2, measured: Table 4.4 [Jamaludin2008]; reference: shared/reference/thesis.md, "Friction".
+    // Simulated: Table 4.2, measured: Table 4.4 [Jamaludin2008]; reference: shared/reference/thesis.md,
+    // "Friction".
     experiment e{
         "Friction at reversals, without observer",
         "[Jamaludin2008] eqs. (3.5-3.8), section 4.2, Tables 4.1-4.4",

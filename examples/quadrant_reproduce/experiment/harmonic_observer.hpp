@@ -122,7 +122,8 @@ line switched_on(const thesis::push& p, const typename thesis::by_harmonics<Coun
     return out;
 }
 
-/// Figs. D.6 and D.7 (a frequency that the observer does not know), D.9 (at rest), D.10 and D.11 (tracking), D.13 (switching on).
+/// Figs. D.6 and D.7 (a frequency that the observer does not know), D.9 (at rest), D.10 and D.11 (tracking),
+/// D.13 (switching on).
 inline outcome harmonic_runs(const std::string& id) {
     using quadrant::analysis::hertz;
     outcome out;

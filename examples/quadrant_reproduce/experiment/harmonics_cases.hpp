@@ -22,7 +22,8 @@ inline line last_of(const std::string& name, const thesis::push_result& r, const
     return out;
 }
 
-/// Fig. 5.7: both axes along the circle, GMS friction and the inverse model fed forward, without and with observer.
+/// Fig. 5.7: both axes along the circle, GMS friction and the inverse model fed forward, without and with
+/// observer.
 inline outcome harmonics_circle(const std::string& id) {
     using namespace thesis;
     const auto off = thesis::mill<configuration<gms_model, no_observer, no_memory>>();
@@ -46,7 +47,8 @@ inline outcome harmonics_circle(const std::string& id) {
     return out;
 }
 
-/// Figs. 5.23 and 5.24: GMS friction, its feedforward and the observer, along the sinusoid of 30 mm; without and with the memory.
+/// Figs. 5.23 and 5.24: GMS friction, its feedforward and the observer, along the sinusoid of 30 mm; without
+/// and with the memory.
 inline outcome harmonics_memory(const std::string& id, const thesis::axis& a) {
     using namespace thesis;
     outcome out;

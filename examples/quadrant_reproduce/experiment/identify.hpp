@@ -15,12 +15,13 @@
 #include <string>
 #include <vector>
 
-/// The identification of [Jamaludin2008] eqs. (3.5), (3.9) on a simulated axis: runs at constant speeds, two slow sinusoids, and
-/// what the procedures of `quadrant::analysis` make of the logs, beside what was simulated.
+/// The identification of [Jamaludin2008] eqs. (3.5), (3.9) on a simulated axis: runs at constant speeds, two
+/// slow sinusoids, and what the procedures of `quadrant::analysis` make of the logs, beside what was simulated.
 namespace thesis::identification {
 
-/// A simulated axis on Generalized Maxwell-slip friction in the thesis' cascade, without friction feedforward. It has an
-/// encoder that counts and jitters, a command that is noisy, and a DAC; the controller's plant is 2 % off.
+/// A simulated axis on Generalized Maxwell-slip friction in the thesis' cascade, without friction feedforward.
+/// It has an encoder that counts and jitters, a command that is noisy, and a DAC; the controller's plant is 2 %
+/// off.
 class rig {
 public:
     using motor = linear_motor<maxwell_slip<4>>;
@@ -128,8 +129,8 @@ struct findings {
     analysis::friction_map map;
 };
 
-/// The whole of it: friction map at the thesis' 17 speeds, then the virgin curve with the level that the map gave, then the
-/// elements.
+/// The whole of it: friction map at the thesis' 17 speeds, then the virgin curve with the level that the map
+/// gave, then the elements.
 inline findings identify(const axis& a, unsigned seed = 1) {
     findings out{{}, analysis::map_friction<>(constant_speeds(a, seed), period, a.kf)};
     const auto level = analysis::fit_stribeck(out.map);

@@ -7,7 +7,8 @@
 
 namespace thesis {
 
-/// The loop around a plant with the disturbance observer of eqs. (4.6), (4.16): Q of order 2, Gn the axis without delay.
+/// The loop around a plant with the disturbance observer of eqs. (4.6), (4.16): Q of order 2, Gn the axis
+/// without delay.
 template <analysis::frequency_response Plant> auto loop_with_observer(const Plant& plant, const axis& a) {
     const analysis::q_model<2, 0> q{a.corner};
     analysis::axis_model<> nominal = model_of(a);
@@ -26,7 +27,8 @@ template <analysis::frequency_response Plant> loop_dob with_observer(const Plant
 }
 inline loop_dob with_observer(const axis& a) { return with_observer(model_of(a), a); }
 
-/// The rule |Q| <= 1/|Delta|, eq. (4.19), up to 900 Hz: what the thesis' Q leaves of it on a plant, and how far it could go.
+/// The rule |Q| <= 1/|Delta|, eq. (4.19), up to 900 Hz: what the thesis' Q leaves of it on a plant, and how far
+/// it could go.
 struct q_allowed {
     analysis::q_verdict of_thesis; ///< largest |Q Delta| with its corner; above 1 the rule is broken
     frequency highest;             ///< corner of Q with |Q Delta| = 1

@@ -8,8 +8,8 @@
 
 namespace thesis {
 
-/// What the thesis says of an axis' loops, in its units; NaN where there is none. Of several crossings the margin nearest
-/// to -1. Bandwidths are those of eq. (2.33), of the velocity loop those of 1/(1 + L_v).
+/// What the thesis says of an axis' loops, in its units; NaN where there is none. Of several crossings the
+/// margin nearest to -1. Bandwidths are those of eq. (2.33), of the velocity loop those of 1/(1 + L_v).
 struct loop_figures {
     double velocity_gain_margin, velocity_gain_margin_at;   ///< [dB], [Hz]
     double velocity_phase_margin, velocity_phase_margin_at; ///< [deg], [Hz]

@@ -10,8 +10,9 @@
 #include <unsupported/Eigen/NumericalDiff>
 #include <vector>
 
-/// thesis.loop_modes: the measured FRF is not published, margins and bandwidths on it are. What one base mode and one
-/// structural mode must be for the model to have them, by least squares within what the thesis says of the modes.
+/// thesis.loop_modes: the measured FRF is not published, margins and bandwidths on it are. What one base mode
+/// and one structural mode must be for the model to have them, by least squares within what the thesis says of
+/// the modes.
 namespace thesis {
 
 /// Published on the measured FRF: Table 2.3 and chapter 2.
@@ -34,7 +35,8 @@ struct mode_fit {
 
 namespace detail {
 
-/// Relative distance of ten loop figures and the stiffness to the published ones, by six numbers that run over all reals
+/// Relative distance of ten loop figures and the stiffness to the published ones, by six numbers that run over
+/// all reals
 /// and stay within bounds: a sine between them.
 struct mode_distance {
     using Scalar = double;
@@ -53,7 +55,8 @@ struct mode_distance {
         const auto within = [&](int i, double low, double high) {
             return low + (high - low) * 0.5 * (1 + std::sin(u[i]));
         };
-        // Base: the middle of its pair within 3 Hz, at most half as heavy as the slide, damped by bolts and ground.
+        // Base: the middle of its pair within 3 Hz, at most half as heavy as the slide, damped by bolts and
+        // ground.
         const double share = within(2, 0.02, 0.5), middle = within(0, -3, 3) + wanted.base.value();
         const double from = wanted.structural_from.value(), to = wanted.structural_to.value();
         return {{analysis::hertz(middle * std::pow(1 + share, 0.25)),
@@ -89,8 +92,9 @@ struct mode_distance {
 
 } // namespace detail
 
-/// Levenberg-Marquardt from 32 starts (margins jump from one crossing to another, so there are several valleys), the best
-/// of them. Deterministic, two seconds an axis. The figures hardly know how sharp the structural mode is and where exactly it
+/// Levenberg-Marquardt from 32 starts (margins jump from one crossing to another, so there are several
+/// valleys), the best of them. Deterministic, two seconds an axis. The figures hardly know how sharp the
+/// structural mode is and where exactly it
 /// lies: on y, 302 Hz with a damping of 0.003 is as good as 308 Hz.
 inline mode_fit fit_modes_to(const axis& a, const published_loop& wanted) {
     const detail::mode_distance distance{a, wanted};

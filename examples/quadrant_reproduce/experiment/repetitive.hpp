@@ -9,7 +9,8 @@
 
 namespace quadrant_reproduce {
 
-/// The memory loop on the x axis: what it gains at the harmonics when the period is 1 % off, what it costs between them.
+/// The memory loop on the x axis: what it gains at the harmonics when the period is 1 % off, what it costs
+/// between them.
 inline outcome repetitive_case() {
     namespace qa = quadrant::analysis;
     using namespace quadrant::literals;

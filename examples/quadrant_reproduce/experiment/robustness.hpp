@@ -15,7 +15,8 @@ struct wrong_table {
     const char* note = "";
 };
 
-/// Largest |Q W (1 - L T)| of both axes when the mass is not what L was made for; below 1 the memory converges for every cycle.
+/// Largest |Q W (1 - L T)| of both axes when the mass is not what L was made for; below 1 the memory converges
+/// for every cycle.
 inline double learning_mismatch(const thesis::cut& c) {
     namespace qa = quadrant::analysis;
     double worst = 0;
@@ -35,7 +36,8 @@ template <class Configuration> thesis::circle_result mill(const wrong_table& tab
                        : thesis::mill<Configuration>(table.cut);
 }
 
-/// Rms of (iii) while one property of the machine runs over its range; where it is stopped the line is interrupted.
+/// Rms of (iii) while one property of the machine runs over its range; where it is stopped the line is
+/// interrupted.
 template <class Change>
 picture sweep(const std::string& title, const std::string& label, double from, double to, int steps,
               Change&& change) {

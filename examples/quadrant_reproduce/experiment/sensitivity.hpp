@@ -21,7 +21,8 @@ inline std::string two_digits(double value) {
     return quadrant::detail::shortest(std::round(value * 100) / 100);
 }
 
-/// The least size that leaves `wanted` um: upwards in equal ratios until it is passed, then by bisection to 1 %.
+/// The least size that leaves `wanted` um: upwards in equal ratios until it is passed, then by bisection to 1
+/// %.
 inline outcome sensitivity_case(const std::string& id, const suspect& s, double wanted = 10) {
     constexpr int tries = 12;
     line curve{.name = s.name, .x = {}, .y = {}};

@@ -51,7 +51,8 @@ inline double stage_force_at(double speed) {
     return sum / count;
 }
 
-/// Fig. 4: forces at constant speeds, and the four static parameters found from them by the genetic algorithm, as the source does.
+/// Fig. 4: forces at constant speeds, and the four static parameters found from them by the genetic algorithm,
+/// as the source does.
 inline outcome stage_friction_case(const std::string& id) {
     using namespace quadrant::analysis;
     static constexpr std::array speeds{2e-4,   5e-4, 1e-3, 2e-3, 4e-3, 6e-3, 1e-2,

@@ -14,13 +14,13 @@
 
 namespace quadrant_reproduce {
 
-/// What is tuned: weights of the law (only their ratios matter, so the increment stands), drift of the filter, and how much
-/// of the believed dry friction is fed forward.
+/// What is tuned: weights of the law (only their ratios matter, so the increment stands), drift of the filter,
+/// and how much of the believed dry friction is fed forward.
 inline const std::vector<quadrant::analysis::gene> stage_genes{
     {1e-6, 100e-6, true}, {0.3e-3, 30e-3, true}, {3, 300, true}, {0.3, 1.7}};
 
-/// The source's fitness (9) as a cost: 500 um in 0.2 s, and 0.1 s at the target. Weights ours: 2 um on the way or after it and
-/// 2 A cost the same. Where the counts of the encoder lie makes it rough: so would a machine.
+/// The source's fitness (9) as a cost: 500 um in 0.2 s, and 0.1 s at the target. Weights ours: 2 um on the way
+/// or after it and 2 A cost the same. Where the counts of the encoder lie makes it rough: so would a machine.
 inline double stage_cost(const std::vector<double>& genes, double heavier = 0) {
     stage::machine is = stage::real, thought = stage::believed;
     is.mass *= 1 + heavier;
@@ -37,8 +37,8 @@ inline double stage_cost(const std::vector<double>& genes, double heavier = 0) {
     }
     return cost.value();
 }
-/// The machines that are searched on, by how much heavier each is, spread evenly over +-1 %: of one alone a search learns where the
-/// counts of its encoder happen to lie.
+/// The machines that are searched on, by how much heavier each is, spread evenly over +-1 %: of one alone a
+/// search learns where the counts of its encoder happen to lie.
 inline constexpr std::array stage_searched{0.0, -0.0076, 0.0047, -0.0029, 0.0094};
 inline double stage_searched_cost(const std::vector<double>& genes) {
     double sum = 0;

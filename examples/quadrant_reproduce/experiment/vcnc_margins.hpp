@@ -19,7 +19,8 @@ outcome vcnc_margins_case(const std::string& id, const std::string& name, const 
     const frequency nyquist = 0.5 / vcnc::period;
     const band searched{quadrant::analysis::hertz(1), 0.999 * nyquist};
     const auto found = quadrant::analysis::margins(open, searched);
-    // By how much the gain may rise. At half the sampling rate the response is real: the last place where it can fail.
+    // By how much the gain may rise. At half the sampling rate the response is real: the last place where it
+    // can fail.
     double gain = -quadrant::analysis::decibel(std::abs(loop.open(nyquist)));
     std::string where = "where the phase is -180 degrees for the last time, at half the sampling rate";
     for (const auto& m : found.gain_crossings)

@@ -10,7 +10,8 @@
 #include <numbers>
 #include <vector>
 
-/// A run along a circle, its one whole turn, and the circles that lie best in it: what `circular_test` is made of.
+/// A run along a circle, its one whole turn, and the circles that lie best in it: what `circular_test` is made
+/// of.
 namespace quadrant::analysis {
 
 /// One run along a circle, both encoders sampled together at constant feed.

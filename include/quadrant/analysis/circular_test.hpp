@@ -35,8 +35,8 @@ struct circular_options {
     double search = 25; ///< degrees on either side of a reversal in which its spike is looked for; 1 ... 40
 };
 
-/// Circular test from feedback signals after ISO 230-4 (its annex on feedback): one run, one turn, no compensation of
-/// set-up or temperature; the encoders see neither squareness nor anything behind them.
+/// Circular test from feedback signals after ISO 230-4 (its annex on feedback): one run, one turn, no
+/// compensation of set-up or temperature; the encoders see neither squareness nor anything behind them.
 ///   G  circular error: least distance of two concentric circles that hold the path
 ///   F  radial deviation: path minus nominal radius, positive outwards
 ///   spike: deviation at a reversal minus its smooth part, harmonics 0 to 2 of the turn fitted away from reversals
@@ -124,7 +124,8 @@ inline circular_result circular_test(const circular_path& path, const circular_o
     return out;
 }
 
-/// G(b), bidirectional circular error: least distance of two concentric circles that hold both runs, one each way round.
+/// G(b), bidirectional circular error: least distance of two concentric circles that hold both runs, one each
+/// way round.
 inline displacement bidirectional_error(const circular_path& one, const circular_path& other,
                                         const circle& nominal) {
     auto both = detail::one_turn(one, nominal);

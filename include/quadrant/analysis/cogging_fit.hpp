@@ -18,9 +18,9 @@ struct cogging_record {
     int direction;
 };
 
-/// The least squares of `identify_cogging`: unknowns offset, Coulomb level, viscous slope if velocities are there,
-/// cosine and sine of each order, then of each friction order times the direction. Normal equations: with the pitch
-/// covered the harmonics are nearly orthogonal.
+/// The least squares of `identify_cogging`: unknowns offset, Coulomb level, viscous slope if velocities are
+/// there, cosine and sine of each order, then of each friction order times the direction. Normal equations:
+/// with the pitch covered the harmonics are nearly orthogonal.
 class cogging_fit {
 public:
     struct noise {
@@ -166,8 +166,8 @@ private:
             std::copy(e.begin(), e.end(), inverse_.begin() + std::ptrdiff_t(i * size_));
         }
     }
-    /// Periodogram of what is left of a run, at waves per pitch that are independent over its length; its sum of
-    /// squares.
+    /// Periodogram of what is left of a run, at waves per pitch that are independent over its length; its sum
+    /// of squares.
     double look_at_residual(const cogging_record& r) {
         const auto [low, high] = std::minmax_element(r.turns.begin(), r.turns.end());
         const double passes = std::max(*high - *low, 0.1);

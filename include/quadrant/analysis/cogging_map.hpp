@@ -96,16 +96,17 @@ template <signal_tag Out, signal_tag In = signal::position> struct cogging_ident
     }
 };
 
-/// Finds the cogging of an axis from slow runs both ways, by least squares over all harmonics up to `highest` at once:
+/// Finds the cogging of an axis from slow runs both ways, by least squares over all harmonics up to `highest`
+/// at once:
 ///   command = offset + coulomb direction + viscous velocity + sum of harmonics of the pitch
-/// Friction changes sign with the direction and the map does not, so that it drops out of the map; a lag of the loop
-/// turns the phase one way and the other, and drops out too. Nothing leaks from harmonics that are not kept into those
-/// that are. Intervals of 95 % from the spectrum of the residual around each harmonic, so that correlated residuals
-/// count for what they are; five harmonics on either side share one level of noise.
-/// Range: slow: highest times speed over pitch well below the bandwidth of the velocity loop, and no stick-slip. More
-/// passes, shorter intervals; one each way is the least.
-/// Throws "identify_cogging.<field> = ...: must ..." when a direction is missing, when a direction leaves a gap in the
-/// pitch that is longer than half the shortest wave, for samples that are not finite, for options.
+/// Friction changes sign with the direction and the map does not, so that it drops out of the map; a lag of the
+/// loop turns the phase one way and the other, and drops out too. Nothing leaks from harmonics that are not
+/// kept into those that are. Intervals of 95 % from the spectrum of the residual around each harmonic, so that
+/// correlated residuals count for what they are; five harmonics on either side share one level of noise.
+/// Range: slow: highest times speed over pitch well below the bandwidth of the velocity loop, and no
+/// stick-slip. More passes, shorter intervals; one each way is the least.
+/// Throws "identify_cogging.<field> = ...: must ..." when a direction is missing, when a direction leaves a gap
+/// in the pitch that is longer than half the shortest wave, for samples that are not finite, for options.
 template <signal_tag Out, signal_tag In = signal::position>
 cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<Out, In>>& runs,
                                                  const cogging_options<In>& options) {

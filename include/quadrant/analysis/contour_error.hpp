@@ -12,8 +12,8 @@ struct place {
     displacement x{}, y{};
 };
 
-/// How far a place is from a path. Sign: positive to the left of the direction of travel; on a circle that is driven
-/// counterclockwise to the inside.
+/// How far a place is from a path. Sign: positive to the left of the direction of travel; on a circle that is
+/// driven counterclockwise to the inside.
 struct contour_deviation {
     displacement error;     ///< signed distance to the nearest place of the path
     displacement travelled; ///< of that place, along the path from its start
@@ -47,9 +47,10 @@ struct circle_path {
 
 /// Any path, as places along it; straight between them, so on a curve of radius R sampled every s its error is
 /// within s^2/(8 R) of that to the curve.
-/// operator() follows: it looks within `window` along the path to either side of where the last sample was nearest (so at a
-/// crossing it stays on its branch), the first time along all of it, and again when the end of the window or of the path is
-/// nearest (a closed path may be driven on). Beyond an end: the distance to the end.
+/// operator() follows: it looks within `window` along the path to either side of where the last sample was
+/// nearest (so at a crossing it stays on its branch), the first time along all of it, and again when the end of
+/// the window or of the path is nearest (a closed path may be driven on). Beyond an end: the distance to the
+/// end.
 /// State: where it was; `reset` forgets. Cost: the segments in the window; allocates at construction only.
 /// Throws for fewer than two places, two neighbours at the same place, what is not finite, window not above 0.
 class sampled_path {
@@ -108,7 +109,8 @@ private:
         }
         const std::size_t corner = best.segment + (best.share >= 1);
         if ((best.share >= 1 || best.share <= 0) && corner > 0 && corner + 1 < places_.size()) {
-            // Outside of a corner, which may be on either side of one of its legs: the side that it does not turn to.
+            // Outside of a corner, which may be on either side of one of its legs: the side that it does not
+            // turn to.
             const double ax = (places_[corner].x - places_[corner - 1].x).value(),
                          ay = (places_[corner].y - places_[corner - 1].y).value(),
                          bx = (places_[corner + 1].x - places_[corner].x).value(),
@@ -126,12 +128,13 @@ private:
     bool known_ = false;
 };
 
-/// What a controller estimates in each period from the tracking error and the direction of travel, as cross-coupled
-/// control does: the component of (measured - reference) to the left of the motion; with the radius of the path there (positive: it
-/// turns left) the distance to the circle of curvature instead.
+/// What a controller estimates in each period from the tracking error and the direction of travel, as
+/// cross-coupled
+/// control does: the component of (measured - reference) to the left of the motion; with the radius of the path
+/// there (positive: it turns left) the distance to the circle of curvature instead.
 ///   line: n.d,   circle: (|d - R n| - |R|) with the sign that makes it n.d for large R
-/// Bound: with a tracking error t along the path the line is off by t^2/(2|R|), to third order in t/R; the circle by how
-/// much the radius changes along t. At rest there is no direction: none.
+/// Bound: with a tracking error t along the path the line is off by t^2/(2|R|), to third order in t/R; the
+/// circle by how much the radius changes along t. At rest there is no direction: none.
 /// Source: [Koren1980] for the line; the circle of curvature is the usual correction.
 inline std::optional<displacement> estimated_contour_error(place reference, place measured,
                                                            quantity_of<signal::velocity> vx,

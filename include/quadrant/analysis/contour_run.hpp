@@ -35,8 +35,8 @@ struct contour_options {
     displacement window = displacement::from_value(2e-3); ///< along the path: `sampled_path`
 };
 
-/// Drives a contour and measures: the trajectory of the moves, sample by sample, to `axes`, which gives back where the table was
-/// before that sample's command acts. Until a tenth of a second after the end.
+/// Drives a contour and measures: the trajectory of the moves, sample by sample, to `axes`, which gives back
+/// where the table was before that sample's command acts. Until a tenth of a second after the end.
 ///   place axes(const axis_motion<>& x, const axis_motion<>& y)
 /// The path is judged as the moves are, not as the trajectory was: rounded corners count as contour error.
 /// Allocates. Throws what `interpolator` and `sampled_path` throw.

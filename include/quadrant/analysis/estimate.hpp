@@ -18,7 +18,8 @@ template <class Quantity> struct estimate {
     bool holds(Quantity truth) const { return low <= truth && truth <= high; }
 };
 
-/// How many standard errors an interval of 95 % reaches to either side when the standard error itself comes from so many
+/// How many standard errors an interval of 95 % reaches to either side when the standard error itself comes
+/// from so many
 /// degrees of freedom: Student's t at 0.975, by its expansion about the normal one from 3 on (within 1 %).
 inline double student_95(double freedom) {
     require(freedom >= 1, "student_95.freedom", freedom, "must be 1 or more");
@@ -37,9 +38,9 @@ struct steady_mean {
     bool settled;      ///< the run in was over within three quarters of the record
 };
 
-/// Mean of what a record settles to. The run in ends where the rest gives the mean with the smallest spread, the MSER rule
-/// of [White1997]. Neighbouring values may be correlated: the standard error is that of 16 means of consecutive values, widened
-/// by what correlation is left between those.
+/// Mean of what a record settles to. The run in ends where the rest gives the mean with the smallest spread,
+/// the MSER rule of [White1997]. Neighbouring values may be correlated: the standard error is that of 16 means
+/// of consecutive values, widened by what correlation is left between those.
 inline steady_mean settle_mean(const std::vector<double>& x) {
     constexpr std::size_t parts = 16;
     require(x.size() >= 4 * parts, "settle_mean.values", double(x.size()), "must be 64 or more");

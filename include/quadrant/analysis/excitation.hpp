@@ -67,9 +67,10 @@ private:
     value now_{};
 };
 
-/// Sines at whole multiples of 1/record, all of one size, repeated for ever: what an FRF can measure without leakage.
-/// Phases: by Schroeder (low crest, the same each time) or at random from a seed (other phases show what is not linear).
-/// Scaled so that the largest sample is `amplitude`.
+/// Sines at whole multiples of 1/record, all of one size, repeated for ever: what an FRF can measure without
+/// leakage.
+/// Phases: by Schroeder (low crest, the same each time) or at random from a seed (other phases show what is not
+/// linear). Scaled so that the largest sample is `amplitude`.
 /// Throws "multisine.<field> = ...: must ...", also when no line falls between from and to.
 template <signal_tag Signal> class multisine {
 public:
@@ -137,8 +138,8 @@ private:
     value now_{};
 };
 
-/// A box with a source added behind it: put `injected<notch<force>, chirp<force>>` where the notch was, and the cascade
-/// is excited at that wire, nothing redrawn. What was added: `source().now()`.
+/// A box with a source added behind it: put `injected<notch<force>, chirp<force>>` where the notch was, and the
+/// cascade is excited at that wire, nothing redrawn. What was added: `source().now()`.
 template <class Block, class Source>
 requires std::same_as<typename Block::output, typename Source::output>
 class injected {

@@ -23,19 +23,22 @@ struct ferraris_calibration {
         gain_deviation{}; ///< standard deviation, for a white residual
     quantity_of<signal::acceleration> offset_deviation{};
 
-    /// The gain is told from the offset: the motion beyond a parabola stands ten times above what is unexplained.
+    /// The gain is told from the offset: the motion beyond a parabola stands ten times above what is
+    /// unexplained.
     bool determined() const noexcept { return excitation.value() > 10 * residual.value(); }
     quantity_of<signal::acceleration> acceleration(quantity_of<signal::voltage> m) const noexcept {
         return gain * m + offset;
     }
 };
 
-/// Calibrates an acceleration sensor against the encoder while the axis moves (not at constant speed or acceleration).
+/// Calibrates an acceleration sensor against the encoder while the axis moves (not at constant speed or
+/// acceleration).
 ///   position = G double-integral(m) + Z t^2/2 + v0 t + p0, by least squares; the integral for m straight between samples
 /// Source: [Jamaludin2008] Appendix B. Allocates; for after a run, not for a loop.
-/// Range: at least 8 samples; 1e-4 of the gain up to 1/200 of the sampling rate (the straight line between samples leaves (w T)^2/12).
-/// If !determined(), record a motion with more acceleration in it: a sine or chirp of some hertz, as large as the axis allows.
-/// Throws "calibrate_ferraris.<field> = ...: must ..." for period, samples, position, sensor.
+/// Range: at least 8 samples; 1e-4 of the gain up to 1/200 of the sampling rate (the straight line between
+/// samples leaves (w T)^2/12). If !determined(), record a motion with more acceleration in it: a sine or chirp
+/// of some hertz, as large as the axis allows. Throws "calibrate_ferraris.<field> = ...: must ..." for period,
+/// samples, position, sensor.
 inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signal::position>> position,
                                                std::span<const quantity_of<signal::voltage>> sensor,
                                                duration period) {
@@ -57,7 +60,8 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
         speed += T * (before + now) / 2;
         furthest = std::max(furthest, std::abs(way[k])), squares += way[k] * way[k];
     }
-    // Unknowns: p0, v0, Z in units of the record's length, G in units of the furthest way where it is one of them.
+    // Unknowns: p0, v0, Z in units of the record's length, G in units of the furthest way where it is one of
+    // them.
     const auto fit = [&](bool with_gain, const auto& of) {
         least_squares equations(with_gain ? 4 : 3);
         for (std::size_t k = 0; k < n; ++k) {

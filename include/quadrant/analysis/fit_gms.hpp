@@ -17,7 +17,8 @@ template <std::size_t N> struct gms_fit {
     std::vector<std::array<double, 2 * N>> without;    ///< knots [m], stiffness [N/m] without one branch each
     std::vector<std::pair<double, double>> systematic; ///< way [m], standard error [N]
 
-    /// sum k_i min(way, knot_i), with its interval of 95 %: branches left out one at a time, and the curve's systematic part.
+    /// sum k_i min(way, knot_i), with its interval of 95 %: branches left out one at a time, and the curve's
+    /// systematic part.
     estimate<force> at(displacement way) const {
         const double x = way.value();
         double f = 0, mean = 0, squares = 0;
@@ -51,12 +52,12 @@ template <std::size_t N> struct gms_fit {
     }
 };
 
-/// Piecewise-linear fit F(x) = sum k_i min(x, knot_i), k_i > 0, so concave and never falling: slopes K_j between knots are the
-/// sum of the stiffness that still sticks, [Jamaludin2008] eq. (3.9). Weighted least squares; starts from every choice of N
-/// knots out of 12 places (the stiffness is then linear), the best three refined in ln(knot), ln(k). Deterministic.
-/// `limits` says which knots lie within one encoder count (of the way back, so half of it here) or a tenth of each other:
-/// the curve is then known, the single k_i and forces are not.
-/// Throws with fewer than 4 points an element, or for a curve that no N springs in this order fit.
+/// Piecewise-linear fit F(x) = sum k_i min(x, knot_i), k_i > 0, so concave and never falling: slopes K_j
+/// between knots are the sum of the stiffness that still sticks, [Jamaludin2008] eq. (3.9). Weighted least
+/// squares; starts from every choice of N knots out of 12 places (the stiffness is then linear), the best three
+/// refined in ln(knot), ln(k). Deterministic. `limits` says which knots lie within one encoder count (of the
+/// way back, so half of it here) or a tenth of each other: the curve is then known, the single k_i and forces
+/// are not. Throws with fewer than 4 points an element, or for a curve that no N springs in this order fit.
 template <std::size_t N> gms_fit<N> fit_gms(const virgin_curve& curve) {
     const std::size_t n = curve.points.size();
     require(n >= 4 * N, "fit_gms.points", double(n), "must be 4 or more for each element");

@@ -44,14 +44,14 @@ template <signal_tag Command = signal::voltage> struct modes_fit {
     }
 };
 
-/// Fit of `flexible_axis_model` to a measured FRF: ln of model over measurement, each line weighed by its spread, as
-/// `fit_plant`. Modes come one after the other, each where it takes most of the misfit away, and all numbers are fitted
-/// together again. How many: given, or the least of the Bayesian criterion
+/// Fit of `flexible_axis_model` to a measured FRF: ln of model over measurement, each line weighed by its
+/// spread, as `fit_plant`. Modes come one after the other, each where it takes most of the misfit away, and all
+/// numbers are fitted together again. How many: given, or the least of the Bayesian criterion
 /// 2n ln(mean square) + unknowns ln(2n), a mode counted as four.
 /// Source: modal superposition and fit of receptances [Ewins2000] ch. 4; intervals as `fit_plant`'s.
 /// Limits: one delay for all; modes nearer than their width run into each other (their intervals say so).
-/// Throws as `fit_plant` does, with fewer lines than 8 + 4 for each mode, and when a mode that was asked for is not
-/// determined by the lines.
+/// Throws as `fit_plant` does, with fewer lines than 8 + 4 for each mode, and when a mode that was asked for is
+/// not determined by the lines.
 template <signal_tag In = signal::voltage>
 modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& options) {
     require_not_negative("fit_modes.period", options.period);

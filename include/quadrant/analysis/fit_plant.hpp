@@ -28,12 +28,14 @@ template <signal_tag Command = signal::voltage> struct plant_fit {
     axis_model<Command> model() const { return {pole.value, gain.value, delay.value}; }
 };
 
-/// Fit of [Jamaludin2008] eq. (2.2) by nonlinear least squares: ln of model over measurement, real part (gain) and
-/// imaginary part (phase) of each line, weighed by its spread; so a line counts by how well it is known, not by its
-/// size. Start by a grid of A and Td, because the phase is known modulo a turn only; then `minimise`.
-/// Intervals: from the Jacobian; widened by `surprise` where that is above 1, since then the lines' own spread does
-/// not explain the misfit. They speak of noise, not of a mode that the model does not have.
-/// Throws with fewer than 8 lines, or when the response has the sign of a negative B. Where A lies far below `from` it
+/// Fit of [Jamaludin2008] eq. (2.2) by nonlinear least squares: ln of model over measurement, real part (gain)
+/// and imaginary part (phase) of each line, weighed by its spread; so a line counts by how well it is known,
+/// not by its size. Start by a grid of A and Td, because the phase is known modulo a turn only; then
+/// `minimise`.
+/// Intervals: from the Jacobian; widened by `surprise` where that is above 1, since then the lines' own spread
+/// does not explain the misfit. They speak of noise, not of a mode that the model does not have.
+/// Throws with fewer than 8 lines, or when the response has the sign of a negative B. Where A lies far below
+/// `from` it
 /// is not determined: its interval then reaches below 0, and only that is said.
 template <signal_tag In = signal::voltage>
 plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& options) {

@@ -28,13 +28,13 @@ struct stribeck_fit {
     }
 };
 
-/// Fit of [Jamaludin2008] eq. (3.5), F = Fc + (Fs - Fc) exp(-(v/Vs)^shape) + viscous v, v > 0, by weighted nonlinear
-/// least squares; starts on a grid of Vs (the rest is linear), then Levenberg-Marquardt. Each point counts by its standard
-/// error, none of them better than a thousandth of the force. Intervals: of the map's own errors, widened by `surprise`
-/// above 1; they do not speak of a curve of another shape.
-/// Fs is an extrapolation to standstill. It is given only where the fall is seen: two speeds or more below the fitted Vs,
-/// the fall itself outside its own interval; else only Fc + viscous v, and `limits` says so: with one rising line Fc is
-/// then whatever level it starts from.
+/// Fit of [Jamaludin2008] eq. (3.5), F = Fc + (Fs - Fc) exp(-(v/Vs)^shape) + viscous v, v > 0, by weighted
+/// nonlinear least squares; starts on a grid of Vs (the rest is linear), then Levenberg-Marquardt. Each point
+/// counts by its standard error, none of them better than a thousandth of the force. Intervals: of the map's
+/// own errors, widened by `surprise` above 1; they do not speak of a curve of another shape.
+/// Fs is an extrapolation to standstill. It is given only where the fall is seen: two speeds or more below the
+/// fitted Vs, the fall itself outside its own interval; else only Fc + viscous v, and `limits` says so: with
+/// one rising line Fc is then whatever level it starts from.
 /// Throws with fewer than 4 speeds, or speeds within a factor of 3.
 inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     require(shape >= 0.25 && shape <= 4, "fit_stribeck.shape", shape, "must lie between 0.25 and 4");

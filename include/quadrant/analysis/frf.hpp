@@ -62,13 +62,15 @@ enum class trend { keep, mean, line };
 ///   coherence = |Sxy|^2/(Sxx Syy);   spread = sqrt((1 - coherence)/(2 coherence averages))
 /// Source: [Jamaludin2008] ch. 2 (H1, Hann, 2048 samples at 2 kHz); the spread is that of
 /// Bendat and Piersol, Random Data, ch. 9, with Welch's count of windows that overlap.
-/// H1 is right when noise is on the output only. In a closed loop noise on the output comes back through the input and
+/// H1 is right when noise is on the output only. In a closed loop noise on the output comes back through the
+/// input and
 /// H1 is biased: measure both wires against the injected excitation and divide, `ratio`.
-/// `add` takes one sample of each wire and allocates nothing. A bad sample (not finite) drops the window that it is in.
+/// `add` takes one sample of each wire and allocates nothing. A bad sample (not finite) drops the window that
+/// it is in.
 template <signal_tag In, signal_tag Out> class frf {
 public:
-    /// Length of a window: its resolution is the sampling rate / samples. How windows overlap, are weighed and freed of a
-    /// trend.
+    /// Length of a window: its resolution is the sampling rate / samples. How windows overlap, are weighed and
+    /// freed of a trend.
     struct parameters {
         std::size_t samples = 2048; ///< of a window, a power of two, 8 or more
         double overlap = 0.5;       ///< 0 ... 0.9 of the window

@@ -95,20 +95,21 @@ steady_run read_run(const axis_log<Command>& run, duration period, double uneven
 }
 } // namespace detail
 
-/// Friction map from runs at constant speed, one way each, in a closed loop (open loop a slow axis jerks): mean force at
-/// each speed, the mean of both directions, so that what pushes one way (weight, an offset of the amplifier) drops out, and
-/// a force that belongs to the place too where both runs go over the same stretch.
+/// Friction map from runs at constant speed, one way each, in a closed loop (open loop a slow axis jerks): mean
+/// force at each speed, the mean of both directions, so that what pushes one way (weight, an offset of the
+/// amplifier) drops out, and a force that belongs to the place too where both runs go over the same stretch.
 ///   F(v) = kf (mean u(+v) - mean u(-v))/2
-/// Steady part: the longest stretch in which the speed is within `uneven` of the run's median speed; of that what is left
-/// after the run in, where the mean has the least spread (`settle_mean`). Its standard error counts correlation.
-/// What it measures is the friction after so long a way at one speed: with elements that slip slowly (`maxwell_slip`) the
-/// force nears s(v) + viscous v with s(v)/attraction, 0.1 to 0.4 s on the milling table, after a run
-/// in of some ten micrometres.
-/// So slow that the encoder counts slower than the loop answers, the axis creeps from count to count and the mean falls short
-/// (1 % at 0.01 mm/s and 0.25 um on the milling table): the fit's `surprise` tells.
+/// Steady part: the longest stretch in which the speed is within `uneven` of the run's median speed; of that
+/// what is left after the run in, where the mean has the least spread (`settle_mean`). Its standard error
+/// counts correlation.
+/// What it measures is the friction after so long a way at one speed: with elements that slip slowly
+/// (`maxwell_slip`) the force nears s(v) + viscous v with s(v)/attraction, 0.1 to 0.4 s on the milling table,
+/// after a run in of some ten micrometres.
+/// So slow that the encoder counts slower than the loop answers, the axis creeps from count to count and the
+/// mean falls short (1 % at 0.01 mm/s and 0.25 um on the milling table): the fit's `surprise` tells.
 /// Source: [Jamaludin2008] eq. (3.5).
-/// A run that is not steady, or has no counterpart, is left out, and `unused` says why. Throws for runs shorter than 640
-/// samples, of unequal wires or with samples that are not finite.
+/// A run that is not steady, or has no counterpart, is left out, and `unused` says why. Throws for runs shorter
+/// than 640 samples, of unequal wires or with samples that are not finite.
 template <signal_tag Command = signal::voltage>
 friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration period,
                           gain_of<signal::force, Command> force_constant,

@@ -7,7 +7,8 @@
 #include <cstdlib>
 #include <vector>
 
-/// Tuning of a `sliding_mode` law by fuzzy rules on how a trial went: its gain Ks and adaptation rho, step by step; sliding stays.
+/// Tuning of a `sliding_mode` law by fuzzy rules on how a trial went: its gain Ks and adaptation rho, step by
+/// step; sliding stays.
 /// Source: [Yeung2006] section 3; max-min composition and centroid [Mamdani1975].
 namespace quadrant::analysis {
 
@@ -79,8 +80,9 @@ inline constexpr std::array<std::array<tuning_action, 5>, 3> decision_table = []
     return table;
 }();
 
-/// Where the sets end: Table 2 of the source. Its index of oscillation takes a threshold frequency and a scale that it does not
-/// print; 50 Hz and 2000 put all three of the gains that it tuned (Table 9) into the acceptable sets.
+/// Where the sets end: Table 2 of the source. Its index of oscillation takes a threshold frequency and a scale
+/// that it does not print; 50 Hz and 2000 put all three of the gains that it tuned (Table 9) into the
+/// acceptable sets.
 struct tuning_limits {
     std::array<double, 4> oscillation{1, 0.75, 0.5,
                                       0.25};            ///< falling: above the first HIUN, below the last HIOQ
@@ -88,7 +90,8 @@ struct tuning_limits {
     std::array<double, 4> tracking_error{20e-3, 5e-3, 1e-3, 0.1e-3}; ///< [m], falling: above the first EL
 };
 
-/// A trial as states of OSC, PHM, TRE. Without a phase margin the tracking error is EL: it is that of a limit cycle.
+/// A trial as states of OSC, PHM, TRE. Without a phase margin the tracking error is EL: it is that of a limit
+/// cycle.
 inline std::array<tuning_state, 3> classified(const tuning_trial& t, const tuning_limits& limits = {}) {
     const auto falling = [](double x, const std::array<double, 4>& ends) {
         std::size_t set = 0;
@@ -124,9 +127,10 @@ template <signal_tag Command = signal::voltage> struct tuning_result {
     bool settled = false;                    ///< the last trial asks for no change
 };
 
-/// Tries, judges and changes both gains, K (1 + sum of the three actions), until no attribute asks for a change.
-/// trial(gain, adaptation) gives a tuning_trial: of a simulation (`feed_drive`) or of a machine whose first gains are safe.
-/// Throws for gains that are not above 0, limits out of order, and a trial that is not finite (phase margin excepted).
+/// Tries, judges and changes both gains, K (1 + sum of the three actions), until no attribute asks for a
+/// change. trial(gain, adaptation) gives a tuning_trial: of a simulation (`feed_drive`) or of a machine whose
+/// first gains are safe. Throws for gains that are not above 0, limits out of order, and a trial that is not
+/// finite (phase margin excepted).
 template <signal_tag Command, class Trial>
 tuning_result<Command> tune(const typename sliding_mode<double, Command>::parameters& start, const Trial& trial,
                             const tuning_limits& limits = {}, int most_trials = 50) {
@@ -158,8 +162,9 @@ tuning_result<Command> tune(const typename sliding_mode<double, Command>::parame
     }
 }
 
-/// OSC = scale (Hmax - Hmean)/(Lmax - Lmean): by how much a peak in the power spectrum of the command above `threshold` stands out,
-/// beside that below it. The mean of the command is left out. Threshold and scale are not printed in the source.
+/// OSC = scale (Hmax - Hmean)/(Lmax - Lmean): by how much a peak in the power spectrum of the command above
+/// `threshold` stands out, beside that below it. The mean of the command is left out. Threshold and scale are
+/// not printed in the source.
 inline double oscillation_index(const std::vector<double>& command, duration period, frequency threshold,
                                 double scale = 2000) {
     require_below_nyquist("oscillation_index.threshold", threshold, period);

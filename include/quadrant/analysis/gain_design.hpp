@@ -108,17 +108,18 @@ template <class Broken> highest_gain highest(const char* field, const Broken& ju
 }
 } // namespace detail
 
-/// Gains of a P/PI cascade for stated margins, from the response of its plant: first the highest velocity gain kp, with
-/// ki = kp wc tan(integral_phase) where wc is the crossover of kp alone, then the highest position gain kv, each with every
-/// crossing of its open loop (L_v, L_p of `p_pi_loop`) outside the wanted margins and the closed loop proven stable by the
-/// count of encirclements (`unstable_poles`), not by the margins.
-/// Plant in position per command, feedback in velocity per position (estimate, notch, delay): models, a measured
-/// `tabulated_response` or blocks; a sampled plant with its hold goes with sampled blocks. The integral is the continuous
-/// ki/s; a sampled one differs by w T/2 in the phase of its part only.
-/// Limits: holds for the response given, within the band; noise of its lines is not in it, ask for more margin. The axis
-/// must be stable but for `integrators`, and |L| below one above the band. The first gain limit is found in steps of 0.5 dB: a
-/// window of good gains narrower than that may be missed.
-/// Throws "design_gains.velocity_gain" or ".position_gain" with the margin that no gain keeps, and on bad options.
+/// Gains of a P/PI cascade for stated margins, from the response of its plant: first the highest velocity gain
+/// kp, with ki = kp wc tan(integral_phase) where wc is the crossover of kp alone, then the highest position
+/// gain kv, each with every crossing of its open loop (L_v, L_p of `p_pi_loop`) outside the wanted margins and
+/// the closed loop proven stable by the count of encirclements (`unstable_poles`), not by the margins.
+/// Plant in position per command, feedback in velocity per position (estimate, notch, delay): models, a
+/// measured `tabulated_response` or blocks; a sampled plant with its hold goes with sampled blocks. The
+/// integral is the continuous ki/s; a sampled one differs by w T/2 in the phase of its part only.
+/// Limits: holds for the response given, within the band; noise of its lines is not in it, ask for more margin.
+/// The axis must be stable but for `integrators`, and |L| below one above the band. The first gain limit is
+/// found in steps of 0.5 dB: a window of good gains narrower than that may be missed.
+/// Throws "design_gains.velocity_gain" or ".position_gain" with the margin that no gain keeps, and on bad
+/// options.
 template <signal_tag Command = signal::voltage, frequency_response Plant, frequency_response Feedback>
 gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, const band& b,
                                   const gain_design_options& options = {}) {

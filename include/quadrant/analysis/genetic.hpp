@@ -131,12 +131,13 @@ struct one_by_one {
     }
 };
 
-/// Searches genes of least cost(values) by selection, crossover, mutation and elitism of real-coded chromosomes, until so many
-/// simulations are spent in all; whole generations only. cost may be any loop's: a double; infinite or NaN when the loop
-/// failed. `tell(state)` hears of every generation and ends the search with false.
-/// The same seed gives the same search on any number of threads, in one go or resumed: randomness belongs to seed,
-/// generation and child. Parents blend, a child lies up to `blend` of their distance beyond them [Eshelman1993].
-/// It has converged when mean() and best() agree.
+/// Searches genes of least cost(values) by selection, crossover, mutation and elitism of real-coded
+/// chromosomes, until so many simulations are spent in all; whole generations only. cost may be any loop's: a
+/// double; infinite or NaN when the loop failed. `tell(state)` hears of every generation and ends the search
+/// with false.
+/// The same seed gives the same search on any number of threads, in one go or resumed: randomness belongs to
+/// seed, generation and child. Parents blend, a child lies up to `blend` of their distance beyond them
+/// [Eshelman1993]. It has converged when mean() and best() agree.
 /// Source: [LowKeck2003]: real-coded, reproduction by fitness, crossover, mutation.
 /// `each(n, work)` runs work(0) ... work(n - 1), in any order, on any threads; cost is then called from those.
 /// Throws for genes without a range, options out of theirs, and a state of another size.

@@ -9,7 +9,8 @@ namespace quadrant::analysis {
 enum class compensation_size { cannot_tell, wrong_sign, not_at_all, too_weak, right, too_strong };
 enum class compensation_time { cannot_tell, too_early, right, too_late };
 
-/// What a friction compensation does at reversals, beside what was needed. In units of the wire that it is added to.
+/// What a friction compensation does at reversals, beside what was needed. In units of the wire that it is
+/// added to.
 template <signal_tag Command> struct compensation_verdict {
     estimate<quantity_of<Command>> needed;   ///< half the step of the friction at a reversal
     estimate<quantity_of<Command>> supplied; ///< half the step of the compensation
@@ -39,7 +40,8 @@ struct compensation_options {
 };
 
 namespace detail {
-/// Response of a continuous transfer to a sampled signal that is constant before its first sample; standstill cancelled.
+/// Response of a continuous transfer to a sampled signal that is constant before its first sample; standstill
+/// cancelled.
 template <frequency_response R>
 std::vector<double> filtered(const std::vector<double>& x, const R& response, double period) {
     std::size_t n = 2;
@@ -111,21 +113,24 @@ inline estimate<double> mean_of(const std::vector<double>& x) {
 }
 } // namespace detail
 
-/// Whether a friction compensation acts too early, too late, too weak, too strong, right, or not at all, from a log of the
+/// Whether a friction compensation acts too early, too late, too weak, too strong, right, or not at all, from a
+/// log of the
 /// loop in which it works: reference, position, and the wire with the compensation, before it is added.
 ///   e0 = e + H c: the error as it would have been without the compensation c, H = position per command of the closed loop
 ///   at each reversal both e0 and H c are fitted by a base line and the response to one step of friction, size and time free;
 ///   scale = size(c)/size(e0), late = time(c) - time(e0), over the reversals
-/// Friction that comes over some way instead of at once has the time of its middle; it and the command are compared at
-/// the wire, so that a compensation without preview is late by the delay of the plant. An axis that gets its compensation
-/// late also breaks away later: `late` is about 0.6 of the shift that would put it right (measured on bristles and on
-/// Maxwell-slip springs).
-/// H, position per unit of the wire, a model (`p_pi_loop`: plant times sensitivity) or measured, asked for from 1 over the
-/// record up to half the sampling rate. Only its product with c enters, so where the compensation is right it need not be
+/// Friction that comes over some way instead of at once has the time of its middle; it and the command are
+/// compared at the wire, so that a compensation without preview is late by the delay of the plant. An axis that
+/// gets its compensation
+/// late also breaks away later: `late` is about 0.6 of the shift that would put it right (measured on bristles
+/// and on Maxwell-slip springs).
+/// H, position per unit of the wire, a model (`p_pi_loop`: plant times sensitivity) or measured, asked for from
+/// 1 over the record up to half the sampling rate. Only its product with c enters, so where the compensation is
+/// right it need not be
 /// exact: e0 and H c are then wrong alike.
-/// A word is given only where the whole interval (over the reversals, 95 %) lies on one side of the tolerance, or is
-/// narrow and meets it (right); else cannot_tell: too few reversals, an error that steps of friction do not explain (share
-/// below 0.7), no friction beside the noise, an interval too wide.
+/// A word is given only where the whole interval (over the reversals, 95 %) lies on one side of the tolerance,
+/// or is narrow and meets it (right); else cannot_tell: too few reversals, an error that steps of friction do
+/// not explain (share below 0.7), no friction beside the noise, an interval too wide.
 /// A reversal with another one in its window is not left out: take the window short enough.
 /// Throws as `quadrant_glitches` does, and for a window below 20 periods.
 template <signal_tag Command = signal::voltage, frequency_response H>

@@ -7,7 +7,8 @@
 
 namespace quadrant::analysis {
 
-/// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder and tachometer see it at the samples: exact.
+/// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder and tachometer see it at the
+/// samples: exact.
 ///   velocity B gained/(z - kept),  position B {way + gained^2/(z - kept)}/(z - 1),  of `viscous_step`
 /// Source: [Franklin1998] zero-order hold.
 template <signal_tag Command = signal::voltage> struct sampled_axis {

@@ -9,8 +9,8 @@
 
 namespace quadrant::analysis {
 
-/// Equations sum over j of a[j] x[j] = b, one `add` each, solved in the least-squares sense by Householder QR (so the
-/// condition of the matrix is not squared); bare numbers. Small problems: up to some hundred unknowns.
+/// Equations sum over j of a[j] x[j] = b, one `add` each, solved in the least-squares sense by Householder QR
+/// (so the condition of the matrix is not squared); bare numbers. Small problems: up to some hundred unknowns.
 class least_squares {
 public:
     explicit least_squares(std::size_t unknowns) : n_(unknowns) {

@@ -6,8 +6,8 @@
 
 namespace quadrant::analysis {
 
-/// Continuous-time responses of the thesis' parts, as callables. For the sampled blocks use their own response():
-/// it has their zero-order hold not in it.
+/// Continuous-time responses of the thesis' parts, as callables. For the sampled blocks use their own
+/// response(): it has their zero-order hold not in it.
 
 /// A linear axis from command to position: G(s) = B e^{-s Td} / (s (s + A)), [Jamaludin2008] eq. (2.2).
 template <signal_tag Command = signal::voltage> struct axis_model {
@@ -60,16 +60,17 @@ template <frequency_response A, frequency_response B> struct in_series {
 };
 template <class A, class B> in_series(A, B) -> in_series<A, B>;
 
-/// Every closed loop of a P/PI cascade, from the response of its plant: a model, or a measured `tabulated_response`.
+/// Every closed loop of a P/PI cascade, from the response of its plant: a model, or a measured
+/// `tabulated_response`.
 ///   L_v = PI G F           open velocity loop, F = velocity estimate and notch in the feedback
 ///   L_p = P PI G/(1 + L_v) open position loop
 ///   S   = 1/(1 + L_v + P PI G)      sensitivity; its -3 dB from below is the bandwidth that the thesis quotes
 ///   T   = P PI G S                  position over reference, without feedforward
 ///   k   = kf/(G S)                  dynamic stiffness, force at the motor over deflection
 /// Source: [Jamaludin2008] eqs. (2.22) to (2.34).
-/// Units: Plant in position per command, Velocity in command per velocity, Feedback in velocity per position, all SI;
-/// position gain in 1/s. Continuous or sampled, but all of one kind: a sampled controller meets a plant with its hold.
-/// The disturbance observer and the memory loop are not in it.
+/// Units: Plant in position per command, Velocity in command per velocity, Feedback in velocity per position,
+/// all SI; position gain in 1/s. Continuous or sampled, but all of one kind: a sampled controller meets a plant
+/// with its hold. The disturbance observer and the memory loop are not in it.
 template <frequency_response Plant, frequency_response Velocity, frequency_response Feedback,
           signal_tag Command = signal::voltage>
 struct p_pi_loop {

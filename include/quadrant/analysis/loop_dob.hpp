@@ -6,8 +6,8 @@
 
 namespace quadrant::analysis {
 
-/// Q and Q/Gn of an observer in continuous time, the Q of `disturbance_observer`. For the sampled block take its q(f) and
-/// inverse(f) as two lambdas instead. [Jamaludin2008] (4.6), (4.7).
+/// Q and Q/Gn of an observer in continuous time, the Q of `disturbance_observer`. For the sampled block take
+/// its q(f) and inverse(f) as two lambdas instead. [Jamaludin2008] (4.6), (4.7).
 template <std::size_t Order = 2, std::size_t NumeratorOrder = 0> struct q_model {
     frequency corner; ///< wc / (2 pi)
 
@@ -25,8 +25,8 @@ template <frequency_response Q, frequency_response Nominal> struct inverse_model
 };
 template <class Q, class N> inverse_model(Q, N) -> inverse_model<Q, N>;
 
-/// An axis G with its disturbance observer, from what the controller wants to position: G / (1 - Q + G Q/Gn). It is Gn
-/// where Q = 1 and G where Q = 0.
+/// An axis G with its disturbance observer, from what the controller wants to position: G / (1 - Q + G Q/Gn).
+/// It is Gn where Q = 1 and G where Q = 0.
 template <frequency_response Plant, frequency_response Q, frequency_response Inverse> struct observed_axis {
     Plant plant;
     Q q;             ///< what of the applied command comes back
@@ -43,11 +43,12 @@ private:
 };
 template <class P, class Q, class I> observed_axis(P, Q, I) -> observed_axis<P, Q, I>;
 
-/// The closed loops of a P/PI cascade with a disturbance observer (its loop through the command solved, as the block does).
+/// The closed loops of a P/PI cascade with a disturbance observer (its loop through the command solved, as the
+/// block does).
 ///   L_v, L_p, T  as in `p_pi_loop`, of the observed axis: seen from what the controller wants
 ///   S = 1/(1 + G (PI (kv + F) + Q/Gn)/(1 - Q))    1/(1 + all that is fed back), of a push at the motor
-/// Its bandwidths are those of this S. Same units and conditions as `p_pi_loop`; q and inverse continuous or sampled as
-/// the rest is. Source: [Jamaludin2008] (2.22) to (2.34), (4.1) to (4.20).
+/// Its bandwidths are those of this S. Same units and conditions as `p_pi_loop`; q and inverse continuous or
+/// sampled as the rest is. Source: [Jamaludin2008] (2.22) to (2.34), (4.1) to (4.20).
 template <class Loop, frequency_response Q, frequency_response Inverse> struct p_pi_dob_loop {
     Loop without; ///< the same loop without observer: a `p_pi_loop`
     Q q;
@@ -69,8 +70,8 @@ template <class Loop, frequency_response Q, frequency_response Inverse> struct p
     template <class ForceConstant> complex dynamic_stiffness(frequency f, ForceConstant force_constant) const {
         return 1.0 / compliance(f, force_constant);
     }
-    /// 1 - Q + G (PI (kv + F) + Q/Gn): zero at the poles of the whole, itself without poles right of the axis; less one it goes
-    /// to `unstable_poles`.
+    /// 1 - Q + G (PI (kv + F) + Q/Gn): zero at the poles of the whole, itself without poles right of the axis;
+    /// less one it goes to `unstable_poles`.
     complex return_difference(frequency f) const { return (1.0 - complex(q(f))) / sensitivity(f); }
     /// What a push leaves with the observer over what it leaves without: below 1 it helps.
     complex benefit(frequency f) const { return sensitivity(f) / without.sensitivity(f); }

@@ -17,8 +17,8 @@ struct margin {
 ///   phase margin 180 deg + arg L where |L| crosses one, in (-180, 180]
 ///   modulus margin  min |1 + L| = 1 / max |S|
 /// Source: [Jamaludin2008] ch. 2; [Astrom1995] ch. 4 (sensitivity).
-/// All crossings are kept, in rising frequency; the margin usually quoted is the first. Margins speak of stability
-/// only for a loop that is stable when closed; they do not prove it.
+/// All crossings are kept, in rising frequency; the margin usually quoted is the first. Margins speak of
+/// stability only for a loop that is stable when closed; they do not prove it.
 struct stability_margins {
     band searched;
     std::vector<margin> gain_crossings;  ///< gain margins: one for each phase of -180 degrees (mod 360)
@@ -67,8 +67,8 @@ private:
 namespace detail {
 inline double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-/// A response on a log grid, made denser where it turns more than 30 degrees or grows by more than 1.5 from line to
-/// line (a lightly damped mode between two lines), six halvings deep.
+/// A response on a log grid, made denser where it turns more than 30 degrees or grows by more than 1.5 from
+/// line to line (a lightly damped mode between two lines), six halvings deep.
 struct sampled {
     frequency f;
     complex value;
@@ -143,7 +143,8 @@ template <frequency_response Loop> stability_margins margins(const Loop& loop, c
         const frequency low = all[i - 1].f, high = all[i].f;
         if ((all[i - 1].value.imag() < 0) != (all[i].value.imag() < 0)) {
             const frequency f = detail::bisect(below, low, high);
-            // Through the origin or infinity the sign changes too: seen close by, the two sides are then opposed.
+            // Through the origin or infinity the sign changes too: seen close by, the two sides are then
+            // opposed.
             const double apart = std::max(1e-9 * f.value(), 1e-6 * (high - low).value());
             const complex before = loop(hertz(std::max(f.value() - apart, b.from.value()))),
                           after = loop(hertz(std::min(f.value() + apart, b.to.value())));
@@ -174,9 +175,9 @@ std::vector<frequency> rising_crossings(const R& r, double level, const band& b)
     return out;
 }
 
-/// Bandwidth: the first frequency where a sensitivity comes up through -3 dB (1 / sqrt 2) from below; none when it lies
-/// above already where the band begins, or never reaches it. Which S is meant is the caller's choice: the bandwidths
-/// of [Jamaludin2008] are those of eq. (2.33), `loop.hpp` sensitivity().
+/// Bandwidth: the first frequency where a sensitivity comes up through -3 dB (1 / sqrt 2) from below; none when
+/// it lies above already where the band begins, or never reaches it. Which S is meant is the caller's choice:
+/// the bandwidths of [Jamaludin2008] are those of eq. (2.33), `loop.hpp` sensitivity().
 template <frequency_response Sensitivity>
 std::optional<frequency> sensitivity_bandwidth(const Sensitivity& s, const band& b) {
     const auto all = rising_crossings(s, std::numbers::sqrt2 / 2, b);

@@ -11,7 +11,8 @@
 
 namespace quadrant {
 
-/// One call of a loop, never inlined: what `measure` times, and what callgrind finds by its name (benchmarks/bound.sh).
+/// One call of a loop, never inlined: what `measure` times, and what callgrind finds by its name
+/// (benchmarks/bound.sh).
 template <class Loop, class Input> [[gnu::noinline]] auto measured_call(Loop& loop, const Input& input) {
     return loop(input);
 }
@@ -42,11 +43,11 @@ inline std::int64_t nanoseconds_now() {
 template <class Value> void use(const Value& value) { asm volatile("" : : "g"(&value) : "memory"); }
 } // namespace detail
 
-/// Times `calls` calls of a loop on this computer, cache warm, over the inputs again and again: loop(input) is one sample. The first
-/// pass over the inputs is not counted if there are more calls than inputs. POSIX.
+/// Times `calls` calls of a loop on this computer, cache warm, over the inputs again and again: loop(input) is
+/// one sample. The first pass over the inputs is not counted if there are more calls than inputs. POSIX.
 ///   const quadrant::call_times t = quadrant::measure(my_loop, inputs);
-/// The longest calls are those in which something else had the processor; what the loop itself may need at most is said by
-/// benchmarks/bound.sh in instructions.
+/// The longest calls are those in which something else had the processor; what the loop itself may need at most
+/// is said by benchmarks/bound.sh in instructions.
 template <class Loop, class Input>
 call_times measure(Loop& loop, const std::vector<Input>& inputs, std::size_t calls = 200'000) {
     call_times result;

@@ -14,10 +14,10 @@ struct minimum {
     bool converged;
 };
 
-/// Nonlinear least squares after Levenberg and Marquardt, derivatives by central differences. Unknowns of size about 1:
-/// scale them, take the logarithm of what must stay above 0. residuals: std::vector<double>(const std::vector<double>&),
-/// always of one length. Deterministic; finds the minimum downhill of the start, no other.
-/// Throws when the residuals at the start are not finite.
+/// Nonlinear least squares after Levenberg and Marquardt, derivatives by central differences. Unknowns of size
+/// about 1: scale them, take the logarithm of what must stay above 0. residuals: std::vector<double>(const
+/// std::vector<double>&), always of one length. Deterministic; finds the minimum downhill of the start, no
+/// other. Throws when the residuals at the start are not finite.
 template <class Residuals> minimum minimise(const Residuals& residuals, std::vector<double> x) {
     const std::size_t n = x.size();
     const auto squares = [](const std::vector<double>& r) {

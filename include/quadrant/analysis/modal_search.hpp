@@ -20,8 +20,8 @@ public:
         for (const point& p : points_) sampled_.push_back(p.value);
     }
 
-    /// Puts a mode where it takes most of the misfit away: each line of the band as centre and four dampings are tried, the
-    /// best share is then linear.
+    /// Puts a mode where it takes most of the misfit away: each line of the band as centre and four dampings
+    /// are tried, the best share is then linear.
     void add_mode() {
         std::vector<complex> off(points_.size()), rigid(points_.size());
         std::vector<double> weight(points_.size());
@@ -48,7 +48,8 @@ public:
         x.insert(x.end(), best.begin(), best.end());
     }
 
-    /// Of a sampled plant what the model says of roll-off and aliases is divided out of the lines, which settles at once.
+    /// Of a sampled plant what the model says of roll-off and aliases is divided out of the lines, which
+    /// settles at once.
     void run() {
         for (int round = 0; round < (period_ > 0 ? 3 : 1); ++round) {
             for (std::size_t i = 0; i < points_.size(); ++i)
@@ -63,8 +64,8 @@ public:
         for (const point& p : points_) sum += std::norm(off(p, x)) / double(points_.size());
         return std::sqrt(sum);
     }
-    /// Of two numbers a line; a mode counts as four unknowns, because its place was picked among all lines: with three, one
-    /// record of noise in ten is given a mode.
+    /// Of two numbers a line; a mode counts as four unknowns, because its place was picked among all lines:
+    /// with three, one record of noise in ten is given a mode.
     double information() const {
         const std::size_t modes = x.size() / 3 - 1;
         const double n = 2 * double(points_.size());
@@ -101,7 +102,8 @@ private:
         }
     }
 
-    /// What a hold and sampling make of the plant: sum over k of G(s + k ws) sinc(f_k T), over G. Its first five aliases.
+    /// What a hold and sampling make of the plant: sum over k of G(s + k ws) sinc(f_k T), over G. Its first
+    /// five aliases.
     complex sampling(complex s) const {
         if (!(period_ > 0)) return 1;
         complex sum = 0;

@@ -7,7 +7,8 @@
 
 namespace quadrant::analysis {
 
-/// One structural or base mode beside the rigid axis, as its partial fraction (in time: block `flexible_modes`):
+/// One structural or base mode beside the rigid axis, as its partial fraction (in time: block
+/// `flexible_modes`):
 ///   share / (s^2 + 2 damping w s + w^2),   w = 2 pi centre
 ///   share > 0: anti-resonance below it, at centre/sqrt(1 + share) on a free mass (base; encoder beside the motor)
 ///   -1 < share < 0: anti-resonance above it, the phase falls by 180 degrees in between; share <= -1: none
@@ -31,7 +32,8 @@ struct flexible_mode {
 
 /// A linear axis with modes, from command to position:
 ///   G(s) = B e^{-s Td} (1/(s (s + A)) + sum share_i/(s^2 + 2 damping_i w_i s + w_i^2))
-/// Modal superposition in parallel form: any number of modes, none needs to know the others. Without modes `axis_model`.
+/// Modal superposition in parallel form: any number of modes, none needs to know the others. Without modes
+/// `axis_model`.
 template <signal_tag Command = signal::voltage> struct flexible_axis_model {
     axis_model<Command> rigid;
     std::vector<flexible_mode> modes;

@@ -6,8 +6,8 @@
 
 namespace quadrant::analysis {
 
-/// Fitness of a move as a cost, after [LowKeck2003] eq. (9): weighted mean squares of the tracking error until the move
-/// should have ended, of the error after that, and of the command. Its weights are not published.
+/// Fitness of a move as a cost, after [LowKeck2003] eq. (9): weighted mean squares of the tracking error until
+/// the move should have ended, of the error after that, and of the command. Its weights are not published.
 class move_cost {
 public:
     /// The errors and the command that each cost 1, and when the move should have ended.

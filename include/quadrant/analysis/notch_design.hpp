@@ -34,7 +34,8 @@ struct velocity_peak {
     frequency at, low, high; ///< low, high: half power
     double prominence;       ///< ratio
 };
-/// The largest local maximum of size[] that stands out: over both passes between it and something higher (or the ends).
+/// The largest local maximum of size[] that stands out: over both passes between it and something higher (or
+/// the ends).
 inline std::optional<velocity_peak> largest_peak(const std::vector<double>& f, const std::vector<double>& size,
                                                  double above, double prominence) {
     std::optional<velocity_peak> out;
@@ -75,13 +76,15 @@ inline std::optional<velocity_peak> largest_peak(const std::vector<double>& f, c
 }
 } // namespace detail
 
-/// A notch for the highest structural peak of an axis above a frequency: highest in the velocity response f |G|, since
-/// that is what lifts the velocity loop. Centre at the peak's top; damping such that both ends of its half-power width, and
+/// A notch for the highest structural peak of an axis above a frequency: highest in the velocity response f
+/// |G|, since that is what lifts the velocity loop. Centre at the peak's top; damping such that both ends of
+/// its half-power width, and
 /// of its drift, are attenuated as asked:
 ///   |N| = |1 - r^2|/sqrt((1 - r^2)^2 + (damping r)^2),  r = f/centre   (bilinear, pre-warped at the centre)
-/// The half-power width is the mode's (and its damping) where the peak stands out by 10 dB or more; less, and it is wider.
-/// Throws "design_notch.<what> = ...": no peak; centre plus half the notch's width not below half the sampling rate; centre
-/// minus it not above the crossover, in the band of the loop; more phase at the crossover than allowed.
+/// The half-power width is the mode's (and its damping) where the peak stands out by 10 dB or more; less, and
+/// it is wider. Throws "design_notch.<what> = ...": no peak; centre plus half the notch's width not below half
+/// the sampling rate; centre minus it not above the crossover, in the band of the loop; more phase at the
+/// crossover than allowed.
 template <signal_tag Signal>
 notch_design<Signal> design_notch(const measured_frf& frf, duration period, const notch_rule& rule) {
     require_positive("design_notch.period", period);

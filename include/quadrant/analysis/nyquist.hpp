@@ -4,13 +4,18 @@
 
 namespace quadrant::analysis {
 
-/// How many poles of the loop closed over L lie right of the axis (outside the circle, for a sampled L): 0 is stable.
-/// What margins assume, this counts: the turns of 1 + L around zero from the band's first line to its last (Nyquist).
-/// Known beforehand, and stated by the caller: L has no poles there itself, `integrators` poles at s = 0, below the band it
-/// goes on to its integrators without another turn, above it |L| stays below one (a sampled band ends near Nyquist).
-/// Of loops within loops give it the whole return difference less one, with the integrators of all.
-/// Throws when the band does not show it: |L| not above one at its start (with an integrator) or not below one at its end, a
-/// turn of more than 90 degrees from line to line, a negative L, or a count below 0: then L has unstable poles of its own.
+/// How many poles of the loop closed over L lie right of the axis (outside the circle, for a sampled L): 0 is
+/// stable.
+/// What margins assume, this counts: the turns of 1 + L around zero from the band's first line to its last
+/// (Nyquist).
+/// Known beforehand, and stated by the caller: L has no poles there itself, `integrators` poles at s = 0, below
+/// the band it goes on to its integrators without another turn, above it |L| stays below one (a sampled band
+/// ends near Nyquist). Of loops within loops give it the whole return difference less one, with the integrators
+/// of all.
+/// Throws when the band does not show it: |L| not above one at its start (with an integrator) or not below one
+/// at its end, a
+/// turn of more than 90 degrees from line to line, a negative L, or a count below 0: then L has unstable poles
+/// of its own.
 template <frequency_response Loop> int unstable_poles(const Loop& loop, const band& b, int integrators) {
     require(integrators >= 0 && integrators <= 4, "unstable_poles.integrators", double(integrators),
             "must lie between 0 and 4");

@@ -12,7 +12,8 @@ struct q_rule {
     double least_coherence = 0.8; ///< lines below are left out, and told
     double deviations = 2;        ///< of the lines' spread, added to |Delta|; >= 0
 };
-/// How near a Q filter comes to the bound 1/|Delta| of the axis that was measured, and on which lines that was judged.
+/// How near a Q filter comes to the bound 1/|Delta| of the axis that was measured, and on which lines that was
+/// judged.
 struct q_verdict {
     double worst = 0; ///< largest |Q| (|Delta| with the deviations of its spread)
     frequency at{};   ///< where
@@ -67,7 +68,8 @@ template <frequency_response R> measured_frf as_measured(const R& response, cons
     return out;
 }
 
-/// |Q Delta| of an observer on a measured axis, not judged. [Jamaludin2008] (4.19); Q and 1/Gn sampled, as the block runs them.
+/// |Q Delta| of an observer on a measured axis, not judged. [Jamaludin2008] (4.19); Q and 1/Gn sampled, as the
+/// block runs them.
 template <class Observer>
 q_verdict q_mismatch(const Observer& observer, const measured_frf& frf, const q_rule& rule) {
     std::vector<frequency> left_out;
@@ -76,8 +78,8 @@ q_verdict q_mismatch(const Observer& observer, const measured_frf& frf, const q_
     return out;
 }
 
-/// Refuses an observer whose |Q| exceeds margin/|Delta| anywhere, Delta = (G - Gn)/Gn: with margin 1 the loop of observer
-/// and axis is robustly stable (sufficient, not necessary).
+/// Refuses an observer whose |Q| exceeds margin/|Delta| anywhere, Delta = (G - Gn)/Gn: with margin 1 the loop
+/// of observer and axis is robustly stable (sufficient, not necessary).
 template <class Observer>
 q_verdict check_q(const Observer& observer, const measured_frf& frf, const q_rule& rule) {
     q_verdict out = q_mismatch(observer, frf, rule);
@@ -94,10 +96,12 @@ template <class Observer> struct q_design {
     q_verdict verdict;
     frequency binding{}; ///< the line that stops a higher corner; 0: none up to half the sampling rate
 };
-/// Limits: lines left out and frequencies outside [from, to] are not judged (`left_out`, `beyond`); the rule is about the loop
-/// of observer and axis by itself, the cascade around it needs its own margins (`p_pi_dob_loop`). A nominal plant without
+/// Limits: lines left out and frequencies outside [from, to] are not judged (`left_out`, `beyond`); the rule is
+/// about the loop of observer and axis by itself, the cascade around it needs its own margins
+/// (`p_pi_dob_loop`). A nominal plant without
 /// delay against a sampled axis: the hold counts as mismatch, as it must.
-/// Throws "design_q.corner" when even a corner at the first line breaks the rule: lower ones the lines do not show.
+/// Throws "design_q.corner" when even a corner at the first line breaks the rule: lower ones the lines do not
+/// show.
 template <class Observer>
 q_design<Observer> design_q(const measured_frf& frf, const decltype(Observer::parameters::plant)& plant,
                             duration period, const q_rule& rule) {

@@ -25,9 +25,9 @@ struct glitch_options {
     duration settle{}; ///< reversals before this are left out: the run in
 };
 
-/// Quadrant glitches: peak tracking error after every reversal of the reference, [Jamaludin2008] tables 4.2 and 4.4.
-/// A reversal is where the reference moves the other way than it last moved; a rest between the two belongs to the old.
-/// The last one counts only when its whole window was recorded. None: the list is empty.
+/// Quadrant glitches: peak tracking error after every reversal of the reference, [Jamaludin2008] tables 4.2 and
+/// 4.4. A reversal is where the reference moves the other way than it last moved; a rest between the two
+/// belongs to the old. The last one counts only when its whole window was recorded. None: the list is empty.
 inline std::vector<glitch> quadrant_glitches(const std::vector<quantity_of<signal::position>>& reference,
                                              const std::vector<quantity_of<signal::position>>& position,
                                              duration period, const glitch_options& options) {

@@ -9,8 +9,9 @@
 #include <limits>
 #include <optional>
 
-/// Filters, stability and performance of a `repetitive` memory loop, from the loop's complementary sensitivity T
-/// (position over reference, `loop.hpp` tracking()): a model or a measured FRF. [Jamaludin2008], repetitive control.
+/// Filters, stability and performance of a `repetitive` memory loop, from the loop's complementary sensitivity
+/// T (position over reference, `loop.hpp` tracking()): a model or a measured FRF. [Jamaludin2008], repetitive
+/// control.
 ///   added to the error: L W Q / (1 - W Q), W = sum w[i] z^{-i N}
 ///   error with over error without:  M = (1 - W Q) / (1 - W Q (1 - L T));   stable when |Q W (1 - L T)| < 1
 namespace quadrant::analysis {
@@ -29,8 +30,9 @@ template <std::size_t Taps> struct fir {
     }
 };
 
-/// Zero-phase low-pass Q: a sinc behind a Hamming window, symmetric, gain at standstill exactly one; -6 dB at `corner`.
-/// Ripple of some 0.002 in the pass band: what it leaves of every harmonic, and why a memory whose loop is open grows.
+/// Zero-phase low-pass Q: a sinc behind a Hamming window, symmetric, gain at standstill exactly one; -6 dB at
+/// `corner`. Ripple of some 0.002 in the pass band: what it leaves of every harmonic, and why a memory whose
+/// loop is open grows.
 template <std::size_t Taps = 61>
 requires(Taps % 2 == 1) fir<Taps> smoothing_filter(frequency corner, duration period) {
     require_positive("smoothing_filter.period", period);
@@ -69,10 +71,10 @@ inline void require_span(const span& s, duration period) {
 }
 } // namespace detail
 
-/// Learning filter L, the inverse of T by least squares: least mean over the span of |Q (1 - L T)|^2, plus ridge^2 times
-/// the taps' squares, so that where Q is small L stays small too: the low-pass in it. Then `rounds` times the same with
-/// more weight where the mismatch was large, which takes its largest value down by half; the best is kept.
-/// Throws when T or Q is not finite in the span.
+/// Learning filter L, the inverse of T by least squares: least mean over the span of |Q (1 - L T)|^2, plus
+/// ridge^2 times the taps' squares, so that where Q is small L stays small too: the low-pass in it. Then
+/// `rounds` times the same with more weight where the mismatch was large, which takes its largest value down by
+/// half; the best is kept. Throws when T or Q is not finite in the span.
 template <std::size_t Taps = 90, frequency_response Loop, frequency_response Smoothing>
 fir<Taps> learning_filter(const Loop& t, const Smoothing& q, std::size_t ahead, duration period,
                           const std::optional<span>& over = {}, double ridge = 1e-4, std::size_t rounds = 4) {
@@ -132,10 +134,10 @@ complex memory_response(const std::array<double, Order>& weights, duration cycle
     return sum;
 }
 
-/// Weights for a stated amplification of what does not repeat: 1 - W = (1 - z^-N)(1 - a z^-N)^(Order - 1), with the a
-/// in 0 ... 1 that makes |1 - W| half-way between two harmonics, 2 (1 + a)^(Order - 1), just `amplification_db`.
-/// a = 0 is order 1 (6.02 dB, widest choice for noise), a = 1 the flattest zero at every harmonic (widest for the cycle).
-/// Throws outside 6.02 ... 6.02 Order dB.
+/// Weights for a stated amplification of what does not repeat: 1 - W = (1 - z^-N)(1 - a z^-N)^(Order - 1), with
+/// the a in 0 ... 1 that makes |1 - W| half-way between two harmonics, 2 (1 + a)^(Order - 1), just
+/// `amplification_db`. a = 0 is order 1 (6.02 dB, widest choice for noise), a = 1 the flattest zero at every
+/// harmonic (widest for the cycle). Throws outside 6.02 ... 6.02 Order dB.
 template <std::size_t Order> std::array<double, Order> repetitive_weights(double amplification_db) {
     const double ratio = std::pow(10.0, amplification_db / 20), most = std::pow(2.0, double(Order));
     require(ratio >= 2 * (1 - 1e-3) && ratio <= most * (1 + 1e-3), "repetitive_weights.amplification_db",
@@ -192,8 +194,8 @@ struct performance_case {
     std::size_t harmonics = 1; ///< 1 ... this
     frequency bandwidth;       ///< for gamma_np
 };
-/// |M| over the harmonics of an uncertain cycle (100 steps either way), and between them up to the bandwidth (200 lines a
-/// harmonic).
+/// |M| over the harmonics of an uncertain cycle (100 steps either way), and between them up to the bandwidth
+/// (200 lines a harmonic).
 template <frequency_response Loop, frequency_response Learning, frequency_response Smoothing, std::size_t Order>
 repetitive_performance performance(const Loop& t, const Learning& l, const Smoothing& q,
                                    const std::array<double, Order>& weights, const performance_case& c) {
@@ -223,7 +225,8 @@ repetitive_performance performance(const Loop& t, const Learning& l, const Smoot
     return out;
 }
 
-/// Parameters of a `repetitive` block from its filters; refuses a loop that does not converge for every cycle, or has less
+/// Parameters of a `repetitive` block from its filters; refuses a loop that does not converge for every cycle,
+/// or has less
 /// margin than stated: largest |Q W (1 - L T)| not below 1 - margin.
 template <class Block, frequency_response Loop, std::size_t Order, std::size_t Learning, std::size_t Smoothing>
 typename Block::parameters repetitive_parameters(const Loop& t, const std::array<double, Order>& weights,

@@ -55,8 +55,9 @@ inline std::vector<frequency> grid(const band& b) {
     return lines;
 }
 
-/// A measured response. Between two lines the magnitude is interpolated in log |R| over log f (exact for any power
-/// of f), the phase along the shorter way round; so neighbouring lines must lie less than half a turn apart. Outside the lines it throws instead of guessing.
+/// A measured response. Between two lines the magnitude is interpolated in log |R| over log f (exact for any
+/// power of f), the phase along the shorter way round; so neighbouring lines must lie less than half a turn
+/// apart. Outside the lines it throws instead of guessing.
 class tabulated_response {
 public:
     /// Lines in rising frequency, at least two, all finite and not zero; throws otherwise.

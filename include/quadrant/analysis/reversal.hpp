@@ -4,8 +4,8 @@
 
 namespace quadrant::analysis {
 
-/// The spike that a reversal leaves in the tracking error of one axis; as `reversal_spike` of the circular test does for the
-/// circle.
+/// The spike that a reversal leaves in the tracking error of one axis; as `reversal_spike` of the circular test
+/// does for the circle.
 struct axis_spike {
     glitch found;                         ///< time and direction of the reversal, peak error
     quantity_of<signal::position> height; ///< found.jump: above the error at the reversal; signed
@@ -13,7 +13,8 @@ struct axis_spike {
     duration offset; ///< of the top from the reversal
 };
 
-/// Height, width and time of every reversal's spike: of `quadrant_glitches`, for the same reversals and windows.
+/// Height, width and time of every reversal's spike: of `quadrant_glitches`, for the same reversals and
+/// windows.
 inline std::vector<axis_spike> reversal_spikes(const std::vector<quantity_of<signal::position>>& reference,
                                                const std::vector<quantity_of<signal::position>>& position,
                                                duration period, const glitch_options& options) {

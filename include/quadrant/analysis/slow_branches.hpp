@@ -51,7 +51,8 @@ slow_branches cut_at_reversals(const axis_log<Command>& run, double period, doub
     slow_branches out{0.5 * (high - low), {}, {}, {}};
     if (coarse.size() < 2) return out;
     const std::size_t cycle = 2 * (coarse.back() - coarse.front()) / (coarse.size() - 1);
-    // At a reversal so long that the axis moves a twentieth of a count in it; on the branches short, for the knots.
+    // At a reversal so long that the axis moves a twentieth of a count in it; on the branches short, for the
+    // knots.
     const double share = std::sqrt(0.1 * std::max(count, 1e-4 * play) / play) / (2 * std::numbers::pi);
     const auto half = std::max<std::size_t>(1, std::size_t(std::min(share, 1 / 60.0) * double(cycle)));
     const auto brief = std::max<std::size_t>(1, std::min(half, cycle / 800));

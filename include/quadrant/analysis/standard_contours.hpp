@@ -8,7 +8,8 @@
 #include <numbers>
 #include <vector>
 
-/// The contours that feed drives are usually tried on, in the xy plane around its origin, as moves for an `interpolator`.
+/// The contours that feed drives are usually tried on, in the xy plane around its origin, as moves for an
+/// `interpolator`.
 namespace quadrant::analysis {
 
 /// Speed along a contour [m/s].
@@ -54,8 +55,8 @@ inline std::vector<move> square_contour(quantity<si::length> side, contour_feed 
     const double h = side.value() / 2;
     return polygon_contour({{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}}, feed, tolerance);
 }
-/// r = size (e^{cos t} - 2 cos 4t), clockwise from its top, as quintic splines through `places` places: curvature of both signs,
-/// bends down to size/55, many reversals of both axes. About 9 size wide.
+/// r = size (e^{cos t} - 2 cos 4t), clockwise from its top, as quintic splines through `places` places:
+/// curvature of both signs, bends down to size/55, many reversals of both axes. About 9 size wide.
 inline std::vector<move> butterfly_contour(quantity<si::length> size, contour_feed feed,
                                            std::size_t places = 360) {
     require_positive("butterfly_contour.size", size);

@@ -87,7 +87,8 @@ step_figures reference_step(const Law& law, const sampled_axis<typename Law::out
     return y;
 }
 
-/// A force comes on, as what it takes of the command to hold against it; the reference stands. Settled: within 2 % of the peak.
+/// A force comes on, as what it takes of the command to hold against it; the reference stands. Settled: within
+/// 2 % of the peak.
 template <axis_law Law>
 step_figures disturbance_step(const Law& law, const sampled_axis<typename Law::output>& axis,
                               quantity_of<typename Law::output> size,

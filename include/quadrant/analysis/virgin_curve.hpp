@@ -53,17 +53,19 @@ inline double interpolated(const std::vector<double>& x, const std::vector<doubl
 }
 } // namespace detail
 
-/// Virgin curve from runs along a slow sinusoid in a closed loop, 0.1 Hz with 15 um and with 450 um on the milling table:
-/// by Masing's rule a branch that starts at a reversal from F0 is the virgin curve twice as large,
+/// Virgin curve from runs along a slow sinusoid in a closed loop, 0.1 Hz with 15 um and with 450 um on the
+/// milling table: by Masing's rule a branch that starts at a reversal from F0 is the virgin curve twice as
+/// large,
 ///   F_virgin(d/2) = (F0 - F(d))/2,   F = kf u - mass a - viscous v,
-/// as long as what friction remembers is the last reversal. Each place takes the run of the smallest amplitude that
+/// as long as what friction remembers is the last reversal. Each place takes the run of the smallest amplitude
+/// that
 /// reaches it: the slowest. Source: [Jamaludin2008] eq. (3.9); docs/derivations/maxwell_slip.md for the rule.
-/// `level`: a branch runs at some speed, where what slips has fallen to s(v) < Fs. What slips is where the tangent of the curve
-/// meets zero way (exact for springs that stick and slip); that part is brought to Fs, and half of the correction counts as
-/// error. Without `level` the curve is that of the speed of the run.
-/// Errors: from branch to branch; and what all share: half an encoder count at the reversal, the correction of level, the
-/// difference of two runs where both reach. A command that acts late by 1 ms is late by less than 0.3 um in these runs,
-/// at their slow ends by nothing.
+/// `level`: a branch runs at some speed, where what slips has fallen to s(v) < Fs. What slips is where the
+/// tangent of the curve meets zero way (exact for springs that stick and slip); that part is brought to Fs, and
+/// half of the correction counts as error. Without `level` the curve is that of the speed of the run.
+/// Errors: from branch to branch; and what all share: half an encoder count at the reversal, the correction of
+/// level, the difference of two runs where both reach. A command that acts late by 1 ms is late by less than
+/// 0.3 um in these runs, at their slow ends by nothing.
 /// Throws for runs with fewer than 3 branches (2.5 cycles with the run in), and for what is not finite.
 template <signal_tag Command = signal::voltage>
 virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, duration period,

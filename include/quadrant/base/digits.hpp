@@ -23,7 +23,8 @@ template <class Isa = isa::here> number_text digits(double x) {
 #    endif
 }
 #else
-/// Nine significant digits at most, without the standard library, whose to_chars brings in an unwinder and files.
+/// Nine significant digits at most, without the standard library, whose to_chars brings in an unwinder and
+/// files.
 template <class Isa = isa::here> number_text digits(double x) {
     number_text out;
     char* at = out.text.data();

@@ -9,9 +9,9 @@
 
 namespace quadrant {
 
-/// A number that carries its derivatives by N parameters: run a whole loop with it and read how every wire moves
-/// with them. Eager (no expression templates), so that it fits into a quantity. Comparisons look at the value only;
-/// at a switch (stick, limit) the derivative is that of the branch taken.
+/// A number that carries its derivatives by N parameters: run a whole loop with it and read how every wire
+/// moves with them. Eager (no expression templates), so that it fits into a quantity. Comparisons look at the
+/// value only; at a switch (stick, limit) the derivative is that of the branch taken.
 template <std::size_t N, std::floating_point Real = double> struct dual {
     Real value = 0;
     std::array<Real, N> partial{};

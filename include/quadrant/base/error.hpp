@@ -18,8 +18,8 @@
 #endif
 
 /// Parameters that no machine could have. With exceptions a constructor throws invalid_parameter. Without them
-/// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does neither.
-/// What is no template by itself carries the instruction set, see lanes/instruction_set.hpp.
+/// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does
+/// neither. What is no template by itself carries the instruction set, see lanes/instruction_set.hpp.
 namespace quadrant {
 
 namespace detail {
@@ -45,8 +45,9 @@ template <class Isa = isa::here, class Written> std::string written(const Writte
 }
 #endif
 
-/// What must hold, words with numbers between them: "must not exceed the capacity (" + shortest(8) + ")". Nothing is
-/// written, copied or allocated before the rule is broken; the words are literals. Nine pieces at most.
+/// What must hold, words with numbers between them: "must not exceed the capacity (" + shortest(8) + ")".
+/// Nothing is written, copied or allocated before the rule is broken; the words are literals. Nine pieces at
+/// most.
 class rule {
 public:
     constexpr rule() = default;
@@ -99,8 +100,8 @@ struct refused_parameter {
     double value = 0;
     detail::rule must{};
 
-    /// Writes "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)", values in SI, cut off to
-    /// fit `size` with its final zero. Returns the length of the whole.
+    /// Writes "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)", values in SI, cut
+    /// off to fit `size` with its final zero. Returns the length of the whole.
     std::size_t write(char* out, std::size_t size) const {
         detail::text_buffer text{out, size > 0 ? size - 1 : 0};
         write(text);
@@ -125,8 +126,8 @@ struct invalid_parameter : std::invalid_argument {
     std::optional<refused_parameter> why; ///< none when thrown as text, which no block does
 };
 #else
-/// Called with what a constructor refused outside of make(); then, or without one, the program traps. Set it once at
-/// the start; it may reset the processor, or never return.
+/// Called with what a constructor refused outside of make(); then, or without one, the program traps. Set it
+/// once at the start; it may reset the processor, or never return.
 inline void (*on_refusal)(const refused_parameter&) = nullptr;
 
 namespace detail {
@@ -154,13 +155,15 @@ template <class Isa = isa::here> [[noreturn]] void refuse(const refused_paramete
 }
 } // namespace detail
 
-/// Refuses `value` unless `holds`, naming block, field, value and rule. A NaN keeps no rule, whatever a compiler makes of its comparison.
+/// Refuses `value` unless `holds`, naming block, field, value and rule. A NaN keeps no rule, whatever a
+/// compiler makes of its comparison.
 template <class Value, class Isa = isa::here>
 void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
     const double x = detail::plain(value);
     if (!holds || detail::is_nan(x)) detail::refuse({field, x, must});
 }
-/// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks it.
+/// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks
+/// it.
 template <class Value, class Rule, class Isa = isa::here>
 requires std::is_invocable_r_v<bool, Rule, std::size_t>
 void require_lanes(Rule holds, const detail::field_name& field, const Value& value, const detail::rule& must) {

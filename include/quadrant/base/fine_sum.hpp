@@ -17,10 +17,12 @@ template <class Value> [[gnu::always_inline]] inline Value rounded_here(Value x)
 }
 } // namespace detail
 
-/// What a slow filter adds up: a sum of many parts that are far smaller than it. Fine: it is held in two numbers, `high` and what
-/// rounding left over, `low`, so that a part below the last digit of the sum is not lost; else in one.
+/// What a slow filter adds up: a sum of many parts that are far smaller than it. Fine: it is held in two
+/// numbers, `high` and what rounding left over, `low`, so that a part below the last digit of the sum is not
+/// lost; else in one.
 ///   s = low + part;   high' = high + s, rounded;   low' = s - (high' - high)
-/// Source: [Kahan1965]. Of any number type, with a unit or without. Derivation: docs/derivations/second_order.md.
+/// Source: [Kahan1965]. Of any number type, with a unit or without. Derivation:
+/// docs/derivations/second_order.md.
 /// Cost: 3 additions more than one number.
 template <class Value, bool Fine = true> struct fine_sum {
     Value high{}; ///< the sum, rounded

@@ -6,8 +6,8 @@
 #include <limits>
 #include <type_traits>
 
-/// One policy for NaN and infinities in every block: hold the last output, keep the state, raise a flag that only
-/// `reset` or `settle` clears.
+/// One policy for NaN and infinities in every block: hold the last output, keep the state, raise a flag that
+/// only `reset` or `settle` clears.
 namespace quadrant {
 
 namespace detail {
@@ -32,8 +32,8 @@ template <class... Values> constexpr auto finite(const Values&... values) noexce
     return detail::is_finite((detail::bare(values) + ...));
 }
 
-/// What a block passes on to a block inside it: x where it is good, NaN in the other lanes, where the inner block then
-/// holds. For a number without lanes, which has returned by then: x.
+/// What a block passes on to a block inside it: x where it is good, NaN in the other lanes, where the inner
+/// block then holds. For a number without lanes, which has returned by then: x.
 template <class Value>
 constexpr Value only_where([[maybe_unused]] const mask_of<Value>& good, const Value& x) noexcept {
     if constexpr (std::is_same_v<mask_of<Value>, bool>)

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-/// What a number is, by its bits and not by std::isfinite or x != x: stays true to its word under -ffast-math, by which a compiler may
-/// take it that there are no NaNs and no infinities.
+/// What a number is, by its bits and not by std::isfinite or x != x: stays true to its word under -ffast-math,
+/// by which a compiler may take it that there are no NaNs and no infinities.
 namespace quadrant::detail {
 
 /// A number with its derivatives beside it (`dual`, or one of the user's own).

@@ -5,7 +5,8 @@
 
 namespace quadrant {
 
-/// A bare number, in SI, at the border to code without units; becomes whatever quantity stands on the other side:
+/// A bare number, in SI, at the border to code without units; becomes whatever quantity stands on the other
+/// side:
 ///   const double u = step_in_si(axis, r, y);                                             // one line per axis
 ///   notch<signal::force> resonance({.centre = in_si(330), .damping = 0.4}, in_si(500e-6));
 /// Nothing checks its unit: write it as far outside as you can, and quantities within.
@@ -18,7 +19,8 @@ template <class Number> struct in_si {
     }
 };
 
-/// One sample of a box or a loop, numbers in and number out, SI: metres in and volts out for an axis. No copy, no cost.
+/// One sample of a box or a loop, numbers in and number out, SI: metres in and volts out for an axis. No copy,
+/// no cost.
 template <class Box, class... Numbers> constexpr auto step_in_si(Box& box, Numbers... x) noexcept {
     return detail::bare(box(in_si(x)...));
 }

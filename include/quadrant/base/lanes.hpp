@@ -5,5 +5,5 @@
 #include "lanes/turns.hpp"
 #include "lanes/wide.hpp"
 
-/// Many instances of a block at once: `notch<signal::force, lanes<4>>` is four notches, each with its own parameters,
-/// input and fault, stepped by one call. This header is all that a program includes for it.
+/// Many instances of a block at once: `notch<signal::force, lanes<4>>` is four notches, each with its own
+/// parameters, input and fault, stepped by one call. This header is all that a program includes for it.

@@ -2,7 +2,8 @@
 #pragma once
 #include "signal.hpp"
 
-/// Literals for parameters: `125_us`, `330_Hz`, `12_kg`. Integers do not divide by a quantity: write `60.0 / 1_s`.
+/// Literals for parameters: `125_us`, `330_Hz`, `12_kg`. Integers do not divide by a quantity: write
+/// `60.0 / 1_s`.
 namespace quadrant::detail {
 template <class Unit> constexpr quantity<Unit> of(long double value) {
     return quantity<Unit>::from_value(static_cast<double>(value));

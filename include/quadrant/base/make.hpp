@@ -30,7 +30,8 @@ template <class Block> struct in_place {
 };
 } // namespace detail
 
-/// A block, or why there is none. Constant-initialised when empty: in static storage it needs neither a guard nor the heap.
+/// A block, or why there is none. Constant-initialised when empty: in static storage it needs neither a guard
+/// nor the heap.
 template <class Block> class made {
 public:
     using parameters = typename detail::parameters_of<Block>::type;
@@ -76,7 +77,8 @@ private:
     refused_parameter why_{};
 };
 
-/// Makes a block from parameters that may be refused, without an exception: ask the answer whether it holds one.
+/// Makes a block from parameters that may be refused, without an exception: ask the answer whether it holds
+/// one.
 template <class Block> made<Block> make(const typename detail::parameters_of<Block>::type& p, duration period) {
     made<Block> out;
     out.make(p, period);

@@ -15,8 +15,8 @@
 #    include <string>
 #endif
 
-/// What a C++20 library may lack (libc++ 13, as emscripten 3.1.6 has it), in one place. Each function does what the
-/// standard one does; where that exists, it is used, and tests compare the two.
+/// What a C++20 library may lack (libc++ 13, as emscripten 3.1.6 has it), in one place. Each function does what
+/// the standard one does; where that exists, it is used, and tests compare the two.
 namespace quadrant::detail {
 
 /// Whether threads can be started: not in WebAssembly, unless it was built for threads.
@@ -42,8 +42,8 @@ struct number_text {
     std::array<char, 32> text{};
 };
 
-/// std::to_chars of a finite double without the standard's: the fewest digits that read back as the same number, as
-/// a fixed-point number unless that is longer than with an exponent.
+/// std::to_chars of a finite double without the standard's: the fewest digits that read back as the same
+/// number, as a fixed-point number unless that is longer than with an exponent.
 template <class Isa = isa::here> number_text shortest_digits(double x) {
     number_text scientific, fixed;
     if (x != x || x - x != 0) {
@@ -63,8 +63,8 @@ template <class Isa = isa::here> number_text shortest_digits(double x) {
 }
 
 #ifdef __cpp_exceptions
-/// std::from_chars of a double without the standard's: the longest decimal number at the start of the text, whatever
-/// stands behind it; not in hexadecimal, without blanks or a plus before it.
+/// std::from_chars of a double without the standard's: the longest decimal number at the start of the text,
+/// whatever stands behind it; not in hexadecimal, without blanks or a plus before it.
 template <class Isa = isa::here>
 std::from_chars_result leading_number(const char* first, const char* last, double& value) {
     const char* at = first;

@@ -8,9 +8,9 @@
 #include <type_traits>
 #include <utility>
 
-/// Comparison and choice for every number type. `a < b` has one answer; a number of lanes (lanes.hpp) has one answer
-/// per lane, a mask. A block that is to run in lanes writes `select(less(x, low), low, x)` where a block in double
-/// may write `x < low ? low : x`. For double, float and dual both compile to the same code.
+/// Comparison and choice for every number type. `a < b` has one answer; a number of lanes (lanes.hpp) has one
+/// answer per lane, a mask. A block that is to run in lanes writes `select(less(x, low), low, x)` where a block
+/// in double may write `x < low ? low : x`. For double, float and dual both compile to the same code.
 namespace quadrant {
 
 /// How many instances a number holds: 1, or W for lanes<W>.
@@ -38,7 +38,8 @@ template <class Number>
 concept steps_together = multi_lane<Number> &&
     !std::is_same_v<decltype(finite_lanes(std::declval<Number>())), typename Number::mask>;
 
-/// An answer that is the same in every lane and known to the compiler: nothing is computed for it and nothing chosen by it.
+/// An answer that is the same in every lane and known to the compiler: nothing is computed for it and nothing
+/// chosen by it.
 template <bool Answer> struct in_every_lane {
     /// As a mask.
     template <class Mask>

@@ -7,13 +7,15 @@
 #include <type_traits>
 #include <utility>
 
-/// An axis that stands still must cost no more than one that moves, and what has died out must be zero. A recursive filter alone
-/// halves its state for ever; below 1e-308 (float: 1e-38) the processor then computes with subnormal numbers, slowly.
+/// An axis that stands still must cost no more than one that moves, and what has died out must be zero. A
+/// recursive filter alone halves its state for ever; below 1e-308 (float: 1e-38) the processor then computes
+/// with subnormal numbers, slowly.
 namespace quadrant {
 
 namespace detail {
-/// The part of a number's bits that is zero below 2^-895 (float: 2^-63). Nothing is left of a signal in SI below that, and a product
-/// with any coefficient of a filter is still a normal number. By bits: the values of several numbers are tested at once.
+/// The part of a number's bits that is zero below 2^-895 (float: 2^-63). Nothing is left of a signal in SI
+/// below that, and a product with any coefficient of a filter is still a normal number. By bits: the values of
+/// several numbers are tested at once.
 constexpr std::uint64_t large_bits(double x) noexcept {
     return bits_as<std::uint64_t>(x) & 0x7800'0000'0000'0000;
 }
@@ -46,8 +48,8 @@ constexpr quantity<Unit, Real> without_tiny(const quantity<Unit, Real>& x) noexc
 }
 } // namespace detail
 
-/// True where every argument has died out: nothing but the rest of a decay (2^-895 in SI, 2^-63 in float). Of a dual also
-/// its derivatives.
+/// True where every argument has died out: nothing but the rest of a decay (2^-895 in SI, 2^-63 in float). Of a
+/// dual also its derivatives.
 template <class Value, class... More>
 requires(!multi_lane<detail::bare_of<Value>>) constexpr bool died_out(const Value& x,
                                                                       const More&... more) noexcept {

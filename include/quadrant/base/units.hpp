@@ -16,7 +16,8 @@
 #include <boost/units/systems/si/torque.hpp>
 #include <boost/units/systems/si/velocity.hpp>
 
-/// Physical quantities, SI throughout. `frequency` is in hertz everywhere, never in rad/s: that is an angular velocity.
+/// Physical quantities, SI throughout. `frequency` is in hertz everywhere, never in rad/s: that is an angular
+/// velocity.
 namespace quadrant {
 
 namespace si = boost::units::si;

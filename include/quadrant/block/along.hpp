@@ -12,7 +12,8 @@ struct x {};
 struct y {};
 } // namespace axis
 
-/// A quantity that belongs to one axis. It is read as a plain one; a plain one becomes it only by name, `on_x(u)`, and one
+/// A quantity that belongs to one axis. It is read as a plain one; a plain one becomes it only by name,
+/// `on_x(u)`, and one
 /// of the other axis never: two axes cannot change places unseen.
 template <class Axis, class Quantity> class along {
 public:

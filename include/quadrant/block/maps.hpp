@@ -19,8 +19,9 @@ struct real_of_block<Block> {
 /// The number type of a block; double for one that does not say.
 template <class Block> using real_of = typename detail::real_of_block<Block>::type;
 
-/// Calling B with In's quantity gives Out's, and B can be reset: all that a box must do to sit between two wires.
-/// A type with these two members is a box; nothing to derive from. (No noexcept here: a quantity's copy is not.)
+/// Calling B with In's quantity gives Out's, and B can be reset: all that a box must do to sit between two
+/// wires. A type with these two members is a box; nothing to derive from. (No noexcept here: a quantity's copy
+/// is not.)
 template <class B, class In, class Out, class Real = real_of<B>>
 concept maps = signal_tag<In> && signal_tag<Out> && requires(B b, const quantity_of<In, Real>& x) {
     { b(x) } -> std::same_as<quantity_of<Out, Real>>;
@@ -36,7 +37,8 @@ template <class Block, class X> auto settled(Block& block, const X& x) {
 }
 /// What the block would give, without stepping it.
 template <class Block, class X> auto foreseen(Block block, const X& x) noexcept { return block(x); }
-/// The parameters of another block of the same type, the state of this one; a block without parameters stays as it is.
+/// The parameters of another block of the same type, the state of this one; a block without parameters stays as
+/// it is.
 template <class Block> void retune(Block& block, const Block& next) noexcept {
     if constexpr (requires { block.retune(next); })
         block.retune(next);

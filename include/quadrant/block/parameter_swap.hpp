@@ -6,17 +6,23 @@
 
 namespace quadrant {
 
-/// Hands a whole set from the thread that tunes to the thread that controls, between two samples: all of it or nothing.
+/// Hands a whole set from the thread that tunes to the thread that controls, between two samples: all of it or
+/// nothing.
 ///   parameter_swap<boxes> tuning{first};
 ///   tuning.offer(boxes{parameters, period});                       // slow thread: checks, may throw, takes its time
 ///   if (const boxes* next = tuning.take()) axis.retune(*next);     // servo thread, before its sample
-/// A set is parameters or, better, the boxes made of them: what is checked and designed in a constructor then runs in the
-/// slow thread, and the servo thread only copies coefficients. The last set offered wins; one that was never taken is lost.
-/// Threads: one that offers, one that takes; neither ever waits for the other (three slots, one atomic exchange each).
+/// A set is parameters or, better, the boxes made of them: what is checked and designed in a constructor then
+/// runs in the slow thread, and the servo thread only copies coefficients. The last set offered wins; one that
+/// was never taken is lost.
+/// Threads: one that offers, one that takes; neither ever waits for the other (three slots, one atomic exchange
+/// each).
 /// Two axes that have to change in the same sample: put the boxes of both into one set.
-/// State: `take` gives each set once, null when there is nothing new; what it points at stays until the next take.
-/// Range: Set can be copied and has nothing to release. It lives where both threads see it; it cannot be copied itself.
-/// Cost: `take` one load, an exchange when there is a set; `offer` a copy. 3 sizes of Set. The first set is that of the start.
+/// State: `take` gives each set once, null when there is nothing new; what it points at stays until the next
+/// take.
+/// Range: Set can be copied and has nothing to release. It lives where both threads see it; it cannot be copied
+/// itself.
+/// Cost: `take` one load, an exchange when there is a set; `offer` a copy. 3 sizes of Set. The first set is
+/// that of the start.
 template <class Set> class parameter_swap {
     static_assert(std::is_trivially_destructible_v<Set>, "a set holds nothing that has to be released");
     static_assert(std::atomic<unsigned>::is_always_lock_free, "no thread may wait for the other");

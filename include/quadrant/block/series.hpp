@@ -10,15 +10,17 @@
 
 namespace quadrant {
 
-/// Several blocks of one signal behind one another, in the order of the list: two notches, a notch and a low-pass.
+/// Several blocks of one signal behind one another, in the order of the list: two notches, a notch and a
+/// low-pass.
 ///   y = last(... second(first(x)))
 /// Ports: one scalar in, one scalar out, the same signal for all.
-/// State: that of the blocks, now() as a tuple; `reset` resets, `settle(x)` settles each at what the one before gives.
-/// `retune(next)` and `shift(by)` where each block has them.
-/// NaN and infinities: a bad input reaches no block, the last output is held; a block that overflows holds its own, the
-/// ones behind it go on. faulted() = any of that has happened.
+/// State: that of the blocks, now() as a tuple; `reset` resets, `settle(x)` settles each at what the one before
+/// gives. `retune(next)` and `shift(by)` where each block has them.
+/// NaN and infinities: a bad input reaches no block, the last output is held; a block that overflows holds its
+/// own, the ones behind it go on. faulted() = any of that has happened.
 /// Throws what the blocks throw.
-/// Cost: that of the blocks. Sums and feedback are not a series: write them as lines of a struct, see `cascade`.
+/// Cost: that of the blocks. Sums and feedback are not a series: write them as lines of a struct, see
+/// `cascade`.
 template <class First, class... Rest>
 requires maps<First, typename First::input, typename First::input> &&
     (maps<Rest, typename First::input, typename First::input, real_of<First>>&&...) class series {

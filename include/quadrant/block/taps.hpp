@@ -5,7 +5,8 @@
 #include <array>
 #include <cstddef>
 
-/// Named wires to record: a list of taps beside a struct of wires, so that a log has names and units without a macro.
+/// Named wires to record: a list of taps beside a struct of wires, so that a log has names and units without a
+/// macro.
 ///   static constexpr auto taps() { return std::array{tap<signal::position, &wires::error>("error"), ...}; }
 namespace quadrant {
 
@@ -39,14 +40,17 @@ constexpr tap_of<typename Wire::wires, typename Wire::real> tap(const char* name
             sizeof(quantity_of<Signal, real>)};
 }
 
-/// Calls f(name, unit text, value in SI) for every tap, in the order of the list: write a header with it, then rows.
+/// Calls f(name, unit text, value in SI) for every tap, in the order of the list: write a header with it, then
+/// rows.
 template <class Wires, class Real, std::size_t N, class F>
 constexpr void for_each_tap(const Wires& wires, const std::array<tap_of<Wires, Real>, N>& taps, F&& f) {
     for (const auto& each : taps) f(each.name, each.unit, each.read(wires));
 }
 
-/// True when every wire has exactly one tap: their sizes fill the struct and no two read the same place. Under a struct of
-/// wires: `static_assert(every_wire_has_a_tap(wires::taps()))`; a wire added without a tap then does not compile.
+/// True when every wire has exactly one tap: their sizes fill the struct and no two read the same place. Under
+/// a struct of
+/// wires: `static_assert(every_wire_has_a_tap(wires::taps()))`; a wire added without a tap then does not
+/// compile.
 template <class Wires, class Real, std::size_t N>
 constexpr bool every_wire_has_a_tap(const std::array<tap_of<Wires, Real>, N>& taps) {
     std::size_t bytes = 0;

@@ -19,7 +19,8 @@ struct power_request {
     bool trip = false;           ///< off at once: following error, fault of the loop, of the drive
 };
 
-/// Switches an axis on and off, stops it in an emergency, and gives the loop the reference that belongs to that.
+/// Switches an axis on and off, stops it in an emergency, and gives the loop the reference that belongs to
+/// that.
 ///   off --enable rises--> on --enable falls--> stopping (deceleration) --at rest, brake closed--> off
 ///   on, stopping --emergency stop--> stopping (emergency_deceleration);   any --trip--> tripped --enable falls--> off
 ///   stopping: v = max(0, |v| - a T), x += T (v + v_before)/2: the way is v^2/(2 a) exactly; the stream is no longer heard
@@ -27,15 +28,19 @@ struct power_request {
 ///   const auto r = power({.enable = button, .emergency_stop = mushroom, .trip = guard.tripped()}, stream);
 ///   if (power.on()) u = axis(r, measured); else axis.track(r, measured, u = applied);   // applied: 0, or another's output
 /// Source: IEC 60204-1, 9.2.2: stop categories 0 (trip), 1 (emergency stop, disable).
-/// Ports: requests and the stream's reference in, the reference of the loop out; on() says that the command goes out.
-/// An enable counts when it rises: after a stop it has to be taken away and given again. An emergency stop that ends starts
-/// nothing. The stream has to wait where the axis is; a `following_error` tells if it does not.
+/// Ports: requests and the stream's reference in, the reference of the loop out; on() says that the command
+/// goes out.
+/// An enable counts when it rises: after a stop it has to be taken away and given again. An emergency stop that
+/// ends starts nothing. The stream has to wait where the axis is; a `following_error` tells if it does not.
 /// State: last reference and its speed; `reset`: off, at zero; `settle(x)`: off, the stream at rest at x.
 /// `shift(by)`: the frame of positions moves (homing).
-/// Range: velocity and both decelerations finite, above 0: no stop is longer than velocity^2/(2 a), whatever the stream did; brake_time >= 0: how long the loop holds the axis at rest until the brake has closed.
-/// NaN and infinities: holds the last reference, raises faulted(), does not switch on; stops and trips are obeyed all the same.
-/// Throws "axis_enable.<field> = ...: must ..." for period, velocity, deceleration, emergency_deceleration, brake_time.
-/// Cost: a dozen comparisons. The stop has no jerk limit: put a `stream_limiter` behind it, or leave the jump to the notch.
+/// Range: velocity and both decelerations finite, above 0: no stop is longer than velocity^2/(2 a), whatever
+/// the stream did; brake_time >= 0: how long the loop holds the axis at rest until the brake has closed.
+/// NaN and infinities: holds the last reference, raises faulted(), does not switch on; stops and trips are
+/// obeyed all the same. Throws "axis_enable.<field> = ...: must ..." for period, velocity, deceleration,
+/// emergency_deceleration, brake_time.
+/// Cost: a dozen comparisons. The stop has no jerk limit: put a `stream_limiter` behind it, or leave the jump
+/// to the notch.
 template <class Real = double> class axis_enable {
 public:
     using input = signal::position;
@@ -53,8 +58,8 @@ public:
         quantity<si::acceleration, number> emergency_deceleration; ///< > 0
         duration brake_time{};                                     ///< >= 0
     };
-    /// Off, on, stopping or tripped; where the reference is and how fast; the requests of the last sample, to see them
-    /// rise.
+    /// Off, on, stopping or tripped; where the reference is and how fast; the requests of the last sample, to
+    /// see them rise.
     struct state {
         power_state power = power_state::off;
         value reference{};      ///< last output

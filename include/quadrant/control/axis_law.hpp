@@ -14,9 +14,11 @@
 /// u          command, to act from sample k on until sample k + 1. The law does not limit it: a `limiter` follows, and a law
 ///            that integrates is told what was left of it by applied(u), before the next sample.
 /// reset      as new: at rest at zero.
-/// settle(x, u)  at rest at x, held by u: the next sample with reference and measurement at rest at x gives u, if
+/// settle(x, u)  at rest at x, held by u: the next sample with reference and measurement at rest at x gives u,
+/// if
 ///            the law has something that can hold it (an integral); else what it gives there.
-/// NaN and infinities in any input: holds the last command, keeps the state, raises faulted() until reset or settle.
+/// NaN and infinities in any input: holds the last command, keeps the state, raises faulted() until reset or
+/// settle.
 ///
 /// Optional members, asked for by `requires`:
 ///   std::size_t lead() const    periods that the reference has to be ahead of the measurement (preview); absent: 0. The
@@ -27,8 +29,8 @@
 /// Source: [Yeung2006] eq. (19).
 namespace quadrant {
 
-/// Eq. (19) of a linear law at one frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v). The lead is not in it: `to`
-/// takes the reference as it is given.
+/// Eq. (19) of a linear law at one frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v). The lead is
+/// not in it: `to` takes the reference as it is given.
 struct law_response {
     std::complex<double> to_position, to_velocity, to_acceleration;
     std::complex<double> from_position, from_velocity;

@@ -6,17 +6,18 @@
 namespace quadrant {
 
 namespace detail {
-/// What x has beyond a dead band of this half width. The one place of this law; `dead_band` and `servo_axis` ask it.
+/// What x has beyond a dead band of this half width. The one place of this law; `dead_band` and `servo_axis`
+/// ask it.
 template <class Value> constexpr Value beyond(const Value& x, const Value& half) noexcept {
     return select(greater(x, half), x - half, select(less(x, -half), x + half, Value()));
 }
 } // namespace detail
 
-/// Ignores small values and shifts the rest towards zero: a command that has to overcome a dead zone, or an error that
-/// shall not hunt around one encoder count.
+/// Ignores small values and shifts the rest towards zero: a command that has to overcome a dead zone, or an
+/// error that shall not hunt around one encoder count.
 ///   y = x - half_width for x > half_width, x + half_width for x < -half_width, else 0
-/// Source: gap/FORMAT.md (actuator_dead_zone: the dead zone shifts the command); LinuxCNC deadzone, whose threshold is the
-/// whole width.
+/// Source: gap/FORMAT.md (actuator_dead_zone: the dead zone shifts the command); LinuxCNC deadzone, whose
+/// threshold is the whole width.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, odd and continuous.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
 /// Range: half_width >= 0; 0 passes everything.

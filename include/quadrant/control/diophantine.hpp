@@ -11,14 +11,15 @@
 #include <cstddef>
 #include <numbers>
 
-/// Polynomials in z^-1, by rising power, for the design of `rst` laws. Design only: runs once, may throw, no allocation.
+/// Polynomials in z^-1, by rising power, for the design of `rst` laws. Design only: runs once, may throw, no
+/// allocation.
 namespace quadrant {
 
 /// p[0] + p[1] z^-1 + ... + p[Degree] z^-Degree.
 template <std::size_t Degree, class Number = double> using z_polynomial = std::array<Number, Degree + 1>;
 
-/// b / a of an axis behind its hold, from command to position: a[0] is one, b[0] is zero (what is commanded now moves nothing
-/// now). A delay of whole periods is zeros at the begin of b.
+/// b / a of an axis behind its hold, from command to position: a[0] is one, b[0] is zero (what is commanded now
+/// moves nothing now). A delay of whole periods is zeros at the begin of b.
 template <std::size_t A, std::size_t B, class Number = double> struct sampled_plant {
     static_assert(A >= 1 && B >= 1, "an axis has inertia");
     z_polynomial<A, Number> a{};
@@ -75,8 +76,8 @@ auto pulse_transfer(const axis_model<Command, Number>& plant, duration period) {
     return pulse_transfer<Delay>(nominal_plant<2, 0, Number>(plant), period);
 }
 
-/// r (R, degree B - 1, r[0] = c[0]) and s (S, degree A - 1) with a R + b S = c: every polynomial c of degree A + B - 1 can be had
-/// unless a and b have a root in common. By the Sylvester matrix.
+/// r (R, degree B - 1, r[0] = c[0]) and s (S, degree A - 1) with a R + b S = c: every polynomial c of degree A
+/// + B - 1 can be had unless a and b have a root in common. By the Sylvester matrix.
 /// Source: [Astrom1997] ch. 5 (Diophantine equation, minimum degree).
 /// Throws "diophantine.b = ...: must not share a root with a".
 template <std::size_t A, std::size_t B, class Number = double> struct diophantine {

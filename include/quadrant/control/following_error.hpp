@@ -10,13 +10,17 @@ namespace quadrant {
 
 /// Watches how far the axis is from where it shall be, and trips when that is too far for too long.
 ///   y = |e| / (window + per_speed |v|);   y > warning: warns;   y > 1 for longer than patience: trips
-/// Source: LinuxCNC MIN_FERROR and FERROR: window = MIN_FERROR, per_speed = (FERROR - MIN_FERROR) / maximum speed, nearly.
+/// Source: LinuxCNC MIN_FERROR and FERROR: window = MIN_FERROR, per_speed = (FERROR - MIN_FERROR) / maximum
+/// speed, nearly.
 /// Ports: position error and the speed of the reference in, share of the window out: 1 is the limit.
-/// State: since when, and the latch; `reset` and `settle(e, v)` clear it. tripped() stays until then, warns() follows.
-/// Range: window > 0, per_speed >= 0, 0 < warning <= 1, patience >= 0 (0: the first sample beyond trips). Reset it while the
+/// State: since when, and the latch; `reset` and `settle(e, v)` clear it. tripped() stays until then, warns()
+/// follows.
+/// Range: window > 0, per_speed >= 0, 0 < warning <= 1, patience >= 0 (0: the first sample beyond trips). Reset
+/// it while the
 /// axis is off: an axis without power may be anywhere.
-/// NaN and infinities: holds the last output, raises faulted() and so tripped(): an axis that cannot be seen has to stop.
-/// Throws "following_error.<field> = ...: must ..." for period, window, per_speed, warning, patience.
+/// NaN and infinities: holds the last output, raises faulted() and so tripped(): an axis that cannot be seen
+/// has to stop. Throws "following_error.<field> = ...: must ..." for period, window, per_speed, warning,
+/// patience.
 /// Cost: 1 multiplication, 1 division. To stop the axis: `axis_enable`.
 template <class Real = double> class following_error {
 public:

@@ -11,15 +11,19 @@ namespace quadrant {
 /// A gain that depends on something else: on the load, on where the axis stands, on its speed.
 ///   y = g(s) x,   g: straight between the nodes (at[i], gain[i]), held beyond the first and the last
 /// Source: [Astrom1995] ch. 6 (gain scheduling).
-/// Ports: one scalar in, what the gain depends on beside it, one scalar out. In front of a `proportional_integral` (error to
-/// error) it scales both of its gains, and the integral, which is behind, does not jump.
-/// State: none; `reset` and `settle(x, s)` set the held output and clear the fault. `gain(s)` alone tells the gain.
-/// Jump: none at a node. When s moves by ds the output moves by at most (steepest slope) |ds| |x| more than with a fixed gain.
+/// Ports: one scalar in, what the gain depends on beside it, one scalar out. In front of a
+/// `proportional_integral` (error to error) it scales both of its gains, and the integral, which is behind,
+/// does not jump.
+/// State: none; `reset` and `settle(x, s)` set the held output and clear the fault. `gain(s)` alone tells the
+/// gain.
+/// Jump: none at a node. When s moves by ds the output moves by at most (steepest slope) |ds| |x| more than
+/// with a fixed gain.
 /// Range: nodes rise; any finite gains. One that has to be smooth in s too: more nodes.
 /// NaN and infinities: holds the last output, raises faulted().
-/// Throws "gain_schedule.at = ...: must ...", "gain_schedule.gain = ...: must be finite", "gain_schedule.period = ...".
-/// Cost: 2 multiplications, 1 division, a comparison a node. Fixed: `proportional`; all parameters at once, now and then:
-/// `parameter_swap` with `retune`.
+/// Throws "gain_schedule.at = ...: must ...", "gain_schedule.gain = ...: must be finite", "gain_schedule.period
+/// = ...".
+/// Cost: 2 multiplications, 1 division, a comparison a node. Fixed: `proportional`; all parameters at once, now
+/// and then: `parameter_swap` with `retune`.
 template <signal_tag Scheduling, signal_tag In, signal_tag Out, std::size_t Nodes, class Real = double>
 requires(Nodes >= 2) class gain_schedule {
 public:

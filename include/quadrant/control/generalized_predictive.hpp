@@ -11,14 +11,15 @@ template <signal_tag Command = signal::voltage> struct predictive_costs {
     std::size_t first = 1; ///< period ahead from which errors count; 1 ... Horizon
 };
 
-/// Generalized predictive control as an `rst`: of all plans for the next `Moves` changes of the command the first move of the one
-/// that is best over the horizon, with the references there known.
+/// Generalized predictive control as an `rst`: of all plans for the next `Moves` changes of the command the
+/// first move of the one that is best over the horizon, with the references there known.
 ///   min over du of  sum_{j = first..Horizon} (x_ref[k+j] - x[k+j])^2 + sum_{i < Moves} (effort du[k+i])^2,   du = 0 after
 /// on the model a (1 - z^-1) x = b du: it integrates. Without limits the best plan is linear, so an R, S, T.
-/// Source: [Clarke1987], with C = 1: noise of the encoder is not filtered; more effort or a longer horizon makes it less.
-/// The law previews Horizon periods. W = 1: after a limit it goes on from what was applied at once.
-/// Range: 1 <= Moves <= Horizon, Horizon > 1. Throws "generalized_predictive.<field> = ...: must ..."; a loop that is not stable (short
-/// horizons of plants with zeros beyond the unit circle) is refused.
+/// Source: [Clarke1987], with C = 1: noise of the encoder is not filtered; more effort or a longer horizon
+/// makes it less. The law previews Horizon periods. W = 1: after a limit it goes on from what was applied at
+/// once.
+/// Range: 1 <= Moves <= Horizon, Horizon > 1. Throws "generalized_predictive.<field> = ...: must ..."; a loop
+/// that is not stable (short horizons of plants with zeros beyond the unit circle) is refused.
 /// With previewed speeds and all moves free: `predictive`.
 template <std::size_t Horizon, std::size_t Moves = 1, std::size_t A, std::size_t B, class Number,
           signal_tag Command>
@@ -28,8 +29,8 @@ requires(Horizon > 1 && Moves >= 1 && Moves <= Horizon) auto generalized_predict
     require_positive("generalized_predictive.effort", costs.effort);
     require(costs.first >= 1 && costs.first <= Horizon, "generalized_predictive.first", double(costs.first),
             "must lie between 1 and the horizon (" + detail::shortest(double(Horizon)) + ")");
-    // Every coming position as a row over what is known and what is to be found: positions k ... k - A, changes k - 1 ... k - B + 1,
-    // changes k ... k + Moves - 1.
+    // Every coming position as a row over what is known and what is to be found: positions k ... k - A, changes
+    // k - 1 ... k - B + 1, changes k ... k + Moves - 1.
     constexpr std::size_t changes = A + 1, moves = changes + B - 1, columns = moves + Moves;
     const auto a = detail::with_factor<1>(plant.a, -1);
     std::array<std::array<Number, columns>, A + 1 + Horizon> x{}; // [A + j]: j periods ahead

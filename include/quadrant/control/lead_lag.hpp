@@ -11,14 +11,15 @@ struct lead_lag_loop {
     double integral = 0.1;    ///< corner of the lag, as a share of the crossover; > 0
 };
 
-/// Lead-lag compensation as an `rst` with T = S: a lead that gives the open loop its phase margin, and a lag whose corner is at
-/// zero (an integral), so that a constant force leaves no error.
+/// Lead-lag compensation as an `rst` with T = S: a lead that gives the open loop its phase margin, and a lag
+/// whose corner is at zero (an integral), so that a constant force leaves no error.
 ///   C = K (1 + s/wz)/(1 + s/wp) (s + wi)/s,  wz = wc sqrt(q), wp = wc/sqrt(q), sin(lead) = (1 - q)/(1 + q),  |C G| = 1 at wc
-/// bilinear with the crossover kept (pre-warp), on the axis behind its hold: crossover and phase margin are exact.
+/// bilinear with the crossover kept (pre-warp), on the axis behind its hold: crossover and phase margin are
+/// exact.
 /// Source: [Franklin1998] ch. 7 (lead and lag compensation).
-/// Range: the lead needed must lie between 0 and 75 degrees: else lower crossover, margin or integral. T = S: a step of the
-/// reference is answered by K wp/wz of it at once; a ramp leaves no error, an acceleration a/(K wi B) nearly.
-/// Throws "design_lead_lag.<field> = ...: must ..."; a loop that is not stable is refused.
+/// Range: the lead needed must lie between 0 and 75 degrees: else lower crossover, margin or integral. T = S: a
+/// step of the reference is answered by K wp/wz of it at once; a ramp leaves no error, an acceleration a/(K wi
+/// B) nearly. Throws "design_lead_lag.<field> = ...: must ..."; a loop that is not stable is refused.
 template <signal_tag Command = signal::voltage, std::size_t A, std::size_t B>
 auto design_lead_lag(const sampled_plant<A, B>& plant, const lead_lag_loop& wanted, duration period) {
     require_below_nyquist("design_lead_lag.crossover", wanted.crossover, period);

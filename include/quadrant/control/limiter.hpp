@@ -9,12 +9,14 @@ namespace quadrant {
 ///   y = low if x < low, high if x > high, else x
 /// Source: gap/FORMAT.md (limit of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
-/// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was clipped.
-/// `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
-/// Range: low <= high; low of minus infinity and high of infinity are no bound. What comes out is finite, always.
-/// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large demand).
-/// Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number",
-/// "must leave a finite number above it" (a low bound of infinity), "limiter.high = ...: must leave a finite number below it".
+/// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was
+/// clipped. `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
+/// Range: low <= high; low of minus infinity and high of infinity are no bound. What comes out is finite,
+/// always.
+/// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large
+/// demand). Throws "limiter.high = ...: must not lie below low (...)", "limiter.low = ...: must be a number",
+/// "must leave a finite number above it" (a low bound of infinity), "limiter.high = ...: must leave a finite
+/// number below it".
 /// Cost: 2 comparisons. To bound the slope: `rate_limiter`.
 template <signal_tag Signal, class Real = double> class limiter {
 public:

@@ -13,15 +13,19 @@
 
 namespace quadrant {
 
-/// A control law of a feed drive as most drives have it: a position loop (P) asks a velocity loop (PI) for a speed.
+/// A control law of a feed drive as most drives have it: a position loop (P) asks a velocity loop (PI) for a
+/// speed.
 ///   e = Kv (x_ref - x) + c v_ref - v,   u = Kp e + Ki T sum e + Ka a_ref
 /// Source: [Ellis2012] (P/PI cascade with velocity and acceleration feedforward).
-/// Ports: those of `axis_law`; the velocity loop is closed over the tachometer. The sum has the present sample in it.
-/// State: the integral of the velocity loop in units of the command; `reset` at rest at zero; `settle(x, u)`: it holds u.
-/// Range: Kv any finite, Kp and Ki >= 0, c and Ka finite (c = 0: follows late by 1/Kv). limit is that of the amplifier, for the
-/// integral; what was applied is told by applied(u).
+/// Ports: those of `axis_law`; the velocity loop is closed over the tachometer. The sum has the present sample
+/// in it.
+/// State: the integral of the velocity loop in units of the command; `reset` at rest at zero; `settle(x, u)`:
+/// it holds u.
+/// Range: Kv any finite, Kp and Ki >= 0, c and Ka finite (c = 0: follows late by 1/Kv). limit is that of the
+/// amplifier, for the integral; what was applied is told by applied(u).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
-/// Throws "p_pi.velocity_weight = ...: must be finite", "p_pi.acceleration_gain = ...: ..."; the others as the boxes.
+/// Throws "p_pi.velocity_weight = ...: must be finite", "p_pi.acceleration_gain = ...: ..."; the others as the
+/// boxes.
 /// Cost: 5 multiplications. On positions alone: `pid`; as a whole diagram with filters: `cascade`.
 template <class Real = double, signal_tag Command = signal::voltage,
           anti_windup_rule AntiWindup = conditional_integration>
@@ -47,7 +51,8 @@ public:
             quantity_of<Command, number>::from_value(number(std::numeric_limits<double>::infinity())); ///< > 0
         AntiWindup anti_windup = {};
     };
-    /// What the cascade holds beside its integral: the last error [m/s] and the last command of the velocity loop.
+    /// What the cascade holds beside its integral: the last error [m/s] and the last command of the velocity
+    /// loop.
     struct state {
         velocity error{}; ///< of the velocity loop, at the last sample
         value loop{};     ///< what the velocity loop gave
@@ -135,7 +140,8 @@ struct p_pi_loops {
     double position = 0.25; ///< Kv, as a share of w = 2 pi natural; > 0
 };
 
-/// Kp = (2 damping w - A)/B, Ki = w^2/B, Kv = position w, Ka = 1/B on x/u = B / (s (s + A)); the sampled loop is checked.
+/// Kp = (2 damping w - A)/B, Ki = w^2/B, Kv = position w, Ka = 1/B on x/u = B / (s (s + A)); the sampled loop
+/// is checked.
 /// Source: [Ellis2012]. In continuous time: keep w below a twentieth of the sampling rate in rad/s.
 /// Throws "place_p_pi.<field> = ...: must ..."; a sampled loop that is not stable is refused.
 template <signal_tag Command>

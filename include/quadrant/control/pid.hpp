@@ -20,17 +20,24 @@ enum class derivative_from {
     positions   ///< the difference of reference and measured position from sample to sample
 };
 
-/// A control law of a feed drive: P and I on the position error, D on the velocity error, each reference with its weight.
+/// A control law of a feed drive: P and I on the position error, D on the velocity error, each reference with
+/// its weight.
 ///   u = Kp (b x_ref - x) + Ki T sum (x_ref - x) + Kd q,   q = lowpass(c v_ref - v)
-/// Source: [Yeung2006] Table 10 (derivative on the velocity error from the tachometer); weights and filter [Astrom1995] ch. 3.4.
-/// Ports: those of `axis_law`. The sum has the present sample in it. The acceleration of the reference is not used.
-/// State: the integral in units of the command, q, the last difference of positions; `reset` at rest at zero; `settle(x, u)`:
-/// the integral holds u.
-/// Range: gains >= 0, weights finite (b = c = 0: derivative and proportion on the measurement alone), derivative_corner > 0,
-/// infinite: no filter. limit is that of the amplifier, for the integral; what was applied is told by applied(u).
+/// Source: [Yeung2006] Table 10 (derivative on the velocity error from the tachometer); weights and filter
+/// [Astrom1995] ch. 3.4.
+/// Ports: those of `axis_law`. The sum has the present sample in it. The acceleration of the reference is not
+/// used.
+/// State: the integral in units of the command, q, the last difference of positions; `reset` at rest at zero;
+/// `settle(x, u)`: the integral holds u.
+/// Range: gains >= 0, weights finite (b = c = 0: derivative and proportion on the measurement alone),
+/// derivative_corner > 0,
+/// infinite: no filter. limit is that of the amplifier, for the integral; what was applied is told by
+/// applied(u).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
-/// Throws "pid.<field> = ...: must ..." for derivative_gain, weights, derivative_corner; the others as `proportional_integral`.
-/// Cost: 6 multiplications. Without derivative: `proportional_integral`; with the inverse of the plant: `sliding_mode`.
+/// Throws "pid.<field> = ...: must ..." for derivative_gain, weights, derivative_corner; the others as
+/// `proportional_integral`.
+/// Cost: 6 multiplications. Without derivative: `proportional_integral`; with the inverse of the plant:
+/// `sliding_mode`.
 template <class Real = double, signal_tag Command = signal::voltage,
           anti_windup_rule AntiWindup = conditional_integration>
 class pid {
@@ -43,7 +50,8 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
-    /// Gains, the filter of the derivative part, weights of the reference, and the limit that the integral has to know of.
+    /// Gains, the filter of the derivative part, weights of the reference, and the limit that the integral has
+    /// to know of.
     struct parameters {
         gain_of<Command, signal::position, number> gain;               ///< Kp; >= 0
         gain_rate_of<Command, signal::position, number> integral_gain; ///< Ki; >= 0
@@ -159,8 +167,9 @@ struct pid_poles {
     double real = 1; ///< third pole, as a multiple of w
 };
 
-/// Gains that put them there on x/u = B / (s (s + A)), weights one. In continuous time: the sampled loop is close to it while
-/// w is below about a twentieth of the sampling rate in rad/s. Gains that would be negative are refused by the block.
+/// Gains that put them there on x/u = B / (s (s + A)), weights one. In continuous time: the sampled loop is
+/// close to it while w is below about a twentieth of the sampling rate in rad/s. Gains that would be negative
+/// are refused by the block.
 template <signal_tag Command> auto place_pid(const axis_model<Command>& plant, const pid_poles& poles) {
     require_positive("place_pid.plant.gain", plant.gain);
     require_not_negative("place_pid.plant.damping", plant.damping);

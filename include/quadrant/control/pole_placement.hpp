@@ -9,7 +9,8 @@ struct rst_poles {
     frequency natural;  ///< of the pair that the reference is followed with; > 0, below half the sampling rate
     double damping = 1; ///< of it; > 0
     frequency
-        observer; ///< of the rest, real and equal: faster removes disturbances faster and passes more noise; > 0
+        /// of the rest, real and equal: faster removes disturbances faster and passes more noise; > 0
+        observer;
 };
 
 namespace detail {
@@ -49,12 +50,14 @@ template <std::size_t Integrals, std::size_t A, std::size_t B, class Number> str
 };
 } // namespace detail
 
-/// Pole placement: an `rst` that closes the loop with poles where they are asked for, all of them, and follows the reference as
-/// the pair alone would, the sampled zeros of the plant kept (they lie near z = -1, where a pole on them would ring).
+/// Pole placement: an `rst` that closes the loop with poles where they are asked for, all of them, and follows
+/// the reference as the pair alone would, the sampled zeros of the plant kept (they lie near z = -1, where a
+/// pole on them would ring).
 ///   a R + b S = Am Ao,  T = Ao Am(1)/b(1),  W = Ao;  Integrals roots of R at z = 1 hold against a constant force
 /// Source: [Astrom1997] ch. 5.
-/// A ramp is followed late by 2 damping / w (the trajectory's derivatives are not used): for contours `zero_phase_rst`.
-/// Throws in the name of place_rst; "diophantine.b" when the plant has an integral that it cannot hold.
+/// A ramp is followed late by 2 damping / w (the trajectory's derivatives are not used): for contours
+/// `zero_phase_rst`. Throws in the name of place_rst; "diophantine.b" when the plant has an integral that it
+/// cannot hold.
 template <std::size_t Integrals = 1, signal_tag Command = signal::voltage, std::size_t A, std::size_t B,
           class Number>
 auto place_rst(const sampled_plant<A, B, Number>& plant, const rst_poles& poles, duration period) {

@@ -10,23 +10,26 @@
 
 namespace quadrant {
 
-/// A control law of a feed drive that knows what the trajectory will ask for: each sample it takes the first move of the
-/// best plan over the coming `horizon` periods, in changes of the command, so that it integrates.
+/// A control law of a feed drive that knows what the trajectory will ask for: each sample it takes the first
+/// move of the best plan over the coming `horizon` periods, in changes of the command, so that it integrates.
 ///   du = sum over i = 1 ... horizon of kp_i (r_{k+i} - x) + kv_i (dr_{k+i} - v), less k_x (x - x_{k-1}) + k_v (v - v_{k-1})
 ///   u = u_applied + du;   the least J of predictive_design.hpp, with every du of the horizon free
-/// A constant force is in no difference: no error stays, with any force constant and mass that leave the loop stable.
-/// Source: the law of [LowKeck2003] (eqs. 1-8: increments of position and speed, integral of the error, preview of position
-/// and speed), designed as the incremental predictive control of [Wang2009].
-/// Limits: du is clipped to rate_limit, then u to limit; the next sample starts from what was applied, so nothing winds up.
-/// The clipped move is not the best one under limits (that takes a quadratic program a sample).
+/// A constant force is in no difference: no error stays, with any force constant and mass that leave the loop
+/// stable.
+/// Source: the law of [LowKeck2003] (eqs. 1-8: increments of position and speed, integral of the error, preview
+/// of position and speed), designed as the incremental predictive control of [Wang2009].
+/// Limits: du is clipped to rate_limit, then u to limit; the next sample starts from what was applied, so
+/// nothing winds up. The clipped move is not the best one under limits (that takes a quadratic program a
+/// sample).
 /// Ports: those of `axis_law`; lead() is the horizon.
-/// State: the coming references, position and speed of the sample before, the command applied. `reset`: at rest at zero;
-/// `settle(x, u)`: at rest at x, held by u, and so stays the reference.
-/// Range: gain of the plant > 0 (else the command does not control the axis), damping >= 0, 1 <= horizon <= Preview, weights
-/// as they say. The speed measured should lag little: `kalman` with its disturbance.
+/// State: the coming references, position and speed of the sample before, the command applied. `reset`: at rest
+/// at zero; `settle(x, u)`: at rest at x, held by u, and so stays the reference.
+/// Range: gain of the plant > 0 (else the command does not control the axis), damping >= 0, 1 <= horizon <=
+/// Preview, weights as they say. The speed measured should lag little: `kalman` with its disturbance.
 /// NaN and infinities: holds the last command, takes nothing in, raises faulted().
 /// Throws "predictive.<field> = ...: must ..." for each, and for horizon and weights whose loop is not stable.
-/// Cost: 2 horizon + 2 multiplications; 16 (Preview + 3) bytes of state. Nothing to preview: `pid`, `sliding_mode`.
+/// Cost: 2 horizon + 2 multiplications; 16 (Preview + 3) bytes of state. Nothing to preview: `pid`,
+/// `sliding_mode`.
 template <std::size_t Preview = 10, class Real = double, signal_tag Command = signal::voltage>
 requires(Preview > 0) class predictive {
 public:

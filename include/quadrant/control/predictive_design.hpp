@@ -27,7 +27,8 @@ predictive_weights<Number> bryson_weights(quantity_of<signal::position, Number> 
     return {{{{over_square(position), Number(0)}, {Number(0), over_square(speed)}}}, over_square(increment)};
 }
 
-/// du = sum of to_position[i] (r_i - x) + to_velocity[i] (dr_i - v), less the gains on what changed since the sample before.
+/// du = sum of to_position[i] (r_i - x) + to_velocity[i] (dr_i - v), less the gains on what changed since the
+/// sample before.
 template <std::size_t Preview, class Number> struct predictive_gains {
     std::array<Number, Preview> to_position{}, to_velocity{}; ///< [0]: one period ahead
     Number on_position_change{}, on_velocity_change{};

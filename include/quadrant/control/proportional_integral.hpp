@@ -24,18 +24,24 @@ concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, co
 
 /// Velocity loop: drives the error to zero and holds against a constant force.
 ///   I[k] = I[k-1] + integral_gain T e[k] (restrained by AntiWindup),   u[k] = gain e[k] + I[k]
-/// Source: gap/FORMAT.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that a gain
-/// change does not jump (control_toolbox #294).
-/// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is assumed.
-/// State: the integral and the excess output - applied, both in output units; `reset` leaves zero; `settle(e, u)` is
+/// Source: gap/FORMAT.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that a
+/// gain change does not jump (control_toolbox #294).
+/// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is
+/// assumed.
+/// State: the integral and the excess output - applied, both in output units; `reset` leaves zero;
+/// `settle(e, u)` is
 /// the bumpless start: the next step with e gives u, as far as the limit of the integral allows.
-/// `retune(next, e[k-1])`: other gains from the next step on; the integral takes what the proportional part loses. Then
-/// |u'[k] - u[k-1]| <= gain' |e[k] - e[k-1]| + integral_gain' T |e[k]| + what the integral has beyond its new limit (+ T/tracking_time'
-/// times the excess): the step that the new gains would have made anyway.
-/// Range: gains not negative; integral_gain = 0 is a plain gain that keeps its integral; limit > 0, infinite = none.
-/// u itself is never clipped: a notch and feedforward follow, then a `limiter`. limited() = the integral was restrained.
+/// `retune(next, e[k-1])`: other gains from the next step on; the integral takes what the proportional part
+/// loses. Then
+/// |u'[k] - u[k-1]| <= gain' |e[k] - e[k-1]| + integral_gain' T |e[k]| + what the integral has beyond its new
+/// limit (+ T/tracking_time' times the excess): the step that the new gains would have made anyway.
+/// Range: gains not negative; integral_gain = 0 is a plain gain that keeps its integral; limit > 0, infinite =
+/// none.
+/// u itself is never clipped: a notch and feedforward follow, then a `limiter`. limited() = the integral was
+/// restrained.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "proportional_integral.<field> = ...: must be ..." for gain, integral_gain, limit, tracking_time, period.
+/// Throws "proportional_integral.<field> = ...: must be ..." for gain, integral_gain, limit, tracking_time,
+/// period.
 /// Cost: 2 multiplications (3 with back calculation), 24 bytes of state. No integral: `proportional`.
 template <signal_tag In, signal_tag Out, anti_windup_rule AntiWindup = integral_clamp, class Real = double>
 class proportional_integral {
@@ -120,7 +126,8 @@ public:
         set_where(good, limited_, mask_of<Real>());
         out_.settle(good, u);
     }
-    /// The last step once more, with the new gains: as if it had been given e and had put out u (of one argument: u).
+    /// The last step once more, with the new gains: as if it had been given e and had put out u (of one
+    /// argument: u).
     void retune(const proportional_integral& next, argument e) noexcept { retune(next, e, out_.last()); }
     void retune(const proportional_integral& next, argument e, value u) noexcept {
         const value integral = u - next.gain_ * e;

@@ -12,10 +12,12 @@ namespace quadrant {
 /// Source: gap/FORMAT.md (DAC rounding of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
-/// Range: step >= 0; from 2^52 steps on (2^23 in float) the input is its own rounding. A dual's derivative passes unchanged.
+/// Range: step >= 0; from 2^52 steps on (2^23 in float) the input is its own rounding. A dual's derivative
+/// passes unchanged.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "quantizer.step = ...: must be finite and not below 0".
-/// Cost: 1 division, 1 rounding, 1 multiplication. To bound the range as a real DAC does, put a `limiter` before it.
+/// Cost: 1 division, 1 rounding, 1 multiplication. To bound the range as a real DAC does, put a `limiter`
+/// before it.
 template <signal_tag Signal, class Real = double> class quantizer {
 public:
     using input = Signal;

@@ -9,7 +9,8 @@ namespace quadrant {
 ///   y[k] = x[k], but at most rate T away from y[k-1]
 /// Source: LinuxCNC limit2 (its maxv).
 /// Ports: one scalar in, one scalar out, the same signal.
-/// State: the last output; `reset` leaves 0, `settle(x)` stands at x. limited() = the last sample could not follow.
+/// State: the last output; `reset` leaves 0, `settle(x)` stands at x. limited() = the last sample could not
+/// follow.
 /// Range: rate > 0, the same up and down; infinite = no bound.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "rate_limiter.rate = ...: must be above 0".

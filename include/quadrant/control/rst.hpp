@@ -26,19 +26,23 @@ struct rst_polynomials {
     z_polynomial<R> recovery = {1}; ///< w, anti-windup: [0] = 1, roots inside the unit circle; 1 alone: at once
 };
 
-/// A control law of a feed drive of two degrees of freedom, any linear one on positions: what pole placement, zero phase error
-/// tracking, generalized predictive control and lead-lag compensation are.
+/// A control law of a feed drive of two degrees of freedom, any linear one on positions: what pole placement,
+/// zero phase error tracking, generalized predictive control and lead-lag compensation are.
 ///   R u = T x_ref - S x,   R, S, T polynomials in z^-1
 ///   under a limit: W u = T x_ref - S x + (W - R) u_applied
 /// Source: [Astrom1997] ch. 5 (two degrees of freedom), 3.5 (anti-windup by the observer polynomial W).
-/// Ports: those of `axis_law`; velocities and acceleration are not used. Designs: `place_rst`, `zero_phase_rst`,
-/// `generalized_predictive`, `design_lead_lag`; they check that the loop around their plant is stable.
-/// State: past references, positions, commands applied. `reset` at rest at zero; `settle(x, u)`: at rest at x, held by u when
-/// R has a root at z = 1 (integral); else the command starts from u and goes where the position asks.
-/// Range: S and T have the same sum (with an integral in axis or law a constant reference is reached); positions count from
-/// where the axis is, so that no digits are lost far from zero. With Lead > 0 the reference is taken so many periods ahead (`preview`).
+/// Ports: those of `axis_law`; velocities and acceleration are not used. Designs: `place_rst`,
+/// `zero_phase_rst`, `generalized_predictive`, `design_lead_lag`; they check that the loop around their plant
+/// is stable.
+/// State: past references, positions, commands applied. `reset` at rest at zero; `settle(x, u)`: at rest at x,
+/// held by u when R has a root at z = 1 (integral); else the command starts from u and goes where the position
+/// asks.
+/// Range: S and T have the same sum (with an integral in axis or law a constant reference is reached);
+/// positions count from where the axis is, so that no digits are lost far from zero. With Lead > 0 the
+/// reference is taken so many periods ahead (`preview`).
 /// NaN and infinities in any input: holds the last command, keeps the state, raises faulted().
-/// Throws "rst.r[0] = ...: must be 1", "rst.reference = ...: must have the sum of feedback", "rst.recovery = ...: must ...".
+/// Throws "rst.r[0] = ...: must be 1", "rst.reference = ...: must have the sum of feedback", "rst.recovery =
+/// ...: must ...".
 /// Cost: R + S + T + 2 multiplications, 8 (2 R + S + T) bytes of state. Of states instead: `state_feedback`.
 template <std::size_t R, std::size_t S, std::size_t T, std::size_t Lead = 0, class Real = double,
           signal_tag Command = signal::voltage>

@@ -11,19 +11,23 @@
 
 namespace quadrant {
 
-/// A control law of a feed drive that keeps it on a sliding surface, S = 0, on which the error dies out with sliding:
-/// the inverse of the plant, a gain on S, and an estimate of the disturbance that adapts until the error is gone.
+/// A control law of a feed drive that keeps it on a sliding surface, S = 0, on which the error dies out with
+/// sliding: the inverse of the plant, a gain on S, and an estimate of the disturbance that adapts until the
+/// error is gone.
 ///   S = sliding (x_ref - x) + (v_ref - v)
 ///   u = {sliding (v_ref - v) + a_ref + A v} / B + Ks S + d,   d = rho {(x_ref - x) + sliding T sum (x_ref - x)}
 /// A and B of x/u = B / (s (s + A)); 1/B is Je, A/B is Be of the source. No switching, so no chattering.
-/// Around an exact plant the error obeys S' + B Ks S + B rho (integral of S) = B disturbance (in units of the command).
+/// Around an exact plant the error obeys S' + B Ks S + B rho (integral of S) = B disturbance (in units of the
+/// command).
 /// Source: [Yeung2006] eqs. (20, 21); [Altintas2000].
 /// Ports: those of `axis_law`. The sum has the present sample in it.
 /// State: d, as the integral of a `proportional_integral`; `reset` at rest at zero; `settle(x, u)`: d holds u.
-/// Range: B > 0, A >= 0, sliding > 0 in 1/s (not hertz), Ks >= 0, rho >= 0. limit is that of the amplifier, for d; what was
-/// applied is told by applied(u). What friction the reference will cause is best fed forward beside the law (`feed_control`).
+/// Range: B > 0, A >= 0, sliding > 0 in 1/s (not hertz), Ks >= 0, rho >= 0. limit is that of the amplifier, for
+/// d; what was applied is told by applied(u). What friction the reference will cause is best fed forward beside
+/// the law (`feed_control`).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
-/// Throws "sliding_mode.<field> = ...: must ..." for plant, sliding, gain, adaptation; limit as `proportional_integral`.
+/// Throws "sliding_mode.<field> = ...: must ..." for plant, sliding, gain, adaptation; limit as
+/// `proportional_integral`.
 /// Cost: 7 multiplications. Without a model: `pid`.
 template <class Real = double, signal_tag Command = signal::voltage,
           anti_windup_rule AntiWindup = conditional_integration>
@@ -37,8 +41,8 @@ public:
     using velocity = quantity_of<signal::velocity, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
-    /// The axis as believed, how fast its error dies out, gain and adaptation, and the limit that the estimate has to know
-    /// of.
+    /// The axis as believed, how fast its error dies out, gain and adaptation, and the limit that the estimate
+    /// has to know of.
     struct parameters {
         axis_model<Command, number> plant;                     ///< as the law believes it
         quantity<si::frequency, number> sliding;               ///< lambda, in 1/s; > 0

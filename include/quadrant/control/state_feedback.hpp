@@ -15,16 +15,19 @@
 
 namespace quadrant {
 
-/// A control law of a feed drive on estimated states: position, velocity and disturbance from the encoder and the command that
-/// was applied (steady Kalman gain), the disturbance cancelled, the plant inverted for the reference.
+/// A control law of a feed drive on estimated states: position, velocity and disturbance from the encoder and
+/// the command that was applied (steady Kalman gain), the disturbance cancelled, the plant inverted for the
+/// reference.
 ///   u = k1 (x_ref - x^) + k2 (v_ref - v^) + (a_ref + A v_ref)/B - d^
 ///   prediction: the axis x/u = B / (s (s + A)) over a period under u_applied + d^, exact;  estimate = prediction + L (x - its x)
 /// Source: [Franklin1998] ch. 8 (pole placement), ch. 9 (observer gain by `dare`); [Yeung2006] names the law.
 /// Ports: those of `axis_law`; the tachometer is not read.
-/// State: the three estimates and the command applied. `reset` at rest at zero; `settle(x, u)`: at rest at x, d^ = -u.
+/// State: the three estimates and the command applied. `reset` at rest at zero; `settle(x, u)`: at rest at x,
+/// d^ = -u.
 /// Limits: nothing winds up, as the observer is told by applied(u) what drove the axis.
-/// Range: B > 0, A >= 0; k1, k2 such that the sampled loop on the true states is stable (with those of the observer these are
-/// all poles of the loop). encoder_noise and drift > 0: their ratio sets the observer, see `kalman`.
+/// Range: B > 0, A >= 0; k1, k2 such that the sampled loop on the true states is stable (with those of the
+/// observer these are all poles of the loop). encoder_noise and drift > 0: their ratio sets the observer, see
+/// `kalman`.
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
 /// Throws "state_feedback.<field> = ...: must ..." for all fields; dare in its own name.
 /// Cost: 15 multiplications, 32 bytes of state. The estimates alone: `kalman`. By polynomials: `rst`.
@@ -173,7 +176,8 @@ struct state_feedback_poles {
     quantity_of<signal::position> encoder_noise{}; ///< of a scale of steps q: q / sqrt(12)
 };
 
-/// k1, k2 that put the poles of the sampled loop where those of s^2 + 2 damping w s + w^2 go; `drift` as `state_feedback`.
+/// k1, k2 that put the poles of the sampled loop where those of s^2 + 2 damping w s + w^2 go; `drift` as
+/// `state_feedback`.
 template <signal_tag Command>
 auto place_state_feedback(const axis_model<Command>& plant, const state_feedback_poles& wanted,
                           quantity_of<Command> drift, duration period) {

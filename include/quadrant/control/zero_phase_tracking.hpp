@@ -4,11 +4,12 @@
 
 namespace quadrant {
 
-/// Zero phase error tracking: the same feedback, and a reference polynomial that cancels all poles of the loop and the phase of
-/// its zeros, from the reference B periods ahead. No zero is cancelled.
+/// Zero phase error tracking: the same feedback, and a reference polynomial that cancels all poles of the loop
+/// and the phase of its zeros, from the reference B periods ahead. No zero is cancelled.
 ///   T = a-closed(z^-1) b(z) / b(1)^2:  x/x_ref = |b|^2 / b(1)^2, real at all frequencies; of a rigid axis cos^2(pi f T) nearly
 /// Source: [Tomizuka1987], with all zeros on the side that is not cancelled.
-/// The feedback around it does not see the reference at all while the plant is as believed: it holds against disturbances.
+/// The feedback around it does not see the reference at all while the plant is as believed: it holds against
+/// disturbances.
 template <std::size_t Integrals = 1, signal_tag Command = signal::voltage, std::size_t A, std::size_t B,
           class Number>
 auto zero_phase_rst(const sampled_plant<A, B, Number>& plant, const rst_poles& poles, duration period) {

@@ -21,9 +21,10 @@ struct applied_diagnosis {
     std::vector<std::string> notes; ///< causes that were left out, and why
 };
 
-/// Writes the causes of a diagnosis that are at least as probable as `at_least` into a machine file: its JSON text in, the
-/// corrected document and what was changed out. Throws bad_input when the text is no machine file (read_machine), when the
-/// diagnosis is of another machine, and when the values found are not ones that a machine file may hold.
+/// Writes the causes of a diagnosis that are at least as probable as `at_least` into a machine file: its JSON
+/// text in, the corrected document and what was changed out. Throws bad_input when the text is no machine file
+/// (read_machine), when the diagnosis is of another machine, and when the values found are not ones that a
+/// machine file may hold.
 QUADRANT_DIAGNOSIS_DECL applied_diagnosis apply(std::string_view machine_text, std::string_view machine_file,
                                                 const diagnosis_result& d, double at_least = 0.5);
 

@@ -103,7 +103,8 @@ private:
         }
     }
 
-    /// A cause that the simulation lacked, in a file that has it: the diagnosis is of another file, or applied already.
+    /// A cause that the simulation lacked, in a file that has it: the diagnosis is of another file, or applied
+    /// already.
     void refuse_if_there(const cause& c, const json& axis) const {
         const std::string coulomb = own_key(c.axis, "coulomb_N"), at_rest = own_key(c.axis, "static_N");
         const auto says_something = [&](const parameter_estimate& p) {
@@ -121,7 +122,8 @@ private:
                                         c.axis, c.effect));
     }
 
-    /// Where a parameter of a diagnosis stands in the machine file: box and key, dotted where the key is nested.
+    /// Where a parameter of a diagnosis stands in the machine file: box and key, dotted where the key is
+    /// nested.
     std::pair<std::string, std::string> place_of(const cause& c, const std::string& name) const {
         if (c.effect == "controller_mismatch") return {"controller", name};
         if (const auto dot = name.find('.'); dot != name.npos)
@@ -165,8 +167,8 @@ private:
                            [&](const auto& c) { return c.path == path; });
     }
 
-    /// The diagnosis holds what the machine file describes otherwise: the excess of static over Coulomb friction, and
-    /// the way in which friction gives way.
+    /// The diagnosis holds what the machine file describes otherwise: the excess of static over Coulomb
+    /// friction, and the way in which friction gives way.
     void follow(const std::string& axis, const json& before) {
         const json& plant = out_.machine["axes"][axis]["plant"];
         constexpr const char* why = "moves with the friction";
@@ -188,8 +190,8 @@ private:
     applied_diagnosis out_;
 };
 
-/// Takes the causes that are code in a machine out of a diagnosis, and into the axis: the numbers of its own controller, a
-/// law of its own.
+/// Takes the causes that are code in a machine out of a diagnosis, and into the axis: the numbers of its own
+/// controller, a law of its own.
 inline void take_own(axis_description& axis, diagnosis_result& d, double at_least) {
     std::erase_if(d.causes, [&](const cause& c) {
         if (c.axis != axis.name || c.probability < at_least) return false;

@@ -19,7 +19,8 @@ namespace detail {
 inline constexpr double slip_of_a_unit = 20;
 /// Between the two a ratio is only noted: a wrong mass, a soft controller or a poor regression can make it.
 inline constexpr double remarkable = 3;
-/// A turned sign is refused only when it is this many standard deviations sure, and explains a share of the command.
+/// A turned sign is refused only when it is this many standard deviations sure, and explains a share of the
+/// command.
 inline constexpr double sure_of_a_sign = 10;
 
 /// "1000 times": the ratio for a sentence, the larger way round.

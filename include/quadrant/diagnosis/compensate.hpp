@@ -6,10 +6,12 @@
 
 namespace quadrant::diagnosis {
 
-/// What compensations in the controller would gain: for each cause of a diagnosis that is at least as probable as `at_least`
-/// the feedforward with its fitted values, forecast on the reference of a log of the same machine (bad_input as in apply,
-/// match and simulate). The plants of the forecast are drawn from the intervals of the diagnosis, while the feedforward has
-/// the values found: never the same numbers on both sides. A cause without a feedforward gets advice and no gain.
+/// What compensations in the controller would gain: for each cause of a diagnosis that is at least as probable
+/// as `at_least` the feedforward with its fitted values, forecast on the reference of a log of the same machine
+/// (bad_input as in apply, match and simulate). The plants of the forecast are drawn from the intervals of the
+/// diagnosis, while the feedforward has
+/// the values found: never the same numbers on both sides. A cause without a feedforward gets advice and no
+/// gain.
 QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description& machine,
                                                        const diagnosis_result& d, const machine_log& log,
                                                        double at_least = 0.5);

@@ -14,8 +14,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// A diagnosis with every fitted value elsewhere: place() says where, -1 and 1 at the ends of its interval. Values are moved
-/// independently, since a diagnosis does not say how they go together.
+/// A diagnosis with every fitted value elsewhere: place() says where, -1 and 1 at the ends of its interval.
+/// Values are moved independently, since a diagnosis does not say how they go together.
 template <class Place> diagnosis_result moved(diagnosis_result d, Place place) {
     const auto move = [&](std::vector<parameter_estimate>& parameters) {
         for (parameter_estimate& p : parameters) {

@@ -9,8 +9,9 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// A motion as the corrected machine would record it: its closed loop on the reference, the position with the white noise
-/// and the count that the diagnosis found. One step a period: that is the model whose values were fitted.
+/// A motion as the corrected machine would record it: its closed loop on the reference, the position with the
+/// white noise and the count that the diagnosis found. One step a period: that is the model whose values were
+/// fitted.
 inline axis_log recorded(const axis_description& axis, const axis_log& motion, double period, double noise) {
     axis_log out = motion;
     std::mt19937_64 random(20081121);

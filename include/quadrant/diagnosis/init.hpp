@@ -258,10 +258,10 @@ private:
 
 } // namespace detail
 
-/// Begins a machine file. Sample period, axes, unit of the command, resolution and, where the command stops there, its limit
-/// come from the log when there is one; mass and force constant must fit its motion within a factor of three (or a note says
-/// that they do not, `unchecked`). With `from_log` the log's regression gives mass, friction and gravity where nobody does. What
-/// it returns passes read_machine. Throws bad_input.
+/// Begins a machine file. Sample period, axes, unit of the command, resolution and, where the command stops
+/// there, its limit come from the log when there is one; mass and force constant must fit its motion within a
+/// factor of three (or a note says that they do not, `unchecked`). With `from_log` the log's regression gives
+/// mass, friction and gravity where nobody does. What it returns passes read_machine. Throws bad_input.
 inline initialised_machine init_machine(const init_request& request, const machine_log* log = nullptr) {
     return detail::machine_starter(request, log).take();
 }

@@ -66,7 +66,8 @@ inline void refuse_positions_only(const machine_description& machine, std::strin
                 fmt::format("axes.{}.plant: is missing; {} needs the forces of the axis", axis.name, what));
 }
 
-/// Refuses a machine with a drive that closes loops of its own, other than of the kind `but`, for which `what` is not computed: bad_input.
+/// Refuses a machine with a drive that closes loops of its own, other than of the kind `but`, for which `what`
+/// is not computed: bad_input.
 inline void refuse_driven(const machine_description& machine, std::string_view what,
                           drive_kind but = drive_kind::current) {
     for (const axis_description& axis : machine.axes)

@@ -8,7 +8,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// One reading of a machine file, box by box. An unknown key is told before a missing one: it is often the same slip.
+/// One reading of a machine file, box by box. An unknown key is told before a missing one: it is often the same
+/// slip.
 class machine_reader {
 public:
     machine_reader(std::string_view text, std::string_view file)
@@ -69,8 +70,8 @@ private:
         return axis;
     }
 
-    /// Whether an axis without a plant is a chain of positions: it says something of a transmission or an encoder, and nothing that
-    /// needs forces.
+    /// Whether an axis without a plant is a chain of positions: it says something of a transmission or an
+    /// encoder, and nothing that needs forces.
     static bool is_chain(const json_node& axis) {
         const auto has = [&](const char* box) { return axis.value->contains(box); };
         return (has("transmission") || has("encoder") || has("motor_encoder")) && !has("controller") &&

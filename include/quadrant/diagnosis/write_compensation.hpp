@@ -66,8 +66,8 @@ inline nlohmann::ordered_json to_json(const compensation_result& r) {
     return {{"schema", "quadrant.compensation/1"}, {"axes", axes}, {"notes", r.notes}};
 }
 
-/// What of it the machine file's controller has keys for, where a gain is claimed: a merge patch (RFC 7386) to the machine
-/// file. Friction feedforwards that need a block are not in it.
+/// What of it the machine file's controller has keys for, where a gain is claimed: a merge patch (RFC 7386) to
+/// the machine file. Friction feedforwards that need a block are not in it.
 inline nlohmann::ordered_json controller_patch(const compensation_result& r) {
     nlohmann::ordered_json out = nlohmann::ordered_json::object();
     for (const compensated_axis& a : r.axes)

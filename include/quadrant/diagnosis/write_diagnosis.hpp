@@ -83,8 +83,8 @@ inline ordered_json axis_json(const axis_result& a) {
     return out;
 }
 
-/// What is added to a command. Numbers that the form does not have are left out; the signal itself is in means over
-/// as many rows as leave a thousand of them at most.
+/// What is added to a command. Numbers that the form does not have are left out; the signal itself is in means
+/// over as many rows as leave a thousand of them at most.
 inline ordered_json waveform_json(const added_waveform& w, const std::string& unit) {
     ordered_json out = {{"form", name_of(w.form)},
                         {"text", in_words(w, unit)},
@@ -144,8 +144,8 @@ inline ordered_json cause_json(const cause& c, axis_kind kind, const std::string
 
 } // namespace detail
 
-/// The diagnosis file (FORMAT.md, docs/schema/diagnosis.schema.json). A number that is not finite becomes null, which
-/// the schema refuses.
+/// The diagnosis file (FORMAT.md, docs/schema/diagnosis.schema.json). A number that is not finite becomes null,
+/// which the schema refuses.
 inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
     using detail::ordered_json;
     ordered_json unseen = ordered_json::array();

@@ -84,8 +84,10 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
 
 } // namespace detail
 
-/// The machine file (FORMAT.md) of a description: read_machine() of it gives the description back, but for a controller
-/// of unknown kind, of which a description holds nothing, and for what is code: controllers, effects and forces of your own.
+/// The machine file (FORMAT.md) of a description: read_machine() of it gives the description back, but for a
+/// controller
+/// of unknown kind, of which a description holds nothing, and for what is code: controllers, effects and forces
+/// of your own.
 inline nlohmann::ordered_json to_json(const machine_description& m) {
     nlohmann::ordered_json out = {{"schema", "quadrant.machine/1"}, {"sample_period_s", m.sample_period_s}};
     if (!m.excluded_effects.empty()) out["excluded_effects"] = m.excluded_effects;

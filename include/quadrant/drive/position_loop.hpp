@@ -8,11 +8,11 @@ namespace quadrant {
 ///   v_asked = gain (r - x) + velocity_feedforward r'
 ///   F       = velocity_loop(v_asked, v)
 /// Source: gap/FORMAT.md, `drive.kind` `position`; [Franklin1998] ch. 4 for the cascade.
-/// Ports: loop(state, set-point, its velocity, position, velocity) once a step h of the drive; force out [N] or [N m]. The
-/// set-point is that of a `set_point_line`.
+/// Ports: loop(state, set-point, its velocity, position, velocity) once a step h of the drive; force out [N] or
+/// [N m]. The set-point is that of a `set_point_line`.
 /// State: that of the velocity loop.
-/// Range: bare SI numbers; gain >= 0 [1/s]; velocity_feedforward: a share, 1 = the whole velocity of the set-points.
-/// NaN and infinities pass on. Runs in lanes.
+/// Range: bare SI numbers; gain >= 0 [1/s]; velocity_feedforward: a share, 1 = the whole velocity of the
+/// set-points. NaN and infinities pass on. Runs in lanes.
 /// Throws "position_loop.<field> = ...: must ...", and in the name of `velocity_loop`.
 /// Cost: 2 multiplications and the velocity loop. The cascade of a controller, in typed quantities: `p_pi`.
 template <class Real = double> class position_loop {

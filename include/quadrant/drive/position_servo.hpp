@@ -12,7 +12,8 @@ namespace quadrant {
 /// A hobby or robot servo: a proportional law that turns a position error into the duty of a PWM bridge.
 ///   f' = r, at most `rate` a second           the servo's own profile
 ///   d  = gain (f - q) + minimum sign(f - q),  |d| <= maximum
-/// The motor's voltage is d times the supply, its torque that times the torque constant; back-EMF is part of the viscous friction.
+/// The motor's voltage is d times the supply, its torque that times the torque constant; back-EMF is part of
+/// the viscous friction.
 /// Source: gap/FORMAT.md, `drive.kind` `position_servo`; [Duclusaud2025] for such a servo's law.
 /// Ports: servo(state, set-point, position) once a step h; duty out (-1 ... 1).
 /// State: the set-point that is followed, given and returned by the caller; `state::at(q)`: at rest there.

@@ -14,15 +14,18 @@ namespace quadrant {
 ///            of the velocity
 enum class interpolation { hold, linear, cubic };
 
-/// The set-points of a drive as its loops see them: what a bus delivers every few servo periods, drawn as a line.
+/// The set-points of a drive as its loops see them: what a bus delivers every few servo periods, drawn as a
+/// line.
 ///   hold     y(p) = r0
 ///   linear   y(p) = r1 + p (r0 - r1)
 ///   cubic    y(p) = Hermite through r2 and r1 with the slopes (r1 - r3)/2 and (r0 - r2)/2 a period
 /// r0 is the newest set-point, r1 the one before; p = 0 ... 1 is the time since r0 arrived, in periods.
-/// Source: CiA 402-2, interpolated position mode (linear) and cyclic synchronous position with the cubic that drives offer.
-/// Ports: arrive(state, set-point) once a period; line(state, p) and slope(state, p) [a period] in between. A lost set-point
-/// arrives as the previous one.
-/// State: the last four set-points, given and returned by the caller; `state::at(x)`: as if x had been asked for ever.
+/// Source: CiA 402-2, interpolated position mode (linear) and cyclic synchronous position with the cubic that
+/// drives offer.
+/// Ports: arrive(state, set-point) once a period; line(state, p) and slope(state, p) [a period] in between. A
+/// lost set-point arrives as the previous one.
+/// State: the last four set-points, given and returned by the caller; `state::at(x)`: as if x had been asked
+/// for ever.
 /// Range: 0 <= p <= 1. NaN and infinities pass on. Throws nothing. Runs in lanes.
 /// Cost: 10 multiplications for the cubic. Motion with bounded acceleration between points: `interpolator`.
 template <class Real = double> class set_point_line {

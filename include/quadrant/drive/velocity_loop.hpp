@@ -10,17 +10,19 @@
 
 namespace quadrant {
 
-/// The velocity loop inside a drive: what turns an asked velocity into the force of the motor, on the drive's own clock.
+/// The velocity loop inside a drive: what turns an asked velocity into the force of the motor, on the drive's
+/// own clock.
 ///   w' = 2 pi filter (v - w)                       velocity filter, exact over the step; none: w = v
 ///   e  = asked - w
 ///   I' = integral e,  |I| <= limit
 ///   F  = gain e + I,  |F| <= limit
 /// Source: gap/FORMAT.md, `drive.kind` `velocity`; [Franklin1998] ch. 4 for P and PI.
-/// Ports: loop(state, asked, velocity) once a step h: asked and measured velocity of the motor in [m/s] or [rad/s], force out [N]
-/// or [N m].
-/// State: integral [N] and filtered velocity, given and returned by the caller; `state::at(v)`: in steady motion at v.
-/// Range: bare SI numbers, because a fit moves each of them; gain, integral >= 0; filter > 0, infinite: none; limit > 0, infinite:
-/// none.
+/// Ports: loop(state, asked, velocity) once a step h: asked and measured velocity of the motor in [m/s] or
+/// [rad/s], force out [N] or [N m].
+/// State: integral [N] and filtered velocity, given and returned by the caller; `state::at(v)`: in steady
+/// motion at v.
+/// Range: bare SI numbers, because a fit moves each of them; gain, integral >= 0; filter > 0, infinite: none;
+/// limit > 0, infinite: none.
 /// NaN and infinities pass on. Runs in lanes.
 /// Throws "velocity_loop.<field> = ...: must ...".
 /// Cost: 4 multiplications. The same on the controller's clock, in typed quantities: `proportional_integral`.

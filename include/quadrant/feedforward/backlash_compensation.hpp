@@ -11,16 +11,18 @@ namespace quadrant {
 ///   reference has come back by more than `hysteresis` from where it turned.
 /// Source: LinuxCNC motion, BACKLASH with a rate of its own; the side is that of a play operator as wide as the
 /// hysteresis.
-/// Ports: reference position in; position to be added out. For the feedforward of velocity: rate() is what y moves at.
-/// State: side, turning point, y. `reset`: at zero, side unknown, y = 0, so the first move takes half the play only.
-/// `settle(x)` the same at x; `settle(x, side)` with the flanks in touch, y = side play / 2: after homing from that
-/// side.
-/// Range: play >= 0, rate > 0, hysteresis >= 0 and above the encoder's count, where the reference is a measured one. No
-/// step of the output is above rate times period. Crossing takes play / rate; meanwhile the load stands still.
+/// Ports: reference position in; position to be added out. For the feedforward of velocity: rate() is what y
+/// moves at.
+/// State: side, turning point, y. `reset`: at zero, side unknown, y = 0, so the first move takes half the play
+/// only. `settle(x)` the same at x; `settle(x, side)` with the flanks in touch, y = side play / 2: after homing
+/// from that side.
+/// Range: play >= 0, rate > 0, hysteresis >= 0 and above the encoder's count, where the reference is a measured
+/// one. No step of the output is above rate times period. Crossing takes play / rate; meanwhile the load stands
+/// still.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "backlash_compensation.<field> = ...: must ..." for play, rate, hysteresis and the period.
-/// Cost: 2 additions, 4 comparisons, 24 bytes. Corners rounded as well: a `lowpass` behind it (not wider than play /
-/// rate). An encoder on the load needs none of this, nor does a direct drive.
+/// Cost: 2 additions, 4 comparisons, 24 bytes. Corners rounded as well: a `lowpass` behind it (not wider than
+/// play / rate). An encoder on the load needs none of this, nor does a direct drive.
 template <signal_tag Signal = signal::position, class Real = double> class backlash_compensation {
 public:
     using input = Signal;

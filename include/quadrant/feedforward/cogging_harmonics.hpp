@@ -10,16 +10,16 @@
 
 namespace quadrant {
 
-/// What holds the axis against cogging, from where it is: the harmonics of the pitch (that of the poles, or a turn)
-/// that were worth keeping.
+/// What holds the axis against cogging, from where it is: the harmonics of the pitch (that of the poles, or a
+/// turn) that were worth keeping.
 ///   u = sum over i of amplitude_i sin(2 pi order_i x / pitch + phase_i)
 /// Source: `analysis::identify_cogging` finds them from slow runs in both directions.
-/// Ports: position in (of the reference, or measured), command out in whatever the amplitudes are: N, V or A. Added by
-/// the loop.
+/// Ports: position in (of the reference, or measured), command out in whatever the amplitudes are: N, V or A.
+/// Added by the loop.
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
-/// Range: pitch > 0; orders in any sequence, an amplitude of 0 for one that is not used. Any position; its rounding
-/// becomes one of phase, 2 pi order |x| / pitch times 2e-16 (float 1e-7): in float count from near the place where the
-/// axis works. At speed the force comes late: feed the position `ahead` of a `preview`.
+/// Range: pitch > 0; orders in any sequence, an amplitude of 0 for one that is not used. Any position; its
+/// rounding becomes one of phase, 2 pi order |x| / pitch times 2e-16 (float 1e-7): in float count from near the
+/// place where the axis works. At speed the force comes late: feed the position `ahead` of a `preview`.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "cogging_harmonics.pitch = ...: must ...", "...order", "...amplitude", "...phase".
 /// Cost: a sine and a cosine per harmonic. Constant cost for any number of them: `cogging_table`.

@@ -10,16 +10,17 @@
 
 namespace quadrant {
 
-/// What holds the axis against cogging, from where it is: a table over one pitch (that of the poles, or a turn), as
-/// measured or made from harmonics.
+/// What holds the axis against cogging, from where it is: a table over one pitch (that of the poles, or a
+/// turn), as measured or made from harmonics.
 ///   u = through points[i] at x = i pitch / Points, again and again; Order 1: straight lines, Order 3: the cubic
 ///   through the two points on either side (Lagrange)
-/// Ports: position in (of the reference, or measured), command out in whatever the points are: N, V or A. Added by the
-/// loop.
+/// Ports: position in (of the reference, or measured), command out in whatever the points are: N, V or A. Added
+/// by the loop.
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
-/// Range: pitch > 0; Points >= 4. Between points a wave of h per pitch, b = 2 pi h / Points, is off by b^2 / 8 of
-/// itself (Order 1), 3 b^4 / 128 (Order 3): take 20 points a wave for 1.2 % or 0.023 %. Any position; its rounding
-/// becomes one of place, |x| times 2e-16 (float 1e-7): in float count from near the place where the axis works. At
+/// Range: pitch > 0; Points >= 4. Between points a wave of h per pitch, b = 2 pi h / Points, is off by b^2 / 8
+/// of itself (Order 1), 3 b^4 / 128 (Order 3): take 20 points a wave for 1.2 % or 0.023 %. Any position; its
+/// rounding becomes one of place, |x| times 2e-16 (float 1e-7): in float count from near the place where the
+/// axis works. At
 /// speed the force comes late: feed the position `ahead` of a `preview`.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "cogging_table.pitch = ...: must ...", "cogging_table.points = ...: must be finite".

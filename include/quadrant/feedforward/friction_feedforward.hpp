@@ -10,7 +10,8 @@ namespace quadrant {
 /// What the friction feedforward does with the dry part while the reference rests.
 enum class at_rest {
     off, ///< fades to nothing as the reference stops: nothing pushes a resting axis
-    held ///< keeps the sign of the last motion, as sticking friction does, and turns over when the reference reverses
+    /// keeps the sign of the last motion, as sticking friction does, and turns over when the reference reverses
+    held
 };
 
 /// A friction law without memory: dry level by speed, and a viscous slope.
@@ -20,23 +21,26 @@ concept static_friction = requires(const F& f, quantity_of<In, Real> v) {
     { f.viscous() } -> std::convertible_to<gain_of<Out, In, Real>>;
 };
 
-/// Pays the friction that the reference is about to cause: any static law (`stribeck`, `coulomb_viscous`) at the
-/// velocity of the reference, through the force constant to the command. At a reversal the law jumps by twice its
-/// level; here it turns over within `width` of velocity, continuously.
+/// Pays the friction that the reference is about to cause: any static law (`stribeck`, `coulomb_viscous`) at
+/// the velocity of the reference, through the force constant to the command. At a reversal the law jumps by
+/// twice its level; here it turns over within `width` of velocity, continuously.
 ///   u = scale (slip(v) s + viscous v) / force_constant
 ///   off:  s = v / width between -width and width, else the sign of v
 ///   held: s moves as little as 2 v / width - 1 <= s (v > 0), s <= 2 v / width + 1 (v < 0) and |s| <= 1 allow
 /// Source: [Jamaludin2008] eq. (3.5), static friction feedforward; held: a play operator on the velocity.
-/// Ports: velocity of the reference in, command out, sign of the motion (a loop adds it). Never feed the measured
+/// Ports: velocity of the reference in, command out, sign of the motion (a loop adds it). Never feed the
+/// measured
 /// velocity: positive feedback. To act earlier, feed it `at(lead).velocity` of a `preview`.
-/// State: s; `reset` leaves 0; `settle(v)` as if v had been applied for ever after that. Held, a reference that dithers
-/// by less than width / 2 either way does not turn it over.
-/// Range: force_constant > 0 (1 for a law in units of the command), scale >= 0 (1 = all of the friction; below 1 leaves
-/// some, above 1 makes the axis jump ahead), width > 0: small against the velocities of the path; at acceleration a the
-/// turn-over takes 2 width / a, held width / a.
+/// State: s; `reset` leaves 0; `settle(v)` as if v had been applied for ever after that. Held, a reference that
+/// dithers by less than width / 2 either way does not turn it over.
+/// Range: force_constant > 0 (1 for a law in units of the command), scale >= 0 (1 = all of the friction; below
+/// 1 leaves some, above 1 makes the axis jump ahead), width > 0: small against the velocities of the path; at
+/// acceleration a the turn-over takes 2 width / a, held width / a.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "friction_feedforward.<field> = ...: must ..." for force_constant, scale, width; the law in its own name.
-/// Cost: that of the law, 4 multiplications, 1 division. Laws with memory (`dahl`, `lugre`, `maxwell_slip`) turn over
+/// Throws "friction_feedforward.<field> = ...: must ..." for force_constant, scale, width; the law in its own
+/// name.
+/// Cost: that of the law, 4 multiplications, 1 division. Laws with memory (`dahl`, `lugre`, `maxwell_slip`)
+/// turn over
 /// by themselves, along the way: use them bare, in units of the command.
 template <class Law, signal_tag Command = typename Law::output, class Real = typename Law::value::value_type>
 requires static_friction<Law, typename Law::input, typename Law::output, Real>

@@ -10,18 +10,20 @@
 
 namespace quadrant {
 
-/// The command that moves the nominal axis as the trajectory asks, before there is an error: mass and viscous friction.
+/// The command that moves the nominal axis as the trajectory asks, before there is an error: mass and viscous
+/// friction.
 ///   u = (r'' + A r') / B, the inverse of Gn(s) = B / (s (s + A))
 /// Source: [Jamaludin2008] eq. (2.2), inverse-model feedforward.
-/// Ports: velocity and acceleration of the trajectory in, one by one or as a motion; command out, sign of the motion.
-/// Given `ahead` of a `preview`, by the delay of the plant and its hold, the linear part of the error is zero.
+/// Ports: velocity and acceleration of the trajectory in, one by one or as a motion; command out, sign of the
+/// motion. Given `ahead` of a `preview`, by the delay of the plant and its hold, the linear part of the error
+/// is zero.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
-/// Range: B > 0, A >= 0 in 1/s (not hertz). A disturbance observer beside it needs the same A and B: take both from one
-/// `axis_model`.
+/// Range: B > 0, A >= 0 in 1/s (not hertz). A disturbance observer beside it needs the same A and B: take both
+/// from one `axis_model`.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "inverse_model.gain = ...: must ...", "inverse_model.damping = ...: must ..." and for the period.
-/// Cost: 2 multiplications. One `proportional` on either derivative is the same in two boxes (`milling_axis`: inertia
-/// and drag). From positions alone: `sampled_inverse_model`.
+/// Cost: 2 multiplications. One `proportional` on either derivative is the same in two boxes (`milling_axis`:
+/// inertia and drag). From positions alone: `sampled_inverse_model`.
 template <signal_tag Command, class Real = double> class inverse_model {
 public:
     using output = Command;

@@ -11,25 +11,26 @@
 namespace quadrant {
 
 /// Makes a trajectory look ahead: the axis is asked Capacity periods later, so that what comes is known, and a
-/// feedforward can act as much earlier as the drive is late. The path is the same; the whole of it is executed Capacity
-/// periods later.
+/// feedforward can act as much earlier as the drive is late. The path is the same; the whole of it is executed
+/// Capacity periods later.
 ///   reference[k] = r[k - Capacity],   ahead[k] = r(t - Capacity T + lead)
-/// Between samples: position by the cubic through position and velocity at either end, velocity and acceleration by the
-/// cubic through velocity and acceleration at either end (Hermite). Exact at samples, and between them for a position
-/// of third order in time (constant jerk); for a sine of angular frequency w the position to (w T)^4 / 384 of it.
+/// Between samples: position by the cubic through position and velocity at either end, velocity and
+/// acceleration by the cubic through velocity and acceleration at either end (Hermite). Exact at samples, and
+/// between them for a position of third order in time (constant jerk); for a sine of angular frequency w the
+/// position to (w T)^4 / 384 of it.
 /// Source: [Jamaludin2008], feedforward advanced by the delay Td of the plant; the polynomials are textbook.
-/// Ports: motion (position, velocity, acceleration) in; two motions out. `at(d)` reads any other lead, without a step:
-/// friction may need another one than mass.
-/// State: the last Capacity + 1 motions. `reset`: stands at zero, lead of the parameters; `settle(m)`: as if m had been
-/// applied for ever ({.position = x} for rest). Settle at the first position before the first step, or it reads as a
-/// jump. `lead(d)` changes the lead between two steps; the reference does not move by it.
-/// Range: 0 <= lead <= Capacity periods; lead(d) and at(d) outside saturate, limited() tells for lead(d). Axes that
-/// follow one path need the same Capacity, not the same lead. Where the acceleration jumps within a period, its value
-/// there is off by up to 1/3 of the jump.
+/// Ports: motion (position, velocity, acceleration) in; two motions out. `at(d)` reads any other lead, without
+/// a step: friction may need another one than mass.
+/// State: the last Capacity + 1 motions. `reset`: stands at zero, lead of the parameters; `settle(m)`: as if m
+/// had been applied for ever ({.position = x} for rest). Settle at the first position before the first step, or
+/// it reads as a jump. `lead(d)` changes the lead between two steps; the reference does not move by it.
+/// Range: 0 <= lead <= Capacity periods; lead(d) and at(d) outside saturate, limited() tells for lead(d). Axes
+/// that follow one path need the same Capacity, not the same lead. Where the acceleration jumps within a
+/// period, its value there is off by up to 1/3 of the jump.
 /// NaN and infinities: holds both motions, takes nothing in, raises faulted().
 /// Throws "preview.lead = ...: must lie between 0 and ... (capacity)".
-/// Cost: about 16 multiplications for a lead between samples, 24 (Capacity + 3) bytes of state. Late instead of early:
-/// `delay_line`.
+/// Cost: about 16 multiplications for a lead between samples, 24 (Capacity + 3) bytes of state. Late instead of
+/// early: `delay_line`.
 template <std::size_t Capacity, motion_sample Motion = axis_motion<>>
 requires(Capacity > 0) class preview {
 public:

@@ -12,20 +12,22 @@
 
 namespace quadrant {
 
-/// The command that moves the nominal plant as the reference asks, from positions alone: for a trajectory that does not
-/// give its derivatives. Linear-phase differences, so that every order of them is late by the same time.
+/// The command that moves the nominal plant as the reference asks, from positions alone: for a trajectory that
+/// does not give its derivatives. Linear-phase differences, so that every order of them is late by the same
+/// time.
 ///   u = (d0 r + d1 r' + ... + dN r^(N)) / n0,   d/dt = (1 - z^-1) / T, smoothed by ((1 + z^-1) / 2)^(N - order)
-/// that is s = 2 (z - 1) / (T (z + 1)) times ((1 + z^-1) / 2)^N. For B / (s (s + A)): second difference, and the
-/// difference over two samples.
+/// that is s = 2 (z - 1) / (T (z + 1)) times ((1 + z^-1) / 2)^N. For B / (s (s + A)): second difference, and
+/// the difference over two samples.
 /// Source: [Jamaludin2008] eq. (2.2), inverse-model feedforward; [Oppenheim2010] linear-phase FIR.
-/// Ports: reference in, command out. Late by N/2 periods exactly, at all frequencies (order 2: one period): delay the
-/// loop's reference by as much (`delay_line`), and by the plant's delay.
+/// Ports: reference in, command out. Late by N/2 periods exactly, at all frequencies (order 2: one period):
+/// delay the loop's reference by as much (`delay_line`), and by the plant's delay.
 /// State: the last N references; `reset` leaves zeros, so a first sample reads as a jump: `settle(r0)` first.
 /// Range: any plant of order 1 ... 4 without zeros; n0 and dN not zero. Gain of the difference of order i at f:
-/// sinc^i(f T) cos^(N-i)(pi f T) of the derivative. A count q of the reference shows as up to 2 q d2 / (n0 T^2) (order
-/// 2). A plant with zeros has no inverse that ends: its zeros would have to be poles here.
+/// sinc^i(f T) cos^(N-i)(pi f T) of the derivative. A count q of the reference shows as up to 2 q d2 / (n0 T^2)
+/// (order 2). A plant with zeros has no inverse that ends: its zeros would have to be poles here.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "sampled_inverse_model.numerator = ...: must ...", "...denominator = ...: must ..." and for the period.
+/// Throws "sampled_inverse_model.numerator = ...: must ...", "...denominator = ...: must ..." and for the
+/// period.
 /// Cost: at most (N + 1)^2 multiplications, 8 N bytes. With derivatives from the trajectory, not late:
 /// `inverse_model`.
 template <signal_tag Command, std::size_t Order = 2, signal_tag In = signal::position, class Real = double>

@@ -13,16 +13,17 @@ namespace quadrant {
 /// Source: [Franklin1998] ch. 6; the same as scipy.signal.butter(2, corner, fs=1/T).
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, gain one at standstill.
 /// Two integrators in a ring (`second_order.hpp`): a constant passes to the last bit.
-/// State: low-pass (two numbers), band and last input, in the unit of the input; `reset` leaves zero, `settle(x)` the state of a
-/// constant x. What has died out is zero.
-/// `retune(next)`: another corner from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all inputs so far had
-/// been higher by so much.
-/// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from 6e-16; a step
-/// overshoots by 4.3 %.
+/// State: low-pass (two numbers), band and last input, in the unit of the input; `reset` leaves zero,
+/// `settle(x)` the state of a constant x. What has died out is zero.
+/// `retune(next)`: another corner from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all
+/// inputs so far had been higher by so much.
+/// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from
+/// 6e-16; a step overshoots by 4.3 %.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "butterworth.corner = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of the
-/// sampling rate in this number type (...)".
-/// Cost: 3 multiplications, 12 additions, 32 bytes of state. Less phase lag: `lowpass`; one frequency only: `notch`.
+/// Throws "butterworth.corner = ...: must lie between 0 and half the sampling rate (...)", "must be at least
+/// ... of the sampling rate in this number type (...)".
+/// Cost: 3 multiplications, 12 additions, 32 bytes of state. Less phase lag: `lowpass`; one frequency only:
+/// `notch`.
 template <signal_tag Signal, class Real = double> class butterworth {
 public:
     using input = Signal;

@@ -10,9 +10,11 @@
 #include <concepts>
 #include <cstddef>
 
-/// Sampled filters as chains of integrators, in powers of D = z - 1 instead of z. Where a pole is slow, z lies so close to 1 that a
-/// coefficient in z holds it in its last digits only: of order n it loses (pole T)^n. In D every coefficient is small for itself and
-/// keeps all its digits. Source: [Middleton1990]. Derivation: docs/derivations/second_order.md.
+/// Sampled filters as chains of integrators, in powers of D = z - 1 instead of z. Where a pole is slow, z lies
+/// so close to 1 that a
+/// coefficient in z holds it in its last digits only: of order n it loses (pole T)^n. In D every coefficient is
+/// small for itself and keeps all its digits. Source: [Middleton1990]. Derivation:
+/// docs/derivations/second_order.md.
 namespace quadrant {
 
 /// Coefficients of a sampled filter by rising power of 1/D, bare numbers in SI:
@@ -31,9 +33,10 @@ std::array<Number, Size> about_one(std::array<Number, Size> p, double one = 1) {
     return p;
 }
 
-/// k^-Order sum c_i s^i with s = k (z - 1)/(z + 1), times (z + 1)^Order: the bilinear form of one polynomial of a common
-/// fraction, by rising power of 1/D. With `differences` the factor 1 - z^-1 is left out (c_0 is then zero) and the caller feeds
-/// differences. All terms of a polynomial with coefficients of one sign are of one sign: nothing cancels.
+/// k^-Order sum c_i s^i with s = k (z - 1)/(z + 1), times (z + 1)^Order: the bilinear form of one polynomial of
+/// a common fraction, by rising power of 1/D. With `differences` the factor 1 - z^-1 is left out (c_0 is then
+/// zero) and the caller feeds differences. All terms of a polynomial with coefficients of one sign are of one
+/// sign: nothing cancels.
 template <std::size_t Order, std::size_t Size, class Number>
 std::array<Number, Order + 1> bilinear_differences(const std::array<Number, Size>& c, double k,
                                                    bool differences) {

@@ -12,16 +12,17 @@
 
 /// From a transfer function in s to one in z^-1, for `transfer_function`. Not a step: runs once, may throw.
 /// Coefficients go by rising power in both, so that those not written are zero: H(s) = 1 / (s^2 + 3 s + 2) is
-/// `continuous<2>{{1}, {2, 3, 1}}`. (scipy and MATLAB write falling powers of s.) Bare numbers in SI, s in rad/s.
+/// `continuous<2>{{1}, {2, 3, 1}}`. (scipy and MATLAB write falling powers of s.) Bare numbers in SI, s in
+/// rad/s.
 ///   zero_order_hold  exact for an input held over each period: a plant behind a DAC
 ///   bilinear         s = 2/T (z-1)/(z+1): filters; with a frequency, exact there (pre-warp)
 ///   matched          poles and zeros by z = exp(s T): keeps resonances in place, no pre-warp needed
 /// Source: [Franklin1998] ch. 6 (numerical integration, zero-pole matching, hold equivalents).
-/// Range: poles and zeros at s = 0 (integrators, differentiators) included; 1e-13 of the largest coefficient for orders up
-/// to 6 and abs(pole) T up to 30 (against 80 digits; scipy.signal.cont2discrete loses the numerator of slow poles from
-/// order 2 on). Table: docs/blocks/discretize.md.
-/// Throws "discretize.denominator = 0: highest coefficient must not be zero", and "must be finite", "must be finite and
-/// above 0" for coefficients and period.
+/// Range: poles and zeros at s = 0 (integrators, differentiators) included; 1e-13 of the largest coefficient
+/// for orders up to 6 and abs(pole) T up to 30 (against 80 digits; scipy.signal.cont2discrete loses the
+/// numerator of slow poles from order 2 on). Table: docs/blocks/discretize.md.
+/// Throws "discretize.denominator = 0: highest coefficient must not be zero", and "must be finite", "must be
+/// finite and above 0" for coefficients and period.
 namespace quadrant {
 
 /// numerator / denominator in s, coefficients by rising power.
@@ -48,7 +49,8 @@ discrete<Order, Number> zero_order_hold(const continuous<Order, Number>& c, dura
     constexpr std::size_t N = Order;
     const double T = period.value(), rate = detail::scale(c.denominator, N, T);
     const Number top = c.denominator[N], direct = c.numerator[N] / top;
-    // State space in controllable form, states in units of `rate`; the last column of the enlarged matrix is the input.
+    // State space in controllable form, states in units of `rate`; the last column of the enlarged matrix is
+    // the input.
     detail::square<N + 1, Number> a = detail::companion<N + 1>(c.denominator, N, rate, T);
     std::array<Number, N + 1> out{};
     for (std::size_t i = 0; i < N; ++i)
@@ -121,8 +123,9 @@ differences<Order, Number> bilinear_differences(const continuous<Order, Number>&
             detail::bilinear_differences<Order>(c.denominator, k, false)};
 }
 
-/// Poles and zeros by z = exp(s T); zeros at infinity go to z = -1 but for one, which leaves one period of delay; the gain
-/// at standstill is kept (with poles or zeros at s = 0: that of the slowest term, s taken for (z-1)/T).
+/// Poles and zeros by z = exp(s T); zeros at infinity go to z = -1 but for one, which leaves one period of
+/// delay; the gain at standstill is kept (with poles or zeros at s = 0: that of the slowest term, s taken for
+/// (z-1)/T).
 template <std::size_t Order, class Number>
 discrete<Order, Number> matched(const continuous<Order, Number>& c, duration period) {
     detail::check(c, period);

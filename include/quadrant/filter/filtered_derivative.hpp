@@ -15,15 +15,16 @@ namespace quadrant {
 ///   v[k] = v[k-1] + 2 wc (y[k] - y[k-1] - T v[k-1]) / (2 + wc T)
 /// Source: gap/FORMAT.md (velocity_estimator filtered_derivative).
 /// Ports: one scalar in, its rate out; sign kept.
-/// State: the last input and the last output; a rate that has died out is zero; `reset` leaves 0, so a first sample y0 reads as a jump: `settle(y0)` first.
-/// `settle(y)` stands still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.
-/// `retune(next)`: another corner from the next step on, J = |b' - b| |(y[k] - y[k-1])/T - v[k-1]|, b = 2 wc T/(2 + wc T): none
-/// in even motion. `shift(by)`: the frame of positions moves, the rate does not.
-/// Range: corner > 0. Above the sampling rate / pi (wc T > 2) the pole is negative and the output rings, but decays.
-/// The gain of a ramp is exactly one; the -3 dB point lies below corner by the bilinear warp.
+/// State: the last input and the last output; a rate that has died out is zero; `reset` leaves 0, so a first
+/// sample y0 reads as a jump: `settle(y0)` first. `settle(y)` stands still at y; `settle(y, rate)` has been
+/// moving at that rate and y was its last sample. `retune(next)`: another corner from the next step on, J = |b'
+/// - b| |(y[k] - y[k-1])/T - v[k-1]|, b = 2 wc T/(2 + wc T): none in even motion. `shift(by)`: the frame of
+///   positions moves, the rate does not.
+/// Range: corner > 0. Above the sampling rate / pi (wc T > 2) the pole is negative and the output rings, but
+/// decays. The gain of a ramp is exactly one; the -3 dB point lies below corner by the bilinear warp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "filtered_derivative.corner = ...: must be finite and above 0", "must be at least ... of the sampling rate in this number
-/// type (...)" (3e-7 in float, 6e-16 in double).
+/// Throws "filtered_derivative.corner = ...: must be finite and above 0", "must be at least ... of the sampling
+/// rate in this number type (...)" (3e-7 in float, 6e-16 in double).
 /// Cost: 2 multiplications, 3 additions, 16 bytes of state. Shorter delay, more noise: `two_sample_derivative`.
 template <signal_tag In, rate_of<In> Out, class Real = double> class filtered_derivative {
 public:

@@ -16,18 +16,18 @@ namespace quadrant {
 /// Smooths a wire: passes what is slower than the corner, takes 20 dB per decade off what is faster.
 ///   H(s) = w / (s + w), bilinear, pre-warped at w = 2 pi corner: -3 dB and -45 degrees sit exactly there.
 ///   y[k] = y[k-1] + t/(1+t) (x[k] + x[k-1] - 2 y[k-1]), t = tan(w T/2)
-/// In steps towards the input, not as a sum of products: the gain at standstill is one exactly. In float the output is a sum of two
-/// numbers (`fine_sum`), so that it reaches the input however small the steps are.
+/// In steps towards the input, not as a sum of products: the gain at standstill is one exactly. In float the
+/// output is a sum of two numbers (`fine_sum`), so that it reaches the input however small the steps are.
 /// Source: [Franklin1998] ch. 6; LinuxCNC lowpass is the zero-order-hold form of the same filter.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, gain one at standstill.
-/// State: the last input and the last output; what has died out is zero; `reset` leaves zero, `settle(x)` the state of a constant x.
-/// `retune(next)`: another corner from the next step on, J = |b' - b| |x[k] + x[k-1] - 2 y[k-1]|, b = t/(1+t). `shift(by)`: as
-/// if all inputs so far had been higher by so much.
-/// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from 6e-16; zero gain at half
-/// the sampling rate.
+/// State: the last input and the last output; what has died out is zero; `reset` leaves zero, `settle(x)` the
+/// state of a constant x. `retune(next)`: another corner from the next step on, J = |b' - b| |x[k] + x[k-1] - 2
+/// y[k-1]|, b = t/(1+t). `shift(by)`: as if all inputs so far had been higher by so much.
+/// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from
+/// 6e-16; zero gain at half the sampling rate.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "lowpass.corner = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of the sampling
-/// rate in this number type (...)".
+/// Throws "lowpass.corner = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of
+/// the sampling rate in this number type (...)".
 /// Cost: 1 multiplication, 16 bytes of state. Steeper: `butterworth`.
 template <signal_tag Signal, class Real = double> class lowpass {
 public:

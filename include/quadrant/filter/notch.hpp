@@ -13,15 +13,16 @@ namespace quadrant {
 /// Source: gap/FORMAT.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
 ///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), so that a constant passes to the last bit
-/// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset` leaves zero, `settle(x)` the state of a
-/// constant x (gain one at standstill). What has died out is zero.
-/// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all
-/// inputs so far had been higher by so much.
-/// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz). In float the centre
-/// may lie down to 3e-7 of the sampling rate (damping 1 and above; else by damping less), in double to 6e-16.
+/// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset`
+/// leaves zero, `settle(x)` the state of a constant x (gain one at standstill). What has died out is zero.
+/// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|.
+/// `shift(by)`: as if all inputs so far had been higher by so much.
+/// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz). In
+/// float the centre may lie down to 3e-7 of the sampling rate (damping 1 and above; else by damping less), in
+/// double to 6e-16.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "notch.centre = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of the sampling rate in
-/// this number type (...)", "notch.damping = ...: must be finite and above 0".
+/// Throws "notch.centre = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of
+/// the sampling rate in this number type (...)", "notch.damping = ...: must be finite and above 0".
 /// Cost: 4 multiplications, 8 additions, 24 bytes of state. For a dip of limited depth use `transfer_function`.
 template <signal_tag Signal, class Real = double> class notch {
 public:

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-/// The arithmetic of discretize.hpp: a polynomial's roots carried from s to z = exp(s T) by the matrix exponential of its
-/// companion matrix. Small fixed-size matrices, any number type, no Eigen.
+/// The arithmetic of discretize.hpp: a polynomial's roots carried from s to z = exp(s T) by the matrix
+/// exponential of its companion matrix. Small fixed-size matrices, any number type, no Eigen.
 namespace quadrant {
 
 namespace detail {
@@ -70,7 +70,8 @@ template <std::size_t Size, class Number> void multiply(std::array<Number, Size>
     for (std::size_t i = Size - 1; i > 0; --i) p[i] += c * p[i - 1];
 }
 
-/// A rate at which all coefficients of s/rate are of the same order: not below 1/T, so that slow poles stay well scaled.
+/// A rate at which all coefficients of s/rate are of the same order: not below 1/T, so that slow poles stay
+/// well scaled.
 template <std::size_t Size, class Number>
 double scale(const std::array<Number, Size>& p, std::size_t degree, double period) {
     double rate = 1 / period;
@@ -90,8 +91,9 @@ square<N, Number> companion(const std::array<Number, Size>& p, std::size_t n, do
     return a;
 }
 
-/// The polynomial in z^-1 with a root exp(s T) for every root of p(s), leading coefficient 1: the characteristic polynomial
-/// of exp(companion T), after Faddeev and Leverrier. No root is ever computed, so multiple ones do no harm.
+/// The polynomial in z^-1 with a root exp(s T) for every root of p(s), leading coefficient 1: the
+/// characteristic polynomial of exp(companion T), after Faddeev and Leverrier. No root is ever computed, so
+/// multiple ones do no harm.
 template <std::size_t Size, class Number>
 std::array<Number, Size> mapped(const std::array<Number, Size>& p, double period) {
     constexpr std::size_t N = Size - 1;

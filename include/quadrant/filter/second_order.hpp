@@ -11,10 +11,12 @@
 #include <numbers>
 #include <type_traits>
 
-/// What notch and Butterworth low-pass share: a second-order section as two integrators in a ring, by the trapezoidal rule. Its
-/// coefficients are small where the section is slow, so that they keep all their digits, and at rest both integrators stand still:
-/// the gain at standstill is one to the last bit, at any corner and in any number type. A direct form subtracts numbers close to one
-/// instead and loses (f T)^2 of its digits. Per sample, x in, `ahead` = x minus the slow part:
+/// What notch and Butterworth low-pass share: a second-order section as two integrators in a ring, by the
+/// trapezoidal rule. Its
+/// coefficients are small where the section is slow, so that they keep all their digits, and at rest both
+/// integrators stand still: the gain at standstill is one to the last bit, at any corner and in any number
+/// type. A direct form subtracts numbers close to one instead and loses (f T)^2 of its digits. Per sample, x
+/// in, `ahead` = x minus the slow part:
 ///   half = thrust (ahead - brake band),  middle = band + half,  slow' = slow + 2 g middle,  band' = middle + half
 /// Derivation: docs/derivations/second_order.md.
 namespace quadrant {
@@ -22,7 +24,8 @@ namespace quadrant {
 /// For hertz into rad/s: w = 2 pi f.
 inline constexpr double pi = std::numbers::pi;
 
-/// H(s) = w^2 / (s^2 + damping w s + w^2), the slow part, and H(s) = w s / (...), the band, of one section; bilinear, exact at w.
+/// H(s) = w^2 / (s^2 + damping w s + w^2), the slow part, and H(s) = w s / (...), the band, of one section;
+/// bilinear, exact at w.
 template <class Real> struct second_order_coefficients {
     Real g{};       ///< tan(w T/2)
     Real damping{}; ///< twice the damping ratio
@@ -30,8 +33,8 @@ template <class Real> struct second_order_coefficients {
     Real thrust{};  ///< g / (1 + g (g + damping))
 };
 
-/// The coefficients of a section; refuses a corner that is too slow for the number type, or so close to half the sampling rate that
-/// rounding, which grows there as tan^2(w T/2), would take more than a tenth.
+/// The coefficients of a section; refuses a corner that is too slow for the number type, or so close to half
+/// the sampling rate that rounding, which grows there as tan^2(w T/2), would take more than a tenth.
 template <class Real, class Number>
 second_order_coefficients<Real> second_order(const detail::field_name& field,
                                              const quantity<si::frequency, Number>& corner,
@@ -51,8 +54,9 @@ second_order_coefficients<Real> second_order(const detail::field_name& field,
             .thrust = Real(t / (1 + t * (t + damping)))};
 }
 
-/// Other coefficients in the next step: what the band has to be, so that the last input, were it to come again, would give the same
-/// output. Nothing changes for a constant input; else the next output is off by (b0' - b0)(x[k] - x[k-1]) from what it would have
+/// Other coefficients in the next step: what the band has to be, so that the last input, were it to come again,
+/// would give the same output. Nothing changes for a constant input; else the next output is off by (b0' -
+/// b0)(x[k] - x[k-1]) from what it would have
 /// been, b0: what an impulse gives at once. `weight`: by which the band enters the output, damping or g.
 template <class Real, class Value>
 Value retuned_band(const second_order_coefficients<Real>& c, const second_order_coefficients<Real>& next,

@@ -10,8 +10,9 @@
 
 namespace quadrant {
 
-/// Refuses a corner that is too slow for the number type: below, a period takes less than eight units in the last place off a
-/// state, and the decay is lost in rounding. `damping` below 1 makes the decay of a section of second order that much slower.
+/// Refuses a corner that is too slow for the number type: below, a period takes less than eight units in the
+/// last place off a state, and the decay is lost in rounding. `damping` below 1 makes the decay of a section of
+/// second order that much slower.
 template <class Real, class Number, class Isa = isa::here>
 void require_held(const detail::field_name& field, const quantity<si::frequency, Number>& corner,
                   duration period, const Number& damping = Number(1)) {

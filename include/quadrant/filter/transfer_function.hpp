@@ -13,25 +13,29 @@
 
 namespace quadrant {
 
-/// Coefficients of a sampled filter as bare numbers in SI, by rising power of z^-1; what `discretize.hpp` gives.
+/// Coefficients of a sampled filter as bare numbers in SI, by rising power of z^-1; what `discretize.hpp`
+/// gives.
 template <std::size_t Order, class Number = double> struct discrete {
     std::array<Number, Order + 1> numerator{}, denominator{};
 };
 
 /// Any linear filter of fixed order, for what has no block of its own.
 ///   y = (b[0] + b[1] z^-1 + ... + b[n] z^-n) / (a[0] + a[1] z^-1 + ... + a[n] z^-n) x
-/// Source: [Oppenheim2010] ch. 6, transposed direct form II, and [Middleton1990]: of integrators instead of delays
-/// (`differences.hpp`), so that slow poles keep their digits; the states are in the unit of the output.
+/// Source: [Oppenheim2010] ch. 6, transposed direct form II, and [Middleton1990]: of integrators instead of
+/// delays (`differences.hpp`), so that slow poles keep their digits; the states are in the unit of the output.
 /// Ports: one scalar in, one scalar out of any signal; the numerator carries the unit Out/In.
-/// State: n sums in the unit of the output, in float of two numbers each; `reset` leaves zero; what has died out is zero; `settle(x)` the state of a constant x. With a pole at
-/// z = 1 (integrates()) no such state exists: `settle(x, y)`, where the next step with x gives y; settle(x) then takes
-/// the last output for y.
-/// Range: a[0] not zero. Poles outside the unit circle are allowed (a plant may have them); the output then grows until
-/// it is no longer finite, and holds. Coefficients in z are doubles that hold (pole T)^n in their last digits: below f T = 1e-4
-/// give `differences` (from `bilinear_differences`), and from order 4 on prefer a `series` of low orders.
+/// State: n sums in the unit of the output, in float of two numbers each; `reset` leaves zero; what has died
+/// out is zero; `settle(x)` the state of a constant x. With a pole at z = 1 (integrates()) no such state
+/// exists: `settle(x, y)`, where the next step with x gives y; settle(x) then takes the last output for y.
+/// Range: a[0] not zero. Poles outside the unit circle are allowed (a plant may have them); the output then
+/// grows until it is no longer finite, and holds. Coefficients in z are doubles that hold (pole T)^n in their
+/// last digits: below f T = 1e-4 give `differences` (from `bilinear_differences`), and from order 4 on prefer a
+/// `series` of low orders.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "transfer_function.denominator[0] = 0: must not be zero", "transfer_function.numerator = ...: must be finite".
-/// Cost: 2 n + 1 multiplications, 3 n additions, 8 n bytes of state; in float 6 n additions. Of order one or two: `lowpass`, `butterworth`, `notch`.
+/// Throws "transfer_function.denominator[0] = 0: must not be zero", "transfer_function.numerator = ...: must be
+/// finite".
+/// Cost: 2 n + 1 multiplications, 3 n additions, 8 n bytes of state; in float 6 n additions. Of order one or
+/// two: `lowpass`, `butterworth`, `notch`.
 template <signal_tag In, signal_tag Out, std::size_t Order, class Real = double> class transfer_function {
 public:
     using input = In;

@@ -12,8 +12,9 @@ namespace quadrant {
 ///   m[k] = (y[k] + y[k-1]) / 2,   v[k] = (m[k] - m[k-1]) / T = (y[k] - y[k-2]) / (2 T)
 /// Source: gap/FORMAT.md (velocity_estimator two_sample_mean).
 /// Ports: one scalar in, its rate out; sign kept.
-/// State: the last two inputs; `reset` leaves 0, so a first sample reads as a jump: `settle(y0)` first. `settle(y)` stands
-/// still at y; `settle(y, rate)` has been moving at that rate and y was its last sample. `shift(by)`: the frame moves.
+/// State: the last two inputs; `reset` leaves 0, so a first sample reads as a jump: `settle(y0)` first.
+/// `settle(y)` stands still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.
+/// `shift(by)`: the frame moves.
 /// Range: late by one period exactly, at all frequencies; zero gain at half the sampling rate.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "two_sample_derivative.period = ...: must be finite and above 0".

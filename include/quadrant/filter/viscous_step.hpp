@@ -4,7 +4,8 @@
 
 namespace quadrant {
 
-/// Exact step over h of dv/dt = u - A v, dx/dt = v with u held (zero-order hold), to all digits for every A >= 0.
+/// Exact step over h of dv/dt = u - A v, dx/dt = v with u held (zero-order hold), to all digits for every A >=
+/// 0.
 ///   v' = kept v + gained u,   x' = x + gained v + way u
 /// Source: [Franklin1998] zero-order hold. Bare numbers: v and x in any unit, A in 1/s, h in s.
 template <class Number = double> struct viscous_step {

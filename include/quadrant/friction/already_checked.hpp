@@ -3,8 +3,8 @@
 
 namespace quadrant {
 
-/// Says that parameters were checked before: a fit makes the same axis thousands of times from one checked description. It also
-/// keeps the words of a refusal out of code for another instruction set.
+/// Says that parameters were checked before: a fit makes the same axis thousands of times from one checked
+/// description. It also keeps the words of a refusal out of code for another instruction set.
 struct already_checked {};
 
 } // namespace quadrant

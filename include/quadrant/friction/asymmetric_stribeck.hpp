@@ -7,15 +7,18 @@
 
 namespace quadrant {
 
-/// Friction of a guideway and its screw, with parameters of its own in each direction: the static level dies out as the
-/// axis gets faster, the Coulomb level builds up.
+/// Friction of a guideway and its screw, with parameters of its own in each direction: the static level dies
+/// out as the axis gets faster, the Coulomb level builds up.
 ///   T = {static e^{-|w| / fall} + coulomb (1 - e^{-|w| / rise})} sign(w) + viscous w, sign(0) = 0
 /// Source: [Yeung2006] eqs. (1-18), Td; [Erkorkmaz2001] for its identification.
-/// Ports: velocity in, torque or force out with the sign of the velocity (a plant subtracts it, a feedforward adds it).
+/// Ports: velocity in, torque or force out with the sign of the velocity (a plant subtracts it, a feedforward
+/// adds it).
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
 /// At rest a plant needs more than T(w): it asks breakaway(toward) and slip(w), see plant/ball_screw_drive.hpp.
-/// Range: static_level >= 0, coulomb >= 0, fall > 0, rise > 0 in either direction, viscous >= 0. With rise > fall the
-/// level dips below coulomb before it comes back: stick_slip.hpp, which wants a level that only falls, does not take it.
+/// Range: static_level >= 0, coulomb >= 0, fall > 0, rise > 0 in either direction, viscous >= 0. With rise >
+/// fall the
+/// level dips below coulomb before it comes back: stick_slip.hpp, which wants a level that only falls, does not
+/// take it.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "asymmetric_stribeck.<side>.<field> = ...: must ..." and for viscous and the period.
 /// Cost: 2 exponentials. The same in both directions: `stribeck`.
@@ -66,7 +69,8 @@ public:
         finite(y) ? out_.reset(y) : out_.raise();
     }
 
-    /// Magnitude of the dry part: what holds a resting axis that is pushed `forward` or back, and what brakes a moving one.
+    /// Magnitude of the dry part: what holds a resting axis that is pushed `forward` or back, and what brakes a
+    /// moving one.
     value breakaway(bool forward) const noexcept { return forward ? forward_.dying : backward_.dying; }
     value slip(argument w) const noexcept { return w < argument() ? backward_(-w) : forward_(w); }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }

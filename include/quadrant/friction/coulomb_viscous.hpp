@@ -8,10 +8,11 @@ namespace quadrant {
 /// Friction of one level plus a part that grows with speed; as plant friction, or as feedforward against it.
 ///   F = coulomb sign(v) + viscous v, sign(0) = 0
 /// Source: [Armstrong1994] section 2; the feedforward of gap/FORMAT.md when Out is a voltage.
-/// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward adds it).
+/// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward
+/// adds it).
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
-/// Range: coulomb >= 0, viscous >= 0. At rest a plant needs more than F(v): it asks breakaway() and slip(v), see
-/// stick_slip.hpp.
+/// Range: coulomb >= 0, viscous >= 0. At rest a plant needs more than F(v): it asks breakaway() and slip(v),
+/// see stick_slip.hpp.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "coulomb_viscous.<field> = ...: must be finite and not below 0" for coulomb and viscous.
 /// Cost: 1 multiplication, 2 comparisons. For a level that falls with speed: `stribeck`.

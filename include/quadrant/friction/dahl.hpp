@@ -6,22 +6,28 @@
 
 namespace quadrant {
 
-/// Friction that gives way like a spring before it slides: bristles that bend to a level which does not depend on speed.
+/// Friction that gives way like a spring before it slides: bristles that bend to a level which does not depend
+/// on speed.
 ///   dF/dx = stiffness |r|^shape sign(r), r = 1 - F sign(v)/coulomb; out = F + viscous v
-/// Source: [Dahl1968]; [Jamaludin2008] eq. (3.1), shape = 1 there. Solved exactly for a velocity that stands for the step,
+/// Source: [Dahl1968]; [Jamaludin2008] eq. (3.1), shape = 1 there. Solved exactly for a velocity that stands
+/// for the step,
 /// so a step is as good as many and only the path counts, not the speed: docs/derivations/dahl.md.
-/// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a plant
-/// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
-/// State: F without the viscous part, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been
+/// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a
+/// plant subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see
+/// presliding.hpp.
+/// State: F without the viscous part, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v
+/// had been
 /// applied for ever: +-coulomb, relaxed for v = 0.
-/// `retune(next)`: another law from the next step on; the bristles keep their force, but for what is beyond the new level.
-/// J <= max(K, K') |v| T + |viscous' - viscous| |v| + (|F| - coulomb' or 0), K = 2^shape stiffness: the step that either makes.
-/// Range: coulomb > 0, stiffness > 0, 0 <= shape <= 4, viscous >= 0. Shape 0: a spring up to the level; below 1 the level
-/// is reached within a finite way, from 1 on never quite. Stable at any step.
+/// `retune(next)`: another law from the next step on; the bristles keep their force, but for what is beyond the
+/// new level. J <= max(K, K') |v| T + |viscous' - viscous| |v| + (|F| - coulomb' or 0), K = 2^shape stiffness:
+/// the step that either makes.
+/// Range: coulomb > 0, stiffness > 0, 0 <= shape <= 4, viscous >= 0. Shape 0: a spring up to the level; below 1
+/// the level is reached within a finite way, from 1 on never quite. Stable at any step.
 /// Does not remember inner loops: they drift. Breakaway is the sliding level.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "dahl.<field> = ...: must ..." for period, coulomb, stiffness, shape, viscous.
-/// Cost: 1 exponential (6 functions when shape is neither 0 nor 1), 8 bytes. A level that falls: `lugre`; loops that
+/// Cost: 1 exponential (6 functions when shape is neither 0 nor 1), 8 bytes. A level that falls: `lugre`; loops
+/// that
 /// close: `maxwell_slip`.
 template <signal_tag In = signal::velocity, signal_tag Out = signal::force, class Real = double> class dahl {
 public:

@@ -15,28 +15,33 @@ concept some_springs = N >
 0;
 } // namespace detail
 
-/// Friction of N springs side by side, each of which sticks until its share of the level and then slips (Generalized
-/// Maxwell-slip): small loops close, and after them the force is back on the curve of the large one.
+/// Friction of N springs side by side, each of which sticks until its share of the level and then slips
+/// (Generalized Maxwell-slip): small loops close, and after them the force is back on the curve of the large
+/// one.
 ///   sticks: dF_i/dt = stiffness_i v, until F_i sign(v) = w_i s(v)
 ///   slips:  dF_i/dt = sign(v) attraction (w_i - |F_i|/s(v)), until v is zero or reverses
 ///   out = sum F_i + viscous v, s(v) = Fc + (Fs - Fc) exp(-|v/vs|^delta), one curve for all elements
-/// Source: [AlBender2005]; [Jamaludin2008] eq. (3.6-3.8). Solved exactly for a velocity that stands for the step, stick
+/// Source: [AlBender2005]; [Jamaludin2008] eq. (3.6-3.8). Solved exactly for a velocity that stands for the
+/// step, stick
 /// before slip: docs/derivations/maxwell_slip.md.
-/// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a plant
-/// subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see presliding.hpp.
-/// State: per element its force, in the unit of the output, and whether it slips. `reset` leaves all relaxed and sticking;
-/// `settle(v)` as if v had been applied for ever (relaxed for v = 0).
-/// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the new Fs: what one
-/// can hold no more the others take. A changed level is then gone to as the law says: at once by what sticks, with s/C by what slips.
-/// J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| - Fs' or 0), K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
-/// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as tables print
-/// them, divided by their sum, which must not be above Fs. The other stays zero.
-/// Range: 0 < coulomb <= static_level and the rest of `stribeck`; each share and stiffness > 0, attraction > 0. Stable at
-/// any step.
+/// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a
+/// plant subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see
+/// presliding.hpp.
+/// State: per element its force, in the unit of the output, and whether it slips. `reset` leaves all relaxed
+/// and sticking; `settle(v)` as if v had been applied for ever (relaxed for v = 0).
+/// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the
+/// new Fs: what one can hold no more the others take. A changed level is then gone to as the law says: at once
+/// by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| - Fs' or 0),
+/// K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
+/// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as
+/// tables print them, divided by their sum, which must not be above Fs. The other stays zero.
+/// Range: 0 < coulomb <= static_level and the rest of `stribeck`; each share and stiffness > 0, attraction > 0.
+/// Stable at any step.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "maxwell_slip.<field> = ...: must ..." for curve.coulomb, weights, forces, stiffness, attraction, and what
-/// `stribeck` throws for the curve and the period.
-/// Cost: 2 exponentials and about 4 multiplications an element; 16 bytes an element. One bristle, smooth: `lugre`.
+/// Throws "maxwell_slip.<field> = ...: must ..." for curve.coulomb, weights, forces, stiffness, attraction, and
+/// what `stribeck` throws for the curve and the period.
+/// Cost: 2 exponentials and about 4 multiplications an element; 16 bytes an element. One bristle, smooth:
+/// `lugre`.
 template <std::size_t N, signal_tag In = signal::velocity, signal_tag Out = signal::force, class Real = double>
 requires detail::some_springs<N>
 class maxwell_slip {
@@ -148,7 +153,8 @@ public:
 private:
     using slope = gain_of<Out, In, Real>;
 
-    /// What a step means for all elements. Inlined by name: clang++ would call it with every quantity in memory.
+    /// What a step means for all elements. Inlined by name: clang++ would call it with every quantity in
+    /// memory.
     struct passage {
         Real sign; ///< of the velocity; one at rest
         bool moves;
@@ -186,8 +192,8 @@ private:
         next.force *= way.sign;
         return next;
     }
-    /// What an element holds beyond its share of the breakaway level goes to the others, as far as they can hold it; an element
-    /// whose force changes sticks.
+    /// What an element holds beyond its share of the breakaway level goes to the others, as far as they can
+    /// hold it; an element whose force changes sticks.
     state borne(const state& of) const noexcept {
         state to = of;
         value left{};

@@ -7,9 +7,9 @@
 
 namespace quadrant {
 
-/// In lanes: every spring of every lane lies in one wide number, and no branch depends on a spring. Per lane the same result as
-/// `maxwell_slip` in double, but for the two exponentials, which are those of the lanes (docs/lanes.md). A feedforward and an
-/// estimate; as friction of a plant (`after`) one instance in double.
+/// In lanes: every spring of every lane lies in one wide number, and no branch depends on a spring. Per lane
+/// the same result as `maxwell_slip` in double, but for the two exponentials, which are those of the lanes
+/// (docs/lanes.md). A feedforward and an estimate; as friction of a plant (`after`) one instance in double.
 /// Cost: 2 exponentials for all lanes and about 16 operations per N lanes of a register.
 template <std::size_t N, signal_tag In, signal_tag Out, several_lanes Real>
 requires detail::some_springs<N>

@@ -13,8 +13,8 @@ namespace detail {
 template <class Real> inline constexpr double newton_accuracy = 2e-14;
 template <> inline constexpr double newton_accuracy<float> = 3e-7;
 
-/// d slip/d|v| of a Stribeck curve that has the level slip(v) at v, never above zero; at rest, where an exponent below one is
-/// infinitely steep, as for one.
+/// d slip/d|v| of a Stribeck curve that has the level slip(v) at v, never above zero; at rest, where an
+/// exponent below one is infinitely steep, as for one.
 template <signal_tag In, signal_tag Out, class Real>
 gain_of<Out, In, Real> slip_slope(const stribeck<In, Out, Real>& curve, quantity_of<In, Real> v,
                                   quantity_of<Out, Real> level) noexcept {
@@ -42,7 +42,8 @@ namespace detail {
 template <class Value> Value borne(const Value& force, const Value& most) noexcept {
     return force > most ? most : force < -most ? -most : force;
 }
-/// Memory and last good output of a block that is a law with a memory; an outcome is taken over when it is finite.
+/// Memory and last good output of a block that is a law with a memory; an outcome is taken over when it is
+/// finite.
 template <class Outcome, class Argument> class friction_memory {
     using value = decltype(Outcome::force);
     using state = decltype(Outcome::next);
@@ -76,9 +77,9 @@ private:
 };
 } // namespace detail
 
-/// A friction law that remembers where the axis came from: bristles, or elements that stick and slip. after(v, h) asks
-/// and changes nothing, become(next) lets it happen. The force at v = 0 is that of the memory; it does not fall with v
-/// faster than the inertia of the axis resists (mass / h).
+/// A friction law that remembers where the axis came from: bristles, or elements that stick and slip. after(v,
+/// h) asks and changes nothing, become(next) lets it happen. The force at v = 0 is that of the memory; it does
+/// not fall with v faster than the inertia of the axis resists (mass / h).
 template <class F, class Real>
 concept friction_with_memory = requires(F& changed, const F& f, quantity_of<signal::velocity, Real> v,
                                         quantity<si::time, Real> h) {
@@ -97,11 +98,11 @@ template <class State, class Real> struct presliding_outcome {
 
 /// Velocity v' after one step h of M dv/dt = drive - friction, the friction that of the end of the step:
 ///   M (v' - v)/h + after(v', h).force = drive
-/// Each law solves its own equation exactly for a velocity that stands for h; which velocity that is, is found here
-/// implicitly. So a stiff contact neither rings nor needs a small h, and no step adds energy.
-/// Newton's method from v, kept between rest and the far side of the solution: 2 to 4 passes, one or two more where an
-/// element breaks away; to 2e-14 of the speeds in it (float: 3e-7). The derivatives of a dual take one more. Where
-/// several v' solve it, one near v is taken.
+/// Each law solves its own equation exactly for a velocity that stands for h; which velocity that is, is found
+/// here implicitly. So a stiff contact neither rings nor needs a small h, and no step adds energy.
+/// Newton's method from v, kept between rest and the far side of the solution: 2 to 4 passes, one or two more
+/// where an element breaks away; to 2e-14 of the speeds in it (float: 3e-7). The derivatives of a dual take one
+/// more. Where several v' solve it, one near v is taken.
 /// Derivation: docs/derivations/presliding.md.
 template <class Real, friction_with_memory<Real> Friction>
 auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,

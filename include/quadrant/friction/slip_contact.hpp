@@ -12,22 +12,26 @@
 
 namespace quadrant {
 
-/// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved together with
-/// the mass that it brakes.
+/// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved
+/// together with the mass that it brakes.
 ///   M (v' - v)/h = drive - viscous v' - sum F_i',   F_i as in `maxwell_slip` with the level s(v) of the step's start,
 ///   s(v) = level (1 + asymmetry sign v) (1 + change) + added + excess (1 + excess_asymmetry sign v) exp(-|v|/vs(sign v))
-/// `added`, a level that a load presses onto the contact, also stiffens each spring by weight_i added / give_i. A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found in at most
-/// 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity. Velocity and spring forces are
-/// implicit, so no step adds energy and a stiff contact neither rings nor needs a small h; the level is that of the start.
+/// `added`, a level that a load presses onto the contact, also stiffens each spring by weight_i added / give_i.
+/// A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found
+/// in at most 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity.
+/// Velocity and spring forces are implicit, so no step adds energy and a stiff contact neither rings nor needs
+/// a small h; the level is that of the start.
 /// Source: [AlBender2005]; [Jamaludin2008] eqs. (3.6-3.8). Derivation: docs/derivations/maxwell_slip.md.
-/// Ports: the momentum p = M v + h (all other forces) [N s], velocity v, change (relative, of the level) and added >= 0 [N]
-/// in, v' out.
-/// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many contacts by one law.
-/// Range: level, excess >= 0; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at once.
-/// A spring with the weight 0 and the stiffness 0 is not there.
+/// Ports: the momentum p = M v + h (all other forces) [N s], velocity v, change (relative, of the level) and
+/// added >= 0 [N] in, v' out.
+/// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many
+/// contacts by one law.
+/// Range: level, excess >= 0; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at
+/// once. A spring with the weight 0 and the stiffness 0 is not there.
 /// NaN and infinities pass on to v', for the plant to see. Runs in lanes.
 /// Throws "slip_contact.<field> = ...: must ...".
-/// Cost: 1 exponential (2 with a finite attraction), about 12 multiplications and, for N > 1, one division a round.
+/// Cost: 1 exponential (2 with a finite attraction), about 12 multiplications and, for N > 1, one division a
+/// round.
 template <std::size_t N, class Real = double>
 requires(N > 0) class slip_contact {
 public:
@@ -201,7 +205,8 @@ private:
         return select(slips_on, v_on, select(rests, v_stuck, v_away));
     }
 
-    /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was wrong.
+    /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was
+    /// wrong.
     Real several(state& s, Real momentum, Real level, Real kept, Real inertia,
                  const auto& added) const noexcept {
         using std::abs;

@@ -8,8 +8,9 @@ namespace quadrant::detail {
 ///   it slips on:     share + (along - share) kept
 ///   it breaks away:  share + max(0, along - share) kept
 ///   else it sticks:  along + stiffness times the displacement, as long as that is below its share
-/// `share`: its part w_i s(v) of the level. `kept` = exp(-C h / s): what is left after h of the distance to the share; 0
-/// without the attraction C's delay. The one place of this law; `maxwell_slip` and `slip_contact` ask it.
+/// `share`: its part w_i s(v) of the level. `kept` = exp(-C h / s): what is left after h of the distance to the
+/// share; 0 without the attraction C's delay. The one place of this law; `maxwell_slip` and `slip_contact` ask
+/// it.
 /// Derivation: docs/derivations/maxwell_slip.md.
 template <class Force, class Real> struct spring_law {
     Force share;

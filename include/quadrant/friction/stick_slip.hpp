@@ -6,8 +6,9 @@
 
 namespace quadrant {
 
-/// A friction law that a plant can take: what holds a resting axis, what brakes a moving one, its viscous slope.
-/// slip(v) is even, does not exceed breakaway() and does not rise with the speed; what rises with it is viscous.
+/// A friction law that a plant can take: what holds a resting axis, what brakes a moving one, its viscous
+/// slope. slip(v) is even, does not exceed breakaway() and does not rise with the speed; what rises with it is
+/// viscous.
 template <class F, class Real>
 concept friction_law = requires(const F& f, quantity_of<signal::velocity, Real> v) {
     { f.breakaway() } -> std::convertible_to<quantity_of<signal::force, Real>>;
@@ -15,8 +16,10 @@ concept friction_law = requires(const F& f, quantity_of<signal::velocity, Real> 
     { f.viscous() } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
 };
 
-/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and the speed over which that changes e-fold. Newton's method
-/// may use them where slip is convex: falling() is false where it is not, and the level is then iterated by itself.
+/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and the speed
+/// over which that changes e-fold. Newton's method
+/// may use them where slip is convex: falling() is false where it is not, and the level is then iterated by
+/// itself.
 template <class F, class Real>
 concept friction_law_with_slope = friction_law<F, Real> &&
     requires(const F& f, quantity_of<signal::velocity, Real> v, quantity_of<signal::force, Real> level) {
@@ -30,9 +33,11 @@ namespace detail {
 template <class Real> inline constexpr double stick_slip_accuracy = 1e-14;
 template <> inline constexpr double stick_slip_accuracy<float> = 1e-7;
 
-/// The fastest v' >= 0 with slope v' + slip(v') = size by Newton's method, 0 when there is none; `start` > 0 from where. On a convex
-/// curve a tangent lies below it: its zero is not below a solution, wherever it touches a rising part, and the next ones come
-/// down to the fastest. Ended by the error that is left, which slope and curvature tell: one to two passes in motion.
+/// The fastest v' >= 0 with slope v' + slip(v') = size by Newton's method, 0 when there is none; `start` > 0
+/// from where. On a convex
+/// curve a tangent lies below it: its zero is not below a solution, wherever it touches a rising part, and the
+/// next ones come down to the fastest. Ended by the error that is left, which slope and curvature tell: one to
+/// two passes in motion.
 template <class Real, class Friction>
 quantity_of<signal::velocity, Real> fastest_sliding(const Friction& friction,
                                                     const gain_of<signal::force, signal::velocity, Real>& slope,
@@ -71,9 +76,10 @@ quantity_of<signal::velocity, Real> fastest_sliding(const Friction& friction,
 
 /// Velocity v' after one step h of M dv/dt = drive - viscous v - dry friction, friction taken implicitly:
 ///   M (v' - v)/h = drive - viscous v' - f,   f = slip(v') sign(v'), or |f| <= breakaway when v' = 0
-/// The implicit form makes stick exact (a resting axis below breakaway does not creep), does not chatter at any h and
-/// adds no energy; sign(v) of the textbook form does the opposite of all three ([Armstrong1994] section 4).
-/// Where the law falls so steeply that several v' solve it, an axis in motion takes the fastest: it goes on.
+/// The implicit form makes stick exact (a resting axis below breakaway does not creep), does not chatter at any
+/// h and adds no energy; sign(v) of the textbook form does the opposite of all three ([Armstrong1994] section
+/// 4). Where the law falls so steeply that several v' solve it, an axis in motion takes the fastest: it goes
+/// on.
 /// Derivation: docs/derivations/stick_slip.md.
 template <class Real, friction_law<Real> Friction>
 quantity_of<signal::velocity, Real>
@@ -94,8 +100,8 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
                 friction, slope, size, goes_on ? (forward ? v : -v) : velocity(size / slope));
             return forward ? next : -next;
         }
-    // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A machine
-    // axis needs 2 to 5 passes; more only where two solutions are about to vanish.
+    // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A
+    // machine axis needs 2 to 5 passes; more only where two solutions are about to vanish.
     constexpr int most_passes = 32;
     force dry = friction.slip(size / slope);
     for (int pass = 0; pass < most_passes && size > dry; ++pass) {

@@ -7,10 +7,12 @@
 
 namespace quadrant {
 
-/// Friction that falls from a breakaway level to the Coulomb level as the axis gets faster, plus a viscous part.
+/// Friction that falls from a breakaway level to the Coulomb level as the axis gets faster, plus a viscous
+/// part.
 ///   F = {Fc + (Fs - Fc) exp(-|v / vs|^delta)} sign(v) + viscous v, sign(0) = 0
 /// Source: [Jamaludin2008] eq. (3.5), delta = 1 there; [Armstrong1994] section 2.
-/// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward adds it).
+/// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward
+/// adds it).
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
 /// At rest a plant needs more than F(v): it asks breakaway() and slip(v), see stick_slip.hpp.
 /// Range: 0 <= coulomb <= static_level, stribeck_velocity > 0, 0.25 <= shape <= 4, viscous >= 0.

@@ -13,7 +13,8 @@ namespace quadrant {
 template <class Boxes> using command_of = typename decltype(Boxes::velocity_loop)::output;
 template <class Boxes> using real_of_boxes = real_of<decltype(Boxes::velocity_loop)>;
 
-/// One box per role, each mapping what its place in the diagram maps. Write `static_assert(axis_boxes<my_axis>)` under
+/// One box per role, each mapping what its place in the diagram maps. Write
+/// `static_assert(axis_boxes<my_axis>)` under
 /// your struct: the compiler then names the member that is missing or maps something else.
 template <class B>
 concept axis_boxes = requires {
@@ -59,15 +60,18 @@ template <signal_tag Command, class Real> struct cascade_wires {
     }
 };
 
-/// The classical servo axis: P on position, PI on velocity, notch, feedforward, limit, DAC. A worked example with a
+/// The classical servo axis: P on position, PI on velocity, notch, feedforward, limit, DAC. A worked example
+/// with a
 /// concept, not a framework: for another diagram copy the body and redraw it.
 ///   v_ref = (r[k]-r[k-1])/T, a_ref = (v_ref[k]-v_ref[k-1])/T, e = position_gain (r-y) + velocity_feedforward v_ref - v
 ///   u = round(limit(notch(PI(e)) + acceleration_feedforward a_ref + friction(v_ref)))
 /// Source: gap/FORMAT.md, controller kind cascade_p_pi.
 /// Ports: position reference and measured position in, command out (to act from this sample on).
-/// State: that of the boxes. `reset` as new (at rest at zero). `settle(start)` is the bumpless start in the middle of a
-/// motion: the next row, if the motion goes on as `start` says, gives start.command (as far as the limits allow).
-/// `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see docs/integrator.md.
+/// State: that of the boxes. `reset` as new (at rest at zero). `settle(start)` is the bumpless start in the
+/// middle of a
+/// motion: the next row, if the motion goes on as `start` says, gives start.command (as far as the limits
+/// allow). `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see
+/// docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; the PI learns what was applied.
 template <axis_boxes Boxes> struct cascade {
@@ -143,8 +147,9 @@ template <axis_boxes Boxes> struct cascade {
         carry(good, s.command);
         restore(good, before);
     }
-    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis: the
-    /// estimators go on, the integral is what makes the next step give `applied` if no wire changes till then.
+    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the
+    /// axis: the estimators go on, the integral is what makes the next step give `applied` if no wire changes
+    /// till then.
     void track(position reference, position measured, command applied) noexcept {
         const auto good = finite(reference, measured, applied);
         if (!all(good)) {
@@ -158,7 +163,8 @@ template <axis_boxes Boxes> struct cascade {
         carry(good, applied);
         restore(good, before);
     }
-    /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward change goes into
+    /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward
+    /// change goes into
     /// the integral: the last step, done once more, would give the same command.
     void retune(const Boxes& next) noexcept {
         const command before = wire.inertia + wire.friction;
@@ -183,7 +189,8 @@ template <axis_boxes Boxes> struct cascade {
         box.velocity_loop.retune(next.velocity_loop, wire.velocity_error, wire.feedback);
         box.resonance.shift(less);
     }
-    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
+    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no
+    /// command changes.
     void shift(position by) noexcept {
         box.reference_velocity.shift(by);
         box.measured_velocity.shift(by);

@@ -15,9 +15,9 @@ namespace quadrant {
 
 /// The stock boxes of a `cascade`, from the flat parameters of a machine file (controller kind cascade_p_pi):
 ///   cascade<cascade_p_pi_boxes<>> axis{.box = {parameters, 500_us}};
-/// Estimator: `filtered_derivative`, `two_sample_derivative` or `backward_difference`. Notch: `through` (none), `notch`,
-/// `series<notch, notch>`. Command: volts, or `signal::current`, `signal::force` for a drive that takes them.
-/// For another set of boxes write a struct with the same member names; see `axis_boxes`.
+/// Estimator: `filtered_derivative`, `two_sample_derivative` or `backward_difference`. Notch: `through` (none),
+/// `notch`, `series<notch, notch>`. Command: volts, or `signal::current`, `signal::force` for a drive that
+/// takes them. For another set of boxes write a struct with the same member names; see `axis_boxes`.
 template <class Estimator = filtered_derivative<signal::position, signal::velocity>,
           class Notch = through<signal::voltage>, class Real = real_of<Estimator>,
           signal_tag Command = typename Notch::input>

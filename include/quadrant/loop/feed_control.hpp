@@ -109,13 +109,14 @@ template <signal_tag Command, class Real> struct feed_control_wires {
     }
 };
 
-/// The controller's side of one feed axis: any control law, friction of the reference fed forward, limit, D/A converter. The
-/// machine's side is `feed_drive`; together they are an axis of a virtual CNC:
+/// The controller's side of one feed axis: any control law, friction of the reference fed forward, limit, D/A
+/// converter. The machine's side is `feed_drive`; together they are an axis of a virtual CNC:
 ///   measured = drive(control(reference, measured));
 ///   u = round(limit(law(reference, x, v) + friction(v_ref)))
 /// Source: [Yeung2006] Fig. 1, eq. (19).
 /// Ports: motion of the trajectory and measurement of sample k in, command to act from sample k on out.
-/// A law with a lead is asked so much later: wire.reference, which is what is due now, is what came in most_lead samples ago.
+/// A law with a lead is asked so much later: wire.reference, which is what is due now, is what came in
+/// most_lead samples ago.
 /// State: that of the boxes. `reset`: at rest at zero; `settle(x, u)`: at rest at x, held by u.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the command was clipped; the law learns it.

@@ -40,9 +40,9 @@ concept drive_boxes =
     { b.scale_on_table } -> std::convertible_to<bool>;
 };
 
-/// The stock boxes. Drive: `ball_screw_drive` on any friction, or `linear_motor` (without limits, rounding and encoder of its
-/// own; play, screw and lead error then stay 0). Lead: what the screw's lead is wrong by, as a map of positions: `through`,
-/// `proportional` (1 + error per metre), `cyclic_error`, or a `series` of them.
+/// The stock boxes. Drive: `ball_screw_drive` on any friction, or `linear_motor` (without limits, rounding and
+/// encoder of its own; play, screw and lead error then stay 0). Lead: what the screw's lead is wrong by, as a
+/// map of positions: `through`, `proportional` (1 + error per metre), `cyclic_error`, or a `series` of them.
 template <class Drive = ball_screw_drive<>, class Lead = through<signal::position, real_of<Drive>>>
 struct feed_drive_boxes {
     using real = real_of<Drive>;
@@ -120,16 +120,18 @@ template <signal_tag Effort, class Real> struct feed_drive_wires {
     }
 };
 
-/// The machine's side of one feed axis as named boxes: current amplifier with its limit, motor and screw on friction, lead
-/// error, screw that yields, play, encoder and tachometer. The controller's side is `feed_control`.
+/// The machine's side of one feed axis as named boxes: current amplifier with its limit, motor and screw on
+/// friction, lead error, screw that yields, play, encoder and tachometer. The controller's side is
+/// `feed_control`.
 ///   effort = limit(Ka u),  turned = drive(effort, external),  nut = lead(turned) - compliance (table_mass a - external)
 ///   place = play(nut),  reading = encoder(place or turned + noise),  tachometer = v + noise
 /// Source: [Yeung2006] eqs. (1-18); lead error and compliance are textbook.
-/// Ports: command u[k] [V] and the external force [N] on the table, held from sample k on, in; measurement of sample k+1
-/// out. Where the table is: wire.place.
-/// State: that of the boxes. `reset`: at rest at zero; `settle(x)`: motor at rest at x, in the middle of the play; noise as new.
-/// Range: the screw yields quasi-statically: good well below the resonance of table on screw. Its deflection does not act
-/// back on the motor.
+/// Ports: command u[k] [V] and the external force [N] on the table, held from sample k on, in; measurement of
+/// sample k+1 out. Where the table is: wire.place.
+/// State: that of the boxes. `reset`: at rest at zero; `settle(x)`: motor at rest at x, in the middle of the
+/// play; noise as new.
+/// Range: the screw yields quasi-statically: good well below the resonance of table on screw. Its deflection
+/// does not act back on the motor.
 /// NaN and infinities: returns the last measurement, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. Linear motors with structure: `table_axis`.
 template <drive_boxes Boxes> struct feed_drive {

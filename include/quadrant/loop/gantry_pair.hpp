@@ -5,17 +5,19 @@
 
 namespace quadrant {
 
-/// Two motors at the ends of one beam, seen as what they do together: moving it and turning it. Each gets a loop of its own,
-/// and the loops do not disturb each other.
+/// Two motors at the ends of one beam, seen as what they do together: moving it and turning it. Each gets a
+/// loop of its own, and the loops do not disturb each other.
 ///   mean = c y1 + (1-c) y2,   skew = y1 - y2 - offset;   u1 = c u + w,   u2 = (1-c) u - w
-/// u moves the centre of gravity and w turns the beam about it, when c is the share of the mass at end 1 (1/2: in the middle).
+/// u moves the centre of gravity and w turns the beam about it, when c is the share of the mass at end 1 (1/2:
+/// in the middle).
 ///   const auto [mean, skew] = beam(y1, y2);
 ///   const auto drive = beam.split(mean_loop(r, mean), skew_loop(0_m, skew));   // each as for one axis
 /// Source: rigid body; [Koren1980] couples two axes across each other for the same reason.
-/// Ports: both readings in, mean and skew out; both loops' commands in, those of the motors out, with what became of u and w.
+/// Ports: both readings in, mean and skew out; both loops' commands in, those of the motors out, with what
+/// became of u and w.
 /// At the limit of a motor w comes first: a beam that lags is late, a beam that racks breaks.
-/// Homing: when both ends have found their index, `offset(d)` takes the skew of a square beam; the skew loop's `shift(-change)`
-/// in the same sample keeps its command, and its reference then goes slowly to 0.
+/// Homing: when both ends have found their index, `offset(d)` takes the skew of a square beam; the skew loop's
+/// `shift(-change)` in the same sample keeps its command, and its reference then goes slowly to 0.
 /// State: last outputs; `reset` leaves zeros; `settle(y1, y2)` clears the fault.
 /// Range: 0 < share < 1; limit > 0, may be infinite. Both ends in the same frame and direction.
 /// NaN and infinities: holds the last outputs, raises faulted().

@@ -9,8 +9,9 @@
 #include <array>
 #include <cstddef>
 
-/// The blocks of two axes of one kind as one block in two lanes: the same template with another number type, and its parameters
-/// from those of both axes. An own block of a box becomes one by two overloads beside these, `in_lanes_of` and `both`.
+/// The blocks of two axes of one kind as one block in two lanes: the same template with another number type,
+/// and its parameters from those of both axes. An own block of a box becomes one by two overloads beside these,
+/// `in_lanes_of` and `both`.
 namespace quadrant {
 
 /// The number type of two axes in the lanes of one register, x first.
@@ -109,7 +110,8 @@ both(std::type_identity<milling_axis_boxes<F, D, M, double, C>>, const auto& x, 
 }
 } // namespace detail
 
-/// Names the boxes of an axis whose twin lies beside it in the lanes of a register: `xy_control<in_lanes<boxes>>`.
+/// Names the boxes of an axis whose twin lies beside it in the lanes of a register:
+/// `xy_control<in_lanes<boxes>>`.
 template <class Boxes> struct in_lanes {
     using alone = Boxes;                                        ///< of one axis, in double
     using together = typename detail::in_lanes_of<Boxes>::type; ///< of both

@@ -11,7 +11,8 @@
 
 namespace quadrant {
 
-/// A disturbance box that is fed this cycle's wish, solves the loop through its own estimate, and is told afterwards what was applied.
+/// A disturbance box that is fed this cycle's wish, solves the loop through its own estimate, and is told
+/// afterwards what was applied.
 template <class D, class Command, class Real>
 concept fed_the_wish = requires(D d, quantity_of<Command, Real> u) {
     d.applied(u);
@@ -21,8 +22,9 @@ template <class D>
 concept fed_the_last_applied = requires {
     requires D::takes_last_applied;
 };
-/// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either of two inputs,
-/// d(measured, u), which then tells which u it is fed (`fed_the_wish`, `fed_the_last_applied`), or of one, which `absent` is.
+/// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either
+/// of two inputs, d(measured, u), which then tells which u it is fed (`fed_the_wish`, `fed_the_last_applied`),
+/// or of one, which `absent` is.
 template <class D, class Command, class Real>
 concept observes_disturbance = maps<D, signal::position, Command, Real> ||
     ((fed_the_wish<D, Command, Real> ||
@@ -83,22 +85,26 @@ template <signal_tag Command, class Real> struct milling_wires {
     }
 };
 
-/// The axis of the milling table: P on position, PI on velocity with the notch in the velocity feedback, the inverse of
-/// the plant and its friction fed forward, a disturbance observer, a memory of what the error was a cycle ago. The second
-/// worked loop beside `cascade`, from the same boxes; for another diagram copy the body and redraw it.
+/// The axis of the milling table: P on position, PI on velocity with the notch in the velocity feedback, the
+/// inverse of the plant and its friction fed forward, a disturbance observer, a memory of what the error was a
+/// cycle ago. The second worked loop beside `cascade`, from the same boxes; for another diagram copy the body
+/// and redraw it.
 ///   e = r - y,   v = position_loop(e + memory(e)) + notch(Vest r) - notch(Vest y)
 ///   u = PI(v) + (r'' + A r')/B - d(y, u) + friction(travel)
-/// Source: [Jamaludin2008] eq. (2.10, 2.22-2.34) for the cascade, (3.5-3.8) friction, (4.1-4.20) observer, ch. 5 memory.
-/// Ports: reference (position, velocity, acceleration) and measured position in, command out (to act from this sample on).
+/// Source: [Jamaludin2008] eq. (2.10, 2.22-2.34) for the cascade, (3.5-3.8) friction, (4.1-4.20) observer, ch.
+/// 5 memory.
+/// Ports: reference (position, velocity, acceleration) and measured position in, command out (to act from this
+/// sample on).
 ///   `ahead` is the reference at the moment when the command will act: the feedforward of plant and friction takes it.
 ///   Without preview it is the reference itself.
-/// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction enters behind
-/// the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A `disturbance_observer` is fed this
-/// cycle's wish, a `harmonic_force_observer` what acted since the sample before. A memory box gives what is
-/// added to the position error.
-/// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far as the limit
-/// allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the same place gives u again.
-/// `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see docs/integrator.md.
+/// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction
+/// enters behind the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A
+/// `disturbance_observer` is fed this cycle's wish, a `harmonic_force_observer` what acted since the sample
+/// before. A memory box gives what is added to the position error.
+/// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far
+/// as the limit allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the
+/// same place gives u again. `track`, `retune`, `shift`: enabled without a bump, other parameters while it
+/// runs, homing; see docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
 template <milling_boxes Boxes> struct milling_axis {
@@ -155,9 +161,9 @@ template <milling_boxes Boxes> struct milling_axis {
         carry();
         fault = false;
     }
-    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the axis:
-    /// estimators, friction and observer see what happens and what was applied, the memory has learnt nothing, and the
-    /// integral is what makes the next step give `applied` if no wire changes till then.
+    /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the
+    /// axis: estimators, friction and observer see what happens and what was applied, the memory has learnt
+    /// nothing, and the integral is what makes the next step give `applied` if no wire changes till then.
     void track(const motion& reference, position measured, command applied) noexcept {
         track(reference, reference, measured, applied);
     }
@@ -186,7 +192,8 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.linear = wire.compensated + wire.disturbance;
         carry();
     }
-    /// Other parameters from the next step on, each box as its own retune says; `ahead` as in the last step. What gains and
+    /// Other parameters from the next step on, each box as its own retune says; `ahead` as in the last step.
+    /// What gains and
     /// feedforward change goes into the integral: the last step, done once more, would give the same command.
     void retune(const Boxes& next, const motion& ahead) noexcept {
         detail::retune(box.memory, next.memory);
@@ -214,7 +221,8 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.feedback = wire.linear - wire.inertia - wire.drag;
         box.velocity_loop.retune(next.velocity_loop, wire.velocity_error, wire.feedback);
     }
-    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no command changes.
+    /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no
+    /// command changes.
     void shift(position by) noexcept {
         box.reference_velocity.shift(by);
         box.measured_velocity.shift(by);
@@ -289,7 +297,8 @@ private:
         wire.limited = detail::settled(box.amplifier, wire.wanted);
         wire.command = detail::settled(box.dac, wire.limited);
     }
-    /// What acted on the plant since the sample before, without the friction that was fed forward; before the wires of this sample.
+    /// What acted on the plant since the sample before, without the friction that was fed forward; before the
+    /// wires of this sample.
     command last_applied() const noexcept { return wire.compensated + (wire.command - wire.wanted); } // z^-1
     [[gnu::always_inline, gnu::flatten]] inline command
     estimate(position measured, [[maybe_unused]] command wish, [[maybe_unused]] command acted) noexcept {

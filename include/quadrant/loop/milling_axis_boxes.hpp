@@ -14,9 +14,9 @@ namespace quadrant {
 
 /// The stock boxes of a `milling_axis`, from flat parameters as the thesis prints them:
 ///   milling_axis<milling_axis_boxes<maxwell_slip<4, signal::velocity, signal::voltage>>> x{.box = {parameters, 500_us}};
-/// Friction: any law from velocity to the command (`stribeck`, `dahl`, `lugre`, `maxwell_slip`), or `absent`. Disturbance:
-/// `disturbance_observer`, or `absent`. Memory: `repetitive<signal::position, ...>`, or `absent`. The plant is
-/// B / (s (s + A)), command to position: `plant_gain` B, `plant_pole` A.
+/// Friction: any law from velocity to the command (`stribeck`, `dahl`, `lugre`, `maxwell_slip`), or `absent`.
+/// Disturbance: `disturbance_observer`, or `absent`. Memory: `repetitive<signal::position, ...>`, or `absent`.
+/// The plant is B / (s (s + A)), command to position: `plant_gain` B, `plant_pole` A.
 /// For another set of boxes write a struct with the same member names; see `milling_boxes`.
 template <class Friction = absent<signal::velocity, signal::voltage>,
           class Disturbance = absent<signal::position, signal::voltage>,

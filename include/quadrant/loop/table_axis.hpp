@@ -27,8 +27,8 @@ concept table_boxes = requires(B b, quantity_of<signal::voltage, real_of<decltyp
     requires maps<decltype(B::encoder), signal::position, signal::position, real_of<decltype(B::motor)>>;
 };
 
-/// The stock boxes. Motor: `linear_motor` on any friction, with cogging, ripple and modes in its `axis_load`; Scale:
-/// `cyclic_error`, or `through`.
+/// The stock boxes. Motor: `linear_motor` on any friction, with cogging, ripple and modes in its `axis_load`;
+/// Scale: `cyclic_error`, or `through`.
 template <class Motor = linear_motor<>, class Scale = through<signal::position, real_of<Motor>>>
 struct table_axis_boxes {
     using real = real_of<Motor>;
@@ -87,11 +87,13 @@ template <class Real> struct table_wires {
     }
 };
 
-/// One axis of a machine, as named boxes: motor on friction with its load (cogging, ripple, modes), scale, encoder.
+/// One axis of a machine, as named boxes: motor on friction with its load (cogging, ripple, modes), scale,
+/// encoder.
 ///   place = rigid + deflection of the modes,  reading = encoder(scale(place))
 /// Source: gap/FORMAT.md, whose effects the boxes are; [Jamaludin2008] chapter 2.
 /// Ports: command u[k] [V] and the external force [N] held from sample k on in, reading [m] of sample k+1 out.
-/// State: that of the boxes. `reset`: at rest at zero; `settle(x)`: at rest with the rigid axis at x, no command pending.
+/// State: that of the boxes. `reset`: at rest at zero; `settle(x)`: at rest with the rigid axis at x, no
+/// command pending.
 /// NaN and infinities: returns the last reading, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. Two of them, coupled: `xy_table`. Without scale and modes: `linear_motor`.
 template <table_boxes Boxes> struct table_axis {

@@ -8,7 +8,8 @@
 namespace quadrant {
 
 namespace detail {
-/// Beyond this an input is no place, speed or acceleration of a machine (SI), and behind it products may overflow.
+/// Beyond this an input is no place, speed or acceleration of a machine (SI), and behind it products may
+/// overflow.
 inline constexpr double sensible_input = 0x1p199; // 8e59
 /// Is a sum of magnitudes below that? By its bits: a NaN is not.
 constexpr bool is_sensible(double sum_of_magnitudes) noexcept {
@@ -25,7 +26,8 @@ template <class Motion> constexpr double magnitude_of(const Motion& m) noexcept 
 }
 } // namespace detail
 
-/// What goes into an `xy_control` and what comes out. A pair of quantities is made by name: {.x = on_x(a), .y = on_y(b)}.
+/// What goes into an `xy_control` and what comes out. A pair of quantities is made by name: {.x = on_x(a), .y =
+/// on_y(b)}.
 template <signal_tag Command> struct xy_signals {
     using motion = axis_motion<double>;
     using position = quantity_of<signal::position>;
@@ -46,19 +48,23 @@ template <signal_tag Command> struct xy_signals {
     }
 };
 
-/// The controllers of both axes of a table as one block: one `milling_axis` each, everything that its boxes name in it.
+/// The controllers of both axes of a table as one block: one `milling_axis` each, everything that its boxes
+/// name in it.
 ///   (u_x, u_y) = (milling_axis<X>(r_x, y_x), milling_axis<Y>(r_y, y_y))
-/// Two forms with the same calls: `xy_control<X, Y>` holds two axes of boxes of their own; `xy_control<in_lanes<X>>` (`xy_control_lanes.hpp`) holds both axes,
-/// of the same kind and with parameters of their own, in the lanes of one register, in under half the instructions. They differ
-/// by rounding (other order of the memory's sums, the exponential of the lanes).
+/// Two forms with the same calls: `xy_control<X, Y>` holds two axes of boxes of their own;
+/// `xy_control<in_lanes<X>>` (`xy_control_lanes.hpp`) holds both axes, of the same kind and with parameters of
+/// their own, in the lanes of one register, in under half the instructions. They differ by rounding (other
+/// order of the memory's sums, the exponential of the lanes).
 /// Source: [Jamaludin2008] chapters 2 to 5; `milling_axis` says which equations.
-/// Ports: motions of both axes and measured positions in, commands out, to act from this sample on; `ahead` as `milling_axis` has it.
-/// State: that of both axes. `reset`, `settle(at, hold)`, `track`, `retune(next, ahead)`, `shift`: as `milling_axis`, both at once.
-/// `retune` takes a loop that was built beside, out of the servo thread, with the parameters that are to come.
-/// NaN, infinities, and magnitudes whose sum is above 8e59 (SI) in any input: returns the last commands, neither axis moves, raises
-/// faulted(): a table that has lost one of its encoders has to stop as a whole. In lanes no box looks at its numbers: should one
-/// overflow inside, the command shows it, and the loop holds the last one until reset or settle.
-/// Throws what the boxes throw, in their names; in lanes "in_lanes.<field> = ...: must be the same on both axes" (ahead, fade, shape).
+/// Ports: motions of both axes and measured positions in, commands out, to act from this sample on; `ahead` as
+/// `milling_axis` has it.
+/// State: that of both axes. `reset`, `settle(at, hold)`, `track`, `retune(next, ahead)`, `shift`: as
+/// `milling_axis`, both at once. `retune` takes a loop that was built beside, out of the servo thread, with the
+/// parameters that are to come. NaN, infinities, and magnitudes whose sum is above 8e59 (SI) in any input:
+/// returns the last commands, neither axis moves, raises faulted(): a table that has lost one of its encoders
+/// has to stop as a whole. In lanes no box looks at its numbers: should one overflow inside, the command shows
+/// it, and the loop holds the last one until reset or settle. Throws what the boxes throw, in their names; in
+/// lanes "in_lanes.<field> = ...: must be the same on both axes" (ahead, fade, shape).
 /// Cost: that of both axes. With the table behind it: `xy_loop`.
 template <class X, class Y = X> class xy_control : public xy_signals<command_of<X>> {
     using signals = xy_signals<command_of<X>>;

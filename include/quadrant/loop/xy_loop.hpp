@@ -34,15 +34,18 @@ concept pushes = requires(P& p) {
     p.reset();
 };
 
-/// The whole loop of a milling table as one type: the controllers of both axes with all that they compensate (cascade, notch, inverse
-/// of the axis, friction, disturbance observer, memory), the table behind them, and the process that pushes it.
+/// The whole loop of a milling table as one type: the controllers of both axes with all that they compensate
+/// (cascade, notch, inverse of the axis, friction, disturbance observer, memory), the table behind them, and
+/// the process that pushes it.
 ///   u[k] = control(r[k], y[k]),   y[k+1] = table(u[k], process[k])
 /// Source: [Jamaludin2008], the whole of it.
-/// Ports: motions of both axes in, readings of the next sample out. X, Y: boxes of a `milling_axis`, or `in_lanes` of them; Table: an
-/// `xy_table`, or what has its calls; Process: `cutting_force`, `milling_force`, `no_process`.
-/// State: that of the parts. `reset`: as new; `settle(at)`: at rest there, nothing learnt, the process as it is.
-/// NaN and infinities in the motions: neither controller moves, the last commands go on acting on the table, faulted() until reset
-/// or settle.
+/// Ports: motions of both axes in, readings of the next sample out. X, Y: boxes of a `milling_axis`, or
+/// `in_lanes` of them; Table: an `xy_table`, or what has its calls; Process: `cutting_force`, `milling_force`,
+/// `no_process`.
+/// State: that of the parts. `reset`: as new; `settle(at)`: at rest there, nothing learnt, the process as it
+/// is.
+/// NaN and infinities in the motions: neither controller moves, the last commands go on acting on the table,
+/// faulted() until reset or settle.
 /// Throws what the parts throw, in their names.
 /// Cost: that of the parts; the controllers alone: `xy_control`, which is what goes onto the machine.
 template <class X, class Y, moves_two_axes Table, pushes Process = no_process> class xy_loop {
@@ -91,7 +94,8 @@ public:
     Process& process_x() noexcept { return process_x_; } ///< to let the tool leave the cut
     Process& process_y() noexcept { return process_y_; }
 
-    /// Every wire of the diagram by axis: f(axis 'x' or 'y', name, unit, value in SI); of an `xy_table` its wires too.
+    /// Every wire of the diagram by axis: f(axis 'x' or 'y', name, unit, value in SI); of an `xy_table` its
+    /// wires too.
     template <class F> void each_wire(F&& f) const {
         control_.each_wire(f);
         if constexpr (requires { table_.x().wire; }) {

@@ -8,13 +8,15 @@ namespace quadrant {
 /// An xy-table: two axes of named boxes, each shaken by the acceleration of the other.
 ///   a_x = (forces of x)/M_x + into_x a_y,   a_y = (forces of y)/M_y + into_y a_x
 /// Source: gap/FORMAT.md (effect cross_coupling); [Jamaludin2008] chapter 2 for the table.
-/// Ports: a pair of commands [V] and a pair of external forces [N] in, the pair of readings [m] of the next sample out. A
-/// pair is made by name: table({.x = on_x(ux), .y = on_y(uy)}, {.x = on_x(fx), .y = on_y(fy)}); what belongs to x does not
-/// compile as y. Its members are read as plain quantities.
+/// Ports: a pair of commands [V] and a pair of external forces [N] in, the pair of readings [m] of the next
+/// sample out. A
+/// pair is made by name: table({.x = on_x(ux), .y = on_y(uy)}, {.x = on_x(fx), .y = on_y(fy)}); what belongs to
+/// x does not compile as y. Its members are read as plain quantities.
 /// State: that of the boxes. `reset`, `settle(pair)`: both axes at rest.
-/// Range: |into_x into_y| < 1. The acceleration is the mean of the last period, so the coupling is one period late.
-/// NaN and infinities in either axis: returns the last readings, neither axis moves, raises faulted() until reset or settle.
-/// Throws "xy_table.coupling.<field> = ...: must ..."; the boxes throw in their own names.
+/// Range: |into_x into_y| < 1. The acceleration is the mean of the last period, so the coupling is one period
+/// late.
+/// NaN and infinities in either axis: returns the last readings, neither axis moves, raises faulted() until
+/// reset or settle. Throws "xy_table.coupling.<field> = ...: must ..."; the boxes throw in their own names.
 /// Cost: that of the boxes. A single axis: `table_axis`.
 template <table_boxes X, table_boxes Y>
 requires std::same_as<real_of<decltype(X::motor)>, real_of<decltype(Y::motor)>>

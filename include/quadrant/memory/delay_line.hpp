@@ -11,17 +11,20 @@
 
 namespace quadrant {
 
-/// Gives a wire back a whole number of periods later: lines up a reference with a late measurement, or models a dead time.
+/// Gives a wire back a whole number of periods later: lines up a reference with a late measurement, or models a
+/// dead time.
 ///   y[k] = x[k - length]
 /// Ports: one scalar in, one scalar out, the same signal.
-/// State: the last Capacity + 1 inputs, whatever the length; `reset` leaves zeros and the length of the parameters,
-/// `settle(x)` fills it with x. `length(n)` changes the length between two steps: a longer delay reads inputs that were
-/// really there (zeros before the first), a shorter one skips some; nothing is ever read that was not put in.
-/// At a change the output jumps by x[k-n'] - x[k-n]: at most |n' - n| times the largest step of those inputs. `shift(by)`: the frame moves.
+/// State: the last Capacity + 1 inputs, whatever the length; `reset` leaves zeros and the length of the
+/// parameters, `settle(x)` fills it with x. `length(n)` changes the length between two steps: a longer delay
+/// reads inputs that were really there (zeros before the first), a shorter one skips some; nothing is ever read
+/// that was not put in. At a change the output jumps by x[k-n'] - x[k-n]: at most |n' - n| times the largest
+/// step of those inputs. `shift(by)`: the frame moves.
 /// Range: 0 <= length <= Capacity; length(n) above saturates, and limited() tells. Length 0 is a piece of wire.
 /// NaN and infinities: holds the last output, takes nothing in (the line stands still), raises faulted().
 /// Throws "delay_line.length = ...: must not exceed the capacity (...)".
-/// Cost: no arithmetic, 8 (Capacity + 2) bytes of state. For a delay that is no whole number of periods: `fractional_delay`.
+/// Cost: no arithmetic, 8 (Capacity + 2) bytes of state. For a delay that is no whole number of periods:
+/// `fractional_delay`.
 template <signal_tag Signal, std::size_t Capacity, class Real = double> class delay_line {
 public:
     using input = Signal;

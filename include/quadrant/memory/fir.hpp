@@ -3,12 +3,12 @@
 #include <array>
 #include <cstddef>
 
-/// What a FIR filter of many taps is made of so that compilers use SIMD without being asked: inputs side by side, several
-/// sums that do not wait for each other.
+/// What a FIR filter of many taps is made of so that compilers use SIMD without being asked: inputs side by
+/// side, several sums that do not wait for each other.
 namespace quadrant::detail {
 
-/// The last Size inputs, oldest first and never wrapped around: each is written twice, Size apart. Oldest first, so that a
-/// sum comes last to what was just written.
+/// The last Size inputs, oldest first and never wrapped around: each is written twice, Size apart. Oldest
+/// first, so that a sum comes last to what was just written.
 template <class Value, std::size_t Size> struct fir_window {
     std::array<Value, 2 * Size> x{};
     std::size_t next = 0; ///< where the coming one goes
@@ -20,9 +20,9 @@ template <class Value, std::size_t Size> struct fir_window {
     const Value& ago(std::size_t samples) const noexcept { return x[next + Size - samples]; }
 };
 
-/// Coefficients and their sum over a window. From four taps on as four partial sums: y = ((s0 + s2) + (s1 + s3)), padded in
-/// front with zeros. In every number type off by at most (size/4 + 2) half units in the last place of sum |c| |x|, where the
-/// plain sum is off by Taps of them.
+/// Coefficients and their sum over a window. From four taps on as four partial sums: y = ((s0 + s2) + (s1 +
+/// s3)), padded in front with zeros. In every number type off by at most (size/4 + 2) half units in the last
+/// place of sum |c| |x|, where the plain sum is off by Taps of them.
 template <class Real, std::size_t Taps> class fir_taps {
 public:
     static constexpr std::size_t sums = Taps < 4 ? 1 : 4;

@@ -20,15 +20,18 @@ concept delay_order = Order == 1 || (Order == 3 && Capacity >= 1);
 
 /// Delays a wire by any time, not only whole periods: the dead time of a drive, 0.4 ms at 0.5 ms per sample.
 ///   y(t) = the polynomial through the Order + 1 samples around t - delay (Lagrange)
-/// Source: [Laakso1996], Lagrange interpolation; Order 3 with the instant between its two middle samples, where it is best.
+/// Source: [Laakso1996], Lagrange interpolation; Order 3 with the instant between its two middle samples, where
+/// it is best.
 /// Ports: one scalar in, one scalar out, the same signal.
-/// State: the last Capacity + Order + 1 inputs, whatever the delay; `reset` leaves zeros and the delay of the parameters,
-/// `settle(x)` fills it with x. `delay(d)` changes the delay between two steps.
-/// At a change the output jumps by at most g |d' - d|/T times the largest step of the inputs that are read between, and beside,
+/// State: the last Capacity + Order + 1 inputs, whatever the delay; `reset` leaves zeros and the delay of the
+/// parameters, `settle(x)` fills it with x. `delay(d)` changes the delay between two steps.
+/// At a change the output jumps by at most g |d' - d|/T times the largest step of the inputs that are read
+/// between, and beside,
 /// both delays: g = 1 (Order 1), 4/3 (Order 3), the steepest slope of the cubic. `shift(by)`: the frame moves.
-/// Range: Order 1 (straight line): 0 <= delay <= Capacity periods; Order 3 (cubic): one period <= delay <= Capacity
-/// periods, because it needs a sample on either side. delay(d) outside saturates, and limited() tells. Exact for
-/// polynomials up to Order, for any signal at whole periods; gain at 1/8 of the sampling rate and half a period between
+/// Range: Order 1 (straight line): 0 <= delay <= Capacity periods; Order 3 (cubic): one period <= delay <=
+/// Capacity periods, because it needs a sample on either side. delay(d) outside saturates, and limited() tells.
+/// Exact for polynomials up to Order, for any signal at whole periods; gain at 1/8 of the sampling rate and
+/// half a period between
 /// samples: 0.924 (Order 1), 0.992 (Order 3), never above one.
 /// NaN and infinities: holds the last output, takes nothing in, raises faulted().
 /// Throws "fractional_delay.delay = ...: must lie between ... and ... (capacity)".

@@ -20,28 +20,32 @@ template <std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps
 concept repeats = Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1;
 } // namespace detail
 
-/// Repetitive memory loop: learns, cycle after cycle, what to add to the position error so that an error that returns
-/// with the same cycle (a circle, a turning cutter) dies out.
+/// Repetitive memory loop: learns, cycle after cycle, what to add to the position error so that an error that
+/// returns with the same cycle (a circle, a turning cutter) dies out.
 ///   r = sum over i = 1 ... Order of w[i] z^{-i N} Q(z) (e + r),   y = L(z) r, added to e by the loop;   N = cycle / period
 /// Q low-pass, symmetric, read without phase; L reads `ahead` samples ahead: both look into the cycle before.
-/// Source: [Jamaludin2008] ch. 5 (repetitive control); weights of order 2 and above trade a cycle that is not quite
-/// known against errors that do not repeat. N need not be whole: cubic interpolation of Q (e + r), [Laakso1996].
+/// Source: [Jamaludin2008] ch. 5 (repetitive control); weights of order 2 and above trade a cycle that is not
+/// quite known against errors that do not repeat. N need not be whole: cubic interpolation of Q (e + r),
+/// [Laakso1996].
 /// Ports: error in, what to add to it out, the same signal; y[k] does not depend on e[k].
-/// State: Order cycles of Q (e + r) and the taps of L and Q; `reset` leaves zeros and the cycle of the parameters;
-/// `settle(x)` the state of a constant x. With sum w Q(1) = 1 (integrates(), the usual case) no such state exists:
-/// `settle(x, y)`, where the next step gives y; settle(x) then takes the last output for y. A memory that gives constants
-/// no way out (weights, Q or L of sum zero) has no state for a y but zero: settle(x, y) then leaves that of a constant x.
-/// `cycle(d)` changes N between two steps; the memory is read in the old and the new way and one is faded into the other
-/// during `fade`, so y never jumps. A change asked for during a fade starts after it; the last one asked for wins.
-/// The r that L reads then moves by 1/F of what the two ways differ by, each of the F steps of the fade, y by sum |l| times that.
-/// `retune(next)`: other filters, weights and cycle (by fading), the same ahead; what was learnt stays. J = |sum l_j' r_j' - l_j r_j|
-/// <= sum |l' - l| max |r| + 1.25 |l_0'| sum |w' - w| max |p|, p = Q (e + r); the new Q is heard a cycle later.
-/// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates, and
-/// limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity: analysis/repetitive_design.hpp.
+/// State: Order cycles of Q (e + r) and the taps of L and Q; `reset` leaves zeros and the cycle of the
+/// parameters; `settle(x)` the state of a constant x. With sum w Q(1) = 1 (integrates(), the usual case) no
+/// such state exists: `settle(x, y)`, where the next step gives y; settle(x) then takes the last output for y.
+/// A memory that gives constants no way out (weights, Q or L of sum zero) has no state for a y but zero:
+/// settle(x, y) then leaves that of a constant x. `cycle(d)` changes N between two steps; the memory is read in
+/// the old and the new way and one is faded into the other during `fade`, so y never jumps. A change asked for
+/// during a fade starts after it; the last one asked for wins. The r that L reads then moves by 1/F of what the
+/// two ways differ by, each of the F steps of the fade, y by sum |l| times that. `retune(next)`: other filters,
+/// weights and cycle (by fading), the same ahead; what was learnt stays. J = |sum l_j' r_j' - l_j r_j| <= sum
+/// |l' - l| max |r| + 1.25 |l_0'| sum |w' - w| max |p|, p = Q (e + r); the new Q is heard a cycle later.
+/// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates,
+/// and limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity:
+/// analysis/repetitive_design.hpp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "repetitive.<field> = ...: must ..." for period, cycle, fade, weights, learning, ahead, smoothing.
-/// Cost: LearningTaps + SmoothingTaps + 4 Order multiplications (8 Order in a fade), 8 (Order Capacity + 2 both taps) bytes.
-/// Q and L are summed in four parts (SIMD where there is one): detail::fir_taps says how far that is from the exact sum.
+/// Cost: LearningTaps + SmoothingTaps + 4 Order multiplications (8 Order in a fade), 8 (Order Capacity + 2 both
+/// taps) bytes. Q and L are summed in four parts (SIMD where there is one): detail::fir_taps says how far that
+/// is from the exact sum.
 /// A delay alone: `delay_line`.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order = 1, std::size_t LearningTaps = 90,
           std::size_t SmoothingTaps = 61, class Real = double>
@@ -245,8 +249,8 @@ private:
     struct standing {
         value m{}, r{}, y{};
     };
-    /// At the input x, or, where any output may stand at one input or `has_output`, at the output y. `gain`: sum of L; g: of Q and the
-    /// weights.
+    /// At the input x, or, where any output may stand at one input or `has_output`, at the output y. `gain`:
+    /// sum of L; g: of Q and the weights.
     static standing at_rest(value x, value y, bool has_output, const Real& gain, const Real& g) noexcept {
         const bool any_output = std::abs(detail::plain(g) - 1) <= whole_tolerance;
         if ((has_output || any_output) && detail::plain(gain) != 0 && detail::plain(g) != 0) {
@@ -290,7 +294,8 @@ private:
 };
 
 namespace detail {
-/// Parameters of several memories in lanes: as those of one, each for all lanes; `ahead` and `fade` are common to them.
+/// Parameters of several memories in lanes: as those of one, each for all lanes; `ahead` and `fade` are common
+/// to them.
 template <class One, std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps, class Real>
 struct repetitive_lanes {
     using single = typename One::number;

@@ -28,8 +28,9 @@ template <std::size_t W, std::size_t Size> struct lane_window {
     } ///< 1 ... Size
 };
 
-/// FIR coefficients for each lane, and their sum over a window of the samples before and the newest, which never goes through
-/// memory. Eight partial sums: off by at most (Size/8 + 4) half units in the last place of sum |c| |x|.
+/// FIR coefficients for each lane, and their sum over a window of the samples before and the newest, which
+/// never goes through memory. Eight partial sums: off by at most (Size/8 + 4) half units in the last place of
+/// sum |c| |x|.
 template <class Real, std::size_t Taps> class lane_taps {
     static constexpr std::size_t W = lane_count<Real>, before = Taps - 1;
     using pair = typename Real::template times<2>;
@@ -67,9 +68,9 @@ private:
 };
 } // namespace detail
 
-/// In lanes that step together: one ring and one position in it for all of them. Each lane has its own cycle, weights and filters;
-/// a sample costs little more than one lane does, since neighbouring taps of all lanes fill a register. A fade is common: it
-/// starts where one lane's cycle changes.
+/// In lanes that step together: one ring and one position in it for all of them. Each lane has its own cycle,
+/// weights and filters; a sample costs little more than one lane does, since neighbouring taps of all lanes
+/// fill a register. A fade is common: it starts where one lane's cycle changes.
 /// The sums are those of `repetitive` in another order: see detail::lane_taps.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
           std::size_t SmoothingTaps, several_lanes Real>
@@ -165,7 +166,8 @@ public:
 private:
     static constexpr std::size_t size_p = one::size_p;
 
-    /// Which samples of p make r in each lane, and how much of each; where all lanes read the same ones, in one go.
+    /// Which samples of p make r in each lane, and how much of each; where all lanes read the same ones, in one
+    /// go.
     struct memory_reader {
         std::array<std::array<std::size_t, W>, Order> oldest{}; ///< of the four: how far before the coming p
         std::array<std::array<pair, 2>, Order> weight{};        ///< of the oldest first

@@ -9,12 +9,14 @@
 namespace quadrant {
 
 /// The stabilizing X of A' X A - X - A' X B (R + B' X B)^-1 B' X A + Q = 0.
-/// By structure-preserving doubling: each step does twice as many periods of the recursion as all before together.
+/// By structure-preserving doubling: each step does twice as many periods of the recursion as all before
+/// together.
 /// Source: [Chu2004]; as wpimath's DARE does.
-/// Range: A to about 30 states. Scale the states to be of the same order: what one of them lacks beside the others by more
-/// than 1e8 is rounding. Bare numbers. Not a step: runs once, may throw; no allocation, any number type.
-/// Throws "dare.Q = ...: must be symmetric and positive semidefinite", "dare.R = ...: must be symmetric and positive
-/// definite", "dare.A = ...: has a mode that B does not reach or that Q does not weight" (with the spectral radius left).
+/// Range: A to about 30 states. Scale the states to be of the same order: what one of them lacks beside the
+/// others by more than 1e8 is rounding. Bare numbers. Not a step: runs once, may throw; no allocation, any
+/// number type. Throws "dare.Q = ...: must be symmetric and positive semidefinite", "dare.R = ...: must be
+/// symmetric and positive definite", "dare.A = ...: has a mode that B does not reach or that Q does not weight"
+/// (with the spectral radius left).
 template <std::size_t N, std::size_t M, class Number>
 matrix<N, N, Number> dare(const matrix<N, N, Number>& A, const matrix<N, M, Number>& B,
                           const matrix<N, N, Number>& Q, const matrix<M, M, Number>& R) {
@@ -69,14 +71,16 @@ matrix<N, N, Number> dare(const matrix<N, N, Number>& A, const matrix<N, M, Numb
     return h;
 }
 
-/// Steady gain of a Kalman filter for x[k+1] = step x + w, z = read x + e, where w has the covariance `process` and e `noise`.
+/// Steady gain of a Kalman filter for x[k+1] = step x + w, z = read x + e, where w has the covariance `process`
+/// and e `noise`.
 template <std::size_t N, class Number = double> struct steady_filter {
     column<N, Number> gain{};         ///< x = predicted + gain (z - read predicted)
     matrix<N, N, Number> predicted{}; ///< covariance before the sample
     Number innovation{};              ///< variance of z - read predicted
     double radius = 0;                ///< largest |eigenvalue| of step (1 - gain read)
 };
-/// The dual of the regulator's equation. Throws in its names: dare.A is step', dare.B read', dare.Q process, dare.R noise.
+/// The dual of the regulator's equation. Throws in its names: dare.A is step', dare.B read', dare.Q process,
+/// dare.R noise.
 template <std::size_t N, class Number>
 steady_filter<N, Number> kalman_gain(const matrix<N, N, Number>& step, const column<N, Number>& read,
                                      const matrix<N, N, Number>& process, const Number& noise) {

@@ -15,30 +15,37 @@
 
 namespace quadrant {
 
-/// What pushes the axis beside the command, as a command: subtract it and the axis behaves as its nominal plant.
+/// What pushes the axis beside the command, as a command: subtract it and the axis behaves as its nominal
+/// plant.
 ///   d = Q (Gn^-1 z - u),   u = what is applied;   Q(s) = sum_{i=0..m} q_i s^i / (s + wc)^n,   wc = 2 pi corner
-/// Q and Q/Gn are bilinear with one denominator and share their state. Both pass straight through, so that d depends on the u
-/// that depends on d: the step solves u = wanted - d exactly instead of taking last cycle's u (docs/derivations).
+/// Q and Q/Gn are bilinear with one denominator and share their state. Both pass straight through, so that d
+/// depends on the u
+/// that depends on d: the step solves u = wanted - d exactly instead of taking last cycle's u
+/// (docs/derivations).
 ///   wire.disturbance = box.observer(measured, wire.wanted);        // solved together with the next line
 ///   wire.command     = wire.wanted - wire.disturbance;
 ///   wire.applied     = box.amplifier(wire.command + wire.friction);
 ///   box.observer.applied(wire.applied - wire.friction);            // or friction is compensated twice
 /// Clipping by a limiter in between is part of the solution. The last line may be left out where nothing clips.
 /// Source: [Jamaludin2008] eq. (4.1) to (4.20).
-/// Ports: measured z; wanted command in, disturbance out, both in the unit of the command; a push in the direction of a
-/// positive command is positive.
-/// State: n + zeros of the plant integrators in the unit of the command (`differences.hpp`), last z, last u; `reset`: at rest at zero, nothing pushes;
-/// `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest at z while -d is applied against d (a following step with
-/// wanted = 0 gives d). A plant that does not integrate needs the wanted command z/Gn(0) to stay there.
-/// `retune(next)`: another corner, another plant from the next step on; nothing changes at rest and in even motion, else the
-/// coming d is off by J = |p0 (x[k] - x[k-1]) - q0 (u[k] - u[k-1])| / (1 - q0'), x: z or its difference, p0 and q0: what the
-/// first coefficients of Q/Gn and Q change, q0' the new one. `shift(by)`: the frame of positions moves.
-/// Range: 0 < corner < half the sampling rate (in float from 3e-7 of it on, in double from 6e-16); n - m not below the relative degree of the plant, else it does not compile;
-/// zeros of the plant left of the axis. |Q| is -3 dB below the corner (n = 2, m = 0: at 0.644 of it). Gn carries no delay;
-/// an inverse-model feedforward must use the same Gn. What has died out is zero.
-/// NaN and infinities: holds the last output, keeps the state, raises faulted(); an `applied` that follows changes nothing.
-/// Throws "disturbance_observer.<field> = ...: must ..." for period, corner, plant.numerator, plant.denominator.
-/// Cost: 3 (n + zeros) + 3 multiplications, 4 (n + zeros) additions; in float 7. From an acceleration: `ferraris_force_estimator`; noisy encoder: `kalman`.
+/// Ports: measured z; wanted command in, disturbance out, both in the unit of the command; a push in the
+/// direction of a positive command is positive.
+/// State: n + zeros of the plant integrators in the unit of the command (`differences.hpp`), last z, last u;
+/// `reset`: at rest at zero, nothing pushes; `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest
+/// at z while -d is applied against d (a following step with wanted = 0 gives d). A plant that does not
+/// integrate needs the wanted command z/Gn(0) to stay there. `retune(next)`: another corner, another plant from
+/// the next step on; nothing changes at rest and in even motion, else the coming d is off by J = |p0 (x[k] -
+/// x[k-1]) - q0 (u[k] - u[k-1])| / (1 - q0'), x: z or its difference, p0 and q0: what the first coefficients of
+/// Q/Gn and Q change, q0' the new one. `shift(by)`: the frame of positions moves.
+/// Range: 0 < corner < half the sampling rate (in float from 3e-7 of it on, in double from 6e-16); n - m not
+/// below the relative degree of the plant, else it does not compile; zeros of the plant left of the axis. |Q|
+/// is -3 dB below the corner (n = 2, m = 0: at 0.644 of it). Gn carries no delay; an inverse-model feedforward
+/// must use the same Gn. What has died out is zero.
+/// NaN and infinities: holds the last output, keeps the state, raises faulted(); an `applied` that follows
+/// changes nothing. Throws "disturbance_observer.<field> = ...: must ..." for period, corner, plant.numerator,
+/// plant.denominator.
+/// Cost: 3 (n + zeros) + 3 multiplications, 4 (n + zeros) additions; in float 7. From an acceleration:
+/// `ferraris_force_estimator`; noisy encoder: `kalman`.
 template <signal_tag Command, signal_tag Measured = signal::position, std::size_t Order = 2,
           std::size_t NumeratorOrder = 0, std::size_t PlantOrder = 2, std::size_t PlantZeros = 0,
           class Real = double>
@@ -182,7 +189,8 @@ public:
         out_.raise(!good);
     }
 
-    /// From the measured signal to the disturbance with wanted = 0, the loop through the command closed: (Q/Gn) / (1 - Q).
+    /// From the measured signal to the disturbance with wanted = 0, the loop through the command closed: (Q/Gn)
+    /// / (1 - Q).
     std::complex<double> response(frequency f) const { return inverse(f) / (1.0 - q(f)); }
     /// Q as it runs.
     std::complex<double> q(frequency f) const {
@@ -258,15 +266,16 @@ private:
     held_output<value> out_;
 };
 
-/// How far an observer is from what its unmodelled part allows: |Q| <= 1/|Delta|, Delta = (G - Gn)/Gn, [Jamaludin2008] (4.19).
+/// How far an observer is from what its unmodelled part allows: |Q| <= 1/|Delta|, Delta = (G - Gn)/Gn,
+/// [Jamaludin2008] (4.19).
 struct robust_stability {
     double worst = 0; ///< largest |Q Delta|; sufficient for stability: below 1
     frequency at{};   ///< where
     bool holds() const noexcept { return worst < 1; }
 };
 
-/// Over `points` frequencies, evenly spaced in their logarithm; `plant(frequency)` gives the measured FRF (or a model with its
-/// delay) as std::complex<double>, in the units of the nominal plant.
+/// Over `points` frequencies, evenly spaced in their logarithm; `plant(frequency)` gives the measured FRF (or a
+/// model with its delay) as std::complex<double>, in the units of the nominal plant.
 template <class Observer, class Frf>
 robust_stability robustness(const Observer& observer, Frf&& plant, frequency from, frequency to,
                             std::size_t points = 1000) {

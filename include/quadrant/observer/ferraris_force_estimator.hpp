@@ -10,20 +10,23 @@
 
 namespace quadrant {
 
-/// What pushes the mass, from its acceleration (Ferraris sensor), the command and the friction: no model of the axis' dynamics, no
-/// differentiated encoder.
+/// What pushes the mass, from its acceleration (Ferraris sensor), the command and the friction: no model of the
+/// axis' dynamics, no differentiated encoder.
 ///   d = Q (M a - kf u + friction),   Q(s) = sum_{i=0..m} q_i s^i / (s + wc)^n, bilinear, as in `disturbance_observer`
 ///   wire.force   = box.ferraris(acceleration, wire.command, wire.friction);   // z^-1: the command that acts at this sample
 ///   wire.command = wire.wanted - box.ferraris.command();
 /// Nothing to solve: an acceleration sampled before the new command goes out shows the last one.
 /// Source: [Jamaludin2008] eq. (5.6); calibration of the sensor: `analysis/ferraris_calibration.hpp`.
-/// Ports: acceleration in, force out; second and third argument the command that acts at this sample (of a delayed axis: through
-/// a `delay_line`) and the friction force, positive against positive motion; d is positive in the direction of positive motion.
-/// State: that of Q, n forces; `reset` leaves zero; `settle(a)` the state of a constant a without command and friction.
+/// Ports: acceleration in, force out; second and third argument the command that acts at this sample (of a
+/// delayed axis: through a `delay_line`) and the friction force, positive against positive motion; d is
+/// positive in the direction of positive motion.
+/// State: that of Q, n forces; `reset` leaves zero; `settle(a)` the state of a constant a without command and
+/// friction.
 /// Range: 0 < corner < half the sampling rate; m < n. An offset Z of the sensor becomes a force M Z.
 /// NaN and infinities in any argument: holds the last force, keeps the state, raises faulted().
 /// Throws "ferraris_force_estimator.<field> = ...: must ..." for period, mass, force_constant, corner.
-/// Cost: 2 n + 3 multiplications. Without the sensor: `disturbance_observer`; with a position beside it: `reduced_order_observer`.
+/// Cost: 2 n + 3 multiplications. Without the sensor: `disturbance_observer`; with a position beside it:
+/// `reduced_order_observer`.
 template <signal_tag Command, std::size_t Order = 2, std::size_t NumeratorOrder = 0, class Real = double>
 requires(NumeratorOrder < Order) class ferraris_force_estimator {
 public:

@@ -23,7 +23,8 @@ template <std::size_t Harmonics> struct placed_poles {
         p.poles.fill(-decay.value());
         return p;
     }
-    /// Each at its own frequency, shifted left by decay; position and velocity at -decay. For any number of harmonics.
+    /// Each at its own frequency, shifted left by decay; position and velocity at -decay. For any number of
+    /// harmonics.
     static placed_poles shifted(const std::array<frequency, Harmonics>& harmonics, frequency decay) {
         placed_poles p = equal(decay);
         for (std::size_t i = 0; i < Harmonics; ++i) {
@@ -45,7 +46,8 @@ concept harmonic_design = std::same_as<D, placed_poles<Harmonics>> || std::same_
 
 namespace detail {
 
-/// The axis and its harmonics over one period, in units of one metre, the period, and the command that moves by one in the
+/// The axis and its harmonics over one period, in units of one metre, the period, and the command that moves by
+/// one in the
 /// other: all of order one.
 template <std::size_t Harmonics> struct harmonic_model {
     static constexpr std::size_t order = 2 + 2 * Harmonics;
@@ -69,13 +71,15 @@ template <std::size_t Harmonics> struct harmonic_model {
         }
         return m;
     }
-    /// Of a steady Kalman filter; `wander`: variance that each amplitude gathers in a period, over that of the encoder.
+    /// Of a steady Kalman filter; `wander`: variance that each amplitude gathers in a period, over that of the
+    /// encoder.
     column<order> gain_for(double wander) const {
         matrix<order> noise{};
         for (std::size_t i = 2; i < order; ++i) noise[i][i] = wander;
         return kalman_gain(step, column<order>{1}, noise, 1.0).gain;
     }
-    /// det(z - F (1 - L C)) = prod(z - p_j): residues at the eigenvalues of F, carried back by its eigenvectors.
+    /// det(z - F (1 - L C)) = prod(z - p_j): residues at the eigenvalues of F, carried back by its
+    /// eigenvectors.
     column<order> gain_for(const std::array<std::complex<double>, order>& poles, double T) const {
         using complex = std::complex<double>;
         std::array<complex, order> pole, mode; // wanted; of F

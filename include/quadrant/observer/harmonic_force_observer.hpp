@@ -14,25 +14,30 @@
 
 namespace quadrant {
 
-/// Cutting forces of known frequencies, from the position and the command applied, as a command: subtract their sum.
+/// Cutting forces of known frequencies, from the position and the command applied, as a command: subtract their
+/// sum.
 ///   dx/dt = v, dv/dt = -A v + B (u + sum q_i),  q_i[k+1] = cos(w_i T) q_i + sin(w_i T) r_i,  r_i[k+1] = cos r_i - sin q_i
 ///   x = p + L (encoder - p_x),  p the exact step of x for u and q held over the period;  d = sum q_i, turned by w_i lead
 ///   wire.disturbance = box.observer(measured, wire.command);   // z^-1: what brought the axis here
 ///   wire.command     = wire.wanted - wire.disturbance;
-/// At these frequencies the loop's gain is infinite: a force there leaves nothing at the samples, whatever its size and phase.
-/// (q is held like the command that cancels it, so it is the force as the samples show it, half a period late.)
+/// At these frequencies the loop's gain is infinite: a force there leaves nothing at the samples, whatever its
+/// size and phase. (q is held like the command that cancels it, so it is the force as the samples show it, half
+/// a period late.)
 /// Source: [Jamaludin2008] Appendix D; L from the poles by residues, from noise by `dare` (docs/derivations).
-/// Ports: position in, sum of the harmonics at the same sample out, in the unit of the command; the command applied since the
-/// sample before is the second argument. A push in the direction of a positive command is positive.
-/// State: position, velocity, two numbers per harmonic in the unit of the command; `reset`: at rest at zero, no force;
-/// `settle(x)`: at rest at x, no force.
-/// Range: 0 < w_i / 2 pi < half the sampling rate, all different; A > 0 with placed poles. The observer alone is stable, checked
-/// here; with the loop around it and the axis' delay it need not be: equal poles below some 110 1/s couple with the position loop
-/// of [Jamaludin2008], shifted ones do not. With many harmonics give `lead` the delay and feed the command that much late.
-/// A constant force is none of its states: leave that to the integral. The design is in double: a dual carries derivatives of
-/// the signals, not of these parameters.
+/// Ports: position in, sum of the harmonics at the same sample out, in the unit of the command; the command
+/// applied since the sample before is the second argument. A push in the direction of a positive command is
+/// positive.
+/// State: position, velocity, two numbers per harmonic in the unit of the command; `reset`: at rest at zero, no
+/// force; `settle(x)`: at rest at x, no force.
+/// Range: 0 < w_i / 2 pi < half the sampling rate, all different; A > 0 with placed poles. The observer alone
+/// is stable, checked here; with the loop around it and the axis' delay it need not be: equal poles below some
+/// 110 1/s couple with the position loop of [Jamaludin2008], shifted ones do not. With many harmonics give
+/// `lead` the delay and feed the command that much late.
+/// A constant force is none of its states: leave that to the integral. The design is in double: a dual carries
+/// derivatives of the signals, not of these parameters.
 /// NaN and infinities in encoder or command: holds the last output, keeps the state, raises faulted().
-/// Throws "harmonic_force_observer.<field> = ...: must ..." for period, plant, harmonics, design, and in the names of `dare`.
+/// Throws "harmonic_force_observer.<field> = ...: must ..." for period, plant, harmonics, design, and in the
+/// names of `dare`.
 /// Cost: 8 multiplications per harmonic and 6; 16 bytes of state per harmonic and 16. Unknown frequencies:
 /// `disturbance_observer`; a period with many harmonics: a repetitive memory loop.
 template <signal_tag Command, std::size_t Harmonics, class Design = placed_poles<Harmonics>,
@@ -52,7 +57,8 @@ public:
         Design design{};                              ///< `placed_poles` or `expected_noise`
         duration lead{}; ///< >= 0; the sum is that of this much later: the axis' delay
     };
-    /// Motion of the axis, and each harmonic with its quarter-turn, in the unit of the command; at the last sample.
+    /// Motion of the axis, and each harmonic with its quarter-turn, in the unit of the command; at the last
+    /// sample.
     struct state {
         argument position{};
         quadrant::quantity<si::velocity, Real> velocity{};
@@ -134,7 +140,8 @@ public:
         next.position = argument::from_value(px + gain_[0] * off);
         next.velocity = velocity::from_value(pv + gain_[1] * off);
         if (!good || !finite(next.position, next.velocity, sum)) return out_.hold();
-        // All at once: a position is far smaller than the command that made it, and alone at zero it would move the others.
+        // All at once: a position is far smaller than the command that made it, and alone at zero it would move
+        // the others.
         if (still && died_out(next.position, next.velocity)) next = {};
         state_ = next;
         innovation_ = argument::from_value(off);

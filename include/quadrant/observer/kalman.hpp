@@ -10,23 +10,23 @@
 
 namespace quadrant {
 
-/// Position, velocity and disturbance force of an axis from its encoder and the command applied: a smooth speed without the lag
-/// of a filtered derivative, and what pushes.
+/// Position, velocity and disturbance force of an axis from its encoder and the command applied: a smooth speed
+/// without the lag of a filtered derivative, and what pushes.
 ///   dx/dt = v, M dv/dt = kf u - viscous v + d, dd/dt = white noise; encoder = x + white noise; steady Kalman gain K
 ///   x = p + K (encoder - p_x),   next p = exp(F T) x + integral u   (exact for a held command)
-/// With `half_step` a reading is a bounded set instead, x within half_step of it: a prediction inside stays, one outside is
-/// corrected by what it is outside, with the same gain.
-/// The disturbance is a state because friction and cutting forces are not white: without it the speed is biased by what
-/// a constant force adds between two corrections.
-/// Source: [Franklin1998] ch. 9 (steady-state optimal estimation), gain by `dare`; half_step: the dead zone of a
-/// set-membership update [Fogel1982].
-/// Ports: encoder in, velocity at the same sample out; the command `applied` since the sample before is the second argument,
-/// read before it is written (// z^-1, no loop to solve). Positive command, force and motion agree. With a delayed axis
-/// feed it the delayed command (`delay_line`).
-/// State: position, velocity, force; `reset`: at rest at zero; `settle(x)`: at rest at x, nothing pushes or drives;
-/// `settle(x, v)`: moving at v, held against viscous friction by a force.
-/// Range: encoder_noise and drift > 0 (a quantizer's noise: step / sqrt(12), white while some steps are crossed per period);
-/// their ratio sets the bandwidth(). In float up to 0.1 m with steps of 0.1 um.
+/// With `half_step` a reading is a bounded set instead, x within half_step of it: a prediction inside stays,
+/// one outside is corrected by what it is outside, with the same gain.
+/// The disturbance is a state because friction and cutting forces are not white: without it the speed is biased
+/// by what a constant force adds between two corrections.
+/// Source: [Franklin1998] ch. 9 (steady-state optimal estimation), gain by `dare`; half_step: the dead zone of
+/// a set-membership update [Fogel1982].
+/// Ports: encoder in, velocity at the same sample out; the command `applied` since the sample before is the
+/// second argument, read before it is written (// z^-1, no loop to solve). Positive command, force and motion
+/// agree. With a delayed axis feed it the delayed command (`delay_line`).
+/// State: position, velocity, force; `reset`: at rest at zero; `settle(x)`: at rest at x, nothing pushes or
+/// drives; `settle(x, v)`: moving at v, held against viscous friction by a force.
+/// Range: encoder_noise and drift > 0 (a quantizer's noise: step / sqrt(12), white while some steps are crossed
+/// per period); their ratio sets the bandwidth(). In float up to 0.1 m with steps of 0.1 um.
 /// NaN and infinities in encoder or command: holds the last velocity, keeps the state, raises faulted().
 /// Throws "kalman.<field> = ...: must be ..." for period, mass, force_constant, viscous, encoder_noise, drift,
 /// half_step.
@@ -67,7 +67,8 @@ public:
         require_positive("kalman.drift", p.drift);
         require_not_negative("kalman.half_step", p.half_step);
         half_step_ = Real(p.half_step.value());
-        // In units of the encoder's noise, the period, and the force that moves the mass by one in the other: all of order one.
+        // In units of the encoder's noise, the period, and the force that moves the mass by one in the other:
+        // all of order one.
         const number T(period.value()), sigma = p.encoder_noise.value(), mass = p.mass.value();
         const number slow = p.viscous.value() * T / mass, thrust = T * T / (mass * sigma);
         const number wander = p.drift.value() * thrust;
@@ -119,7 +120,8 @@ public:
     const force& disturbance() const noexcept { return state_.disturbance; }
     /// Encoder minus what was expected; with half_step what of it lies outside.
     const argument& innovation() const noexcept { return innovation_; }
-    /// Standard deviations that the model expects: of the estimates (position, velocity, disturbance) and of the innovation.
+    /// Standard deviations that the model expects: of the estimates (position, velocity, disturbance) and of
+    /// the innovation.
     struct deviations {
         quantity_of<signal::position> position;
         quantity_of<signal::velocity> velocity;

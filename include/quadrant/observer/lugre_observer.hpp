@@ -8,17 +8,18 @@
 
 namespace quadrant {
 
-/// Friction by a LuGre model whose bristles are bent further as long as the axis stays behind, so that what the model lacks
-/// is learned where it acts.
+/// Friction by a LuGre model whose bristles are bent further as long as the axis stays behind, so that what the
+/// model lacks is learned where it acts.
 ///   dz/dt = v + correction e - stiffness |v| z/g(v),   F = stiffness z + s1(v) dz/dt + viscous v,   e = reference - position
 /// Source: the friction observer of [CanudasDeWit1995] (there dz/dt less k e, e = position - reference).
-/// z is the exact solution for what stands during the period, held to what the bristles bear at most: a resting axis
-/// under a lasting error would bend them for ever.
-/// Ports: speed in, friction out with the sign of the resistance (a loop adds it to the command); the second argument is
-/// e, default 0. Feed it the speed of the reference. The axis' own, as in the source, comes back with the sign that helps
+/// z is the exact solution for what stands during the period, held to what the bristles bear at most: a resting
+/// axis under a lasting error would bend them for ever.
+/// Ports: speed in, friction out with the sign of the resistance (a loop adds it to the command); the second
+/// argument is e, default 0. Feed it the speed of the reference. The axis' own, as in the source, comes back
+/// with the sign that helps
 /// it: with friction overrated, or a coarse encoder, the axis then hunts at rest.
-/// State: stiffness z, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been applied for ever
-/// without error.
+/// State: stiffness z, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been
+/// applied for ever without error.
 /// Range: friction as `lugre`; correction >= 0, in 1/s (0: only the model).
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "lugre_observer.correction = ...: must ...", and what `lugre` throws.

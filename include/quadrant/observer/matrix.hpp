@@ -10,8 +10,9 @@
 #include <cstddef>
 #include <utility>
 
-/// Small matrices of fixed size for the design of observers: rows of std::array, any number type, no Eigen (a scalar loop that
-/// includes an observer compiles as fast as before), no allocation. Design only; the steps write out what they need.
+/// Small matrices of fixed size for the design of observers: rows of std::array, any number type, no Eigen (a
+/// scalar loop that includes an observer compiles as fast as before), no allocation. Design only; the steps
+/// write out what they need.
 namespace quadrant {
 
 /// Rows of numbers: m[row][column].
@@ -95,8 +96,8 @@ template <std::size_t N, class Number> bool positive_definite(const matrix<N, N,
 
 } // namespace detail
 
-/// Largest |eigenvalue|: below 1 a sampled system is stable. Gelfand's lim |A^k|^(1/k), k = 2^40 by squaring; no eigenvalue is
-/// computed, so multiple ones do no harm beyond their own sensitivity to rounding.
+/// Largest |eigenvalue|: below 1 a sampled system is stable. Gelfand's lim |A^k|^(1/k), k = 2^40 by squaring;
+/// no eigenvalue is computed, so multiple ones do no harm beyond their own sensitivity to rounding.
 template <std::size_t N, class Number> double spectral_radius(const matrix<N, N, Number>& a) {
     matrix<N> p{};
     for (std::size_t i = 0; i < N; ++i)

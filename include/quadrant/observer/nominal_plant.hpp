@@ -10,8 +10,8 @@
 /// The model that an observer compares the axis with.
 namespace quadrant {
 
-/// Any rational plant without delay, bare numbers in SI by rising power of s (as in discretize.hpp); the highest of both
-/// not zero. Zeros is the degree of the numerator, Order - Zeros the relative degree.
+/// Any rational plant without delay, bare numbers in SI by rising power of s (as in discretize.hpp); the
+/// highest of both not zero. Zeros is the degree of the numerator, Order - Zeros the relative degree.
 template <std::size_t Order, std::size_t Zeros = 0, class Number = double> struct nominal_plant {
     static_assert(Zeros <= Order, "a plant cannot look ahead");
     std::array<Number, Zeros + 1> numerator{};

@@ -40,8 +40,8 @@ std::complex<double> polynomial(const std::array<Coefficient, Size>& c, std::com
     return y;
 }
 
-/// All roots of sum c_i s^i left of the imaginary axis: inside the unit circle after the bilinear form, by Schur and Cohn's
-/// step-down. Any rate of that form would do; one of the polynomial's own keeps its digits.
+/// All roots of sum c_i s^i left of the imaginary axis: inside the unit circle after the bilinear form, by
+/// Schur and Cohn's step-down. Any rate of that form would do; one of the polynomial's own keeps its digits.
 template <std::size_t Size, class Number> bool roots_left_of_axis(const std::array<Number, Size>& c) {
     constexpr std::size_t order = Size - 1;
     const double rate = order == 0 || plain(c[0]) == 0
@@ -65,8 +65,9 @@ template <std::size_t Size, class Number> bool roots_left_of_axis(const std::arr
 
 } // namespace detail
 
-/// The low-pass of a disturbance observer: n equal poles at wc = 2 pi corner, the first m + 1 terms of the denominator on top,
-/// so that 1 - Q has m + 1 zeros at s = 0 (m = 0 forgets a constant disturbance, m = 1 a ramp). [Jamaludin2008] (4.6), (4.7).
+/// The low-pass of a disturbance observer: n equal poles at wc = 2 pi corner, the first m + 1 terms of the
+/// denominator on top, so that 1 - Q has m + 1 zeros at s = 0 (m = 0 forgets a constant disturbance, m = 1 a
+/// ramp). [Jamaludin2008] (4.6), (4.7).
 template <std::size_t Order, std::size_t NumeratorOrder, class Number>
 continuous<Order, Number> q_filter(const quantity<si::frequency, Number>& corner) {
     static_assert(NumeratorOrder < Order, "Q must be a low-pass: its numerator needs a lower order");

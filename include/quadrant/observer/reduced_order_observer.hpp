@@ -9,17 +9,17 @@
 
 namespace quadrant {
 
-/// Velocity and disturbance force from position and acceleration, both measured: the acceleration is integrated, the position
-/// keeps the integral from drifting. No lag, and the encoder's steps are filtered.
+/// Velocity and disturbance force from position and acceleration, both measured: the acceleration is
+/// integrated, the position keeps the integral from drifting. No lag, and the encoder's steps are filtered.
 ///   dv/dt = a + l1 (dx/dt - v),   d = M a + viscous v - kf u,   l1 = 2 pi corner
 ///   (v - v')/T = (a + a')/2 + l1 ((x - x')/T - (v + v')/2)       (' = one sample before)
-/// The third state, the position, is measured; of the two gains of L = [l1 0] only the one on the position is not zero,
-/// as the acceleration already is the derivative of the velocity.
+/// The third state, the position, is measured; of the two gains of L = [l1 0] only the one on the position is
+/// not zero, as the acceleration already is the derivative of the velocity.
 /// Source: [Jamaludin2008] Appendix C; the trapezoidal form is exact for a constant acceleration.
-/// Ports: position in, velocity at the same sample out; second and third argument the acceleration now and the command that acts at
-/// this sample (the last one, // z^-1). d is positive in the direction of positive motion.
-/// State: velocity, last position and acceleration; `reset`: at rest at zero; `settle(x)`: at rest at x; `settle(x, v)`: moving at v,
-/// x was the last sample.
+/// Ports: position in, velocity at the same sample out; second and third argument the acceleration now and the
+/// command that acts at this sample (the last one, // z^-1). d is positive in the direction of positive motion.
+/// State: velocity, last position and acceleration; `reset`: at rest at zero; `settle(x)`: at rest at x;
+/// `settle(x, v)`: moving at v, x was the last sample.
 /// Range: 0 < corner < half the sampling rate. An offset Z of the acceleration leaves Z / l1 in v: calibrate it
 /// (`analysis/ferraris_calibration.hpp`). The disturbance is not filtered: `ferraris_force_estimator`.
 /// NaN and infinities in any argument: holds the last velocity, keeps the state, raises faulted().
@@ -86,8 +86,8 @@ public:
 
     const value& velocity() const noexcept { return state_.velocity; }
     const force& disturbance() const noexcept { return state_.disturbance; }
-    /// From position to velocity, and from acceleration to velocity [s]: their sum, with a the second derivative of x, is the
-    /// derivative of x.
+    /// From position to velocity, and from acceleration to velocity [s]: their sum, with a the second
+    /// derivative of x, is the derivative of x.
     std::complex<double> response(frequency f) const {
         const auto back = shift(f);
         return detail::plain(from_position_) * (1.0 - back) / (1.0 - (1 - detail::plain(forget_)) * back);

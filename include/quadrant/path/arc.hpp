@@ -7,15 +7,15 @@
 
 namespace quadrant {
 
-/// Circular piece of a tool path in the xy plane, or a helix about z, by its path length s [m] from its start; s beyond an
-/// end is held there.
+/// Circular piece of a tool path in the xy plane, or a helix about z, by its path length s [m] from its start;
+/// s beyond an end is held there.
 ///   r(s) = c + R [cos a, sin a] + [0, 0, z0 + rise s/L],  a = a0 + sweep s/L,  L = hypot(R sweep, rise)
-/// The tangent is the derivative of r; the curvature vector points to the axis, R (sweep/L)^2 long (1/R without rise).
-/// Throws for what is not finite, for no radius and for no sweep. Never allocates.
+/// The tangent is the derivative of r; the curvature vector points to the axis, R (sweep/L)^2 long (1/R without
+/// rise). Throws for what is not finite, for no radius and for no sweep. Never allocates.
 class arc {
 public:
-    /// `start` [m]; `centre` [m], its z does not count; `sweep` [rad], positive counterclockwise seen against z, more
-    /// than a turn allowed; `rise` along z over the whole piece [m].
+    /// `start` [m]; `centre` [m], its z does not count; `sweep` [rad], positive counterclockwise seen against
+    /// z, more than a turn allowed; `rise` along z over the whole piece [m].
     arc(point start, point centre, double sweep, double rise = 0)
         : start_(start), centre_{centre.x, centre.y, 0}, sweep_(sweep), rise_(rise),
           radius_(std::hypot(start.x - centre.x, start.y - centre.y)),

@@ -7,13 +7,14 @@
 
 namespace quadrant {
 
-/// What programs write of an arc is rounded: its end may lie this far off the circle about its centre through its start [m].
+/// What programs write of an arc is rounded: its end may lie this far off the circle about its centre through
+/// its start [m].
 inline constexpr double arc_end_tolerance = 1e-5;
 
-/// The arc in the xy plane from `start` to `end` about `centre` [m], a helix if their z differ; a full turn when they are
-/// the same place in xy. The centre moves along the chord to where both ends are equally far, so that the next move
-/// begins where this one ends. None when the end is not on the arc: further off than arc_end_tolerance, a tenth of the radius
-/// or a quarter of the chord.
+/// The arc in the xy plane from `start` to `end` about `centre` [m], a helix if their z differ; a full turn
+/// when they are the same place in xy. The centre moves along the chord to where both ends are equally far, so
+/// that the next move begins where this one ends. None when the end is not on the arc: further off than
+/// arc_end_tolerance, a tenth of the radius or a quarter of the chord.
 inline std::optional<arc> arc_about(point start, point end, point centre, bool clockwise) {
     const double way = clockwise ? -1 : 1, turn = 2 * std::numbers::pi;
     const double cx = centre.x, cy = centre.y;
@@ -29,8 +30,8 @@ inline std::optional<arc> arc_about(point start, point end, point centre, bool c
     return arc(start, moved, way * sweep, end.z - start.z);
 }
 
-/// Centre of the arc from `start` to `end` with this radius [m]; a negative one means the longer way round. None when
-/// they are further apart than twice the radius (by more than arc_end_tolerance), or the same place.
+/// Centre of the arc from `start` to `end` with this radius [m]; a negative one means the longer way round.
+/// None when they are further apart than twice the radius (by more than arc_end_tolerance), or the same place.
 inline std::optional<point> arc_centre(point start, point end, double radius, bool clockwise) {
     const double dx = end.x - start.x, dy = end.y - start.y, chord = std::hypot(dx, dy);
     const double r = std::abs(radius), half = 0.5 * chord;

@@ -49,8 +49,8 @@ inline std::optional<arc> fit_circle(const cl_circle& c, point start, point end,
     return out;
 }
 
-/// Where travel from `start` along the circle meets the line through a and b for the n-th time; the start itself, met again
-/// after a turn, comes last. None when there are not so many.
+/// Where travel from `start` along the circle meets the line through a and b for the n-th time; the start
+/// itself, met again after a turn, comes last. None when there are not so many.
 inline std::optional<point> nth_meeting(const cl_circle& c, point start, point a, point b, int n) {
     const double length = std::hypot(b.x - a.x, b.y - a.y);
     if (!(length > same_place)) return {};
@@ -74,8 +74,8 @@ inline std::optional<point> nth_meeting(const cl_circle& c, point start, point a
     return end;
 }
 
-/// ,GOFWD/(CIRCLE/x,y,z,r),ON,n,INTOF,(LINE/x1,y1,z1,x2,y2,z2) behind TLON; `n,INTOF,` may be missing. The sense of the
-/// circle is that of INDIRV. Returns the end.
+/// ,GOFWD/(CIRCLE/x,y,z,r),ON,n,INTOF,(LINE/x1,y1,z1,x2,y2,z2) behind TLON; `n,INTOF,` may be missing. The
+/// sense of the circle is that of INDIRV. Returns the end.
 inline point read_to_line(cl_arguments& from, double unit, point start, const std::optional<point>& indirv,
                           cl_circle& c) {
     const auto expect = [&](std::initializer_list<std::string_view> parts) {

@@ -9,17 +9,18 @@ namespace quadrant {
 
 /// Reads a CL file (APT), one move at a time, three coordinates; memory does not grow with the file.
 /// Moves: FROM/ (before the first), GOTO/, GODLTA/; RAPID for the next move; FEDRAT/ with MMPM, IPM, PERMIN or
-/// neither (units per minute); UNITS/MM, INCHES (before: mm). DELAY/ seconds; STOP, OPSTOP, LOADTL, LOAD: the move before them ends
-/// in a stop. END, FINI: the end. Arcs in the xy plane, as postprocessors write them:
+/// neither (units per minute); UNITS/MM, INCHES (before: mm). DELAY/ seconds; STOP, OPSTOP, LOADTL, LOAD: the
+/// move before them ends in a stop. END, FINI: the end. Arcs in the xy plane, as postprocessors write them:
 ///   CIRCLE/x,y,z,i,j,k,r then GOTO/ the end (Creo; NX with four numbers more): k = 1 counterclockwise, -1 clockwise
 ///   MOVARC/x,y,z,i,j,k,r,ANGLE,degrees then GOTO/ the end (Autodesk)
 ///   INDIRV/i,j,k and TLON,GOFWD/(CIRCLE/x,y,z,r),ON,n,INTOF,(LINE/x1,y1,z1,x2,y2,z2) (CATIA, APT): to the n-th
 ///   meeting of circle and line in the direction of INDIRV
-/// SPLINE/QUINTIC or SPLINE/CUBIC ... SPLINE/OFF: one smooth path from where the tool is through the GOTO places between
-/// them (spline_path.hpp). The word is ours: CL files have none that is common.
-/// Read and without effect on the path: see no_effect below. Every other word is refused by its name, as are tool axes other
-/// than z. Source: the forms of Creo, NX, Autodesk and CATIA, see docs/path.md. A GOTO to where the tool is (within 1 nm) is none.
-/// Throws bad_program with file, line and column; after that there are no more moves. Allocates.
+/// SPLINE/QUINTIC or SPLINE/CUBIC ... SPLINE/OFF: one smooth path from where the tool is through the GOTO
+/// places between them (spline_path.hpp). The word is ours: CL files have none that is common.
+/// Read and without effect on the path: see no_effect below. Every other word is refused by its name, as are
+/// tool axes other than z. Source: the forms of Creo, NX, Autodesk and CATIA, see docs/path.md. A GOTO to where
+/// the tool is (within 1 nm) is none. Throws bad_program with file, line and column; after that there are no
+/// more moves. Allocates.
 class cl_reader {
 public:
     /// `in` must outlive the reader; `name` is what messages call the file.

@@ -21,8 +21,8 @@ struct cl_statement {
     std::size_t line = 0, column = 0; ///< of the major word
 };
 
-/// Statements of a CL file, one at a time. $$ begins a comment, what follows a $ is not read; neither are columns 73 and
-/// after when column 73 begins a word after a blank (the sequence field that CATIA writes).
+/// Statements of a CL file, one at a time. $$ begins a comment, what follows a $ is not read; neither are
+/// columns 73 and after when column 73 begins a word after a blank (the sequence field that CATIA writes).
 class cl_statements {
 public:
     static constexpr std::size_t most = 1000; ///< tokens of a statement

@@ -13,7 +13,8 @@ struct gcode_word {
     std::size_t at = 0; ///< byte of the line
 };
 
-/// One line of a G-code program: each letter once, one G word of each modal group (their numbers as in [Kramer2000]).
+/// One line of a G-code program: each letter once, one G word of each modal group (their numbers as in
+/// [Kramer2000]).
 struct gcode_block {
     enum group {
         non_modal = 0,

@@ -6,13 +6,14 @@
 namespace quadrant {
 
 /// Reads a G-code program, one move at a time; memory does not grow with the program.
-/// Words: G0 G1 G2 G3 (I J from the start, or R; helix with Z; full circle with I J), G4 P [s], G17, G20 G21, G61 (G61.1)
-/// exact stop, G64 [P] continuous with P as tolerance (none: joints must be tangent), G90 G91, F per minute, N, O, comments
-/// in ( ) and after ;, a first and a last %. In any case, with or without blanks; in a block every word once, one G word of each
-/// modal group. Before the program says otherwise: G21 G90 and the ending of program_start.
-/// Without effect, because they say what holds anyhow: G40 G49 G54 G80 G91.1 G94; because they do not move an axis: S, T, M3
-/// M4 M5 M7 M8 M9. M0 M1 M6 make the move before them end in a stop. M2 M30 end the program; what follows is not read.
-/// Everything else is refused by its name. Source: [Kramer2000]; see docs/path.md.
+/// Words: G0 G1 G2 G3 (I J from the start, or R; helix with Z; full circle with I J), G4 P [s], G17, G20 G21,
+/// G61 (G61.1) exact stop, G64 [P] continuous with P as tolerance (none: joints must be tangent), G90 G91, F
+/// per minute, N, O, comments in ( ) and after ;, a first and a last %. In any case, with or without blanks; in
+/// a block every word once, one G word of each modal group. Before the program says otherwise: G21 G90 and the
+/// ending of program_start.
+/// Without effect, because they say what holds anyhow: G40 G49 G54 G80 G91.1 G94; because they do not move an
+/// axis: S, T, M3 M4 M5 M7 M8 M9. M0 M1 M6 make the move before them end in a stop. M2 M30 end the program;
+/// what follows is not read. Everything else is refused by its name. Source: [Kramer2000]; see docs/path.md.
 /// A move to where the axes are (within 1 nm) is none.
 /// Throws bad_program with file, line and column; after that there are no more moves. Allocates.
 class gcode_reader {

@@ -12,7 +12,8 @@ enum class path_ending {
     continuous  ///< on without a stop; a corner may be rounded within the tolerance
 };
 
-/// One move of a program: a piece of path and how it is to be travelled. The next move starts where this one ends.
+/// One move of a program: a piece of path and how it is to be travelled. The next move starts where this one
+/// ends.
 struct move {
     segment path;       ///< never empty
     double feed = 0;    ///< along the path [m/s], above 0; no meaning when rapid

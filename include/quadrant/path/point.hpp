@@ -6,8 +6,9 @@
 
 namespace quadrant {
 
-/// A place, a direction or a curvature in the coordinates of the machine: plain numbers in SI, because the mathematics of
-/// a path mixes its axes. Places are metres, unit tangents have no unit, curvatures are 1/m: the name of each says it.
+/// A place, a direction or a curvature in the coordinates of the machine: plain numbers in SI, because the
+/// mathematics of a path mixes its axes. Places are metres, unit tangents have no unit, curvatures are 1/m: the
+/// name of each says it.
 struct point {
     double x = 0, y = 0, z = 0;
 

@@ -15,8 +15,8 @@
 
 namespace quadrant {
 
-/// A program that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no single place
-/// is at fault. Line and column count from 1, the column in characters.
+/// A program that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no
+/// single place is at fault. Line and column count from 1, the column in characters.
 struct bad_program : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -124,7 +124,8 @@ private:
     std::size_t number_ = 0;
 };
 
-/// The moves that were read and not yet given away. The last one waits for what follows it: a dwell, a stop, the end.
+/// The moves that were read and not yet given away. The last one waits for what follows it: a dwell, a stop,
+/// the end.
 class waiting_moves {
 public:
     void add(move next) {

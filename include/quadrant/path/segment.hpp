@@ -8,8 +8,8 @@
 
 namespace quadrant {
 
-/// One smooth piece of a tool path, whatever its shape: all by path length s [m] from its start, held beyond the ends.
-/// No call throws or allocates; copying it copies numbers.
+/// One smooth piece of a tool path, whatever its shape: all by path length s [m] from its start, held beyond
+/// the ends. No call throws or allocates; copying it copies numbers.
 class segment {
     template <class Ask> auto each(Ask ask) const noexcept {
         if (const auto* straight = std::get_if<line>(&shape_)) return ask(*straight);

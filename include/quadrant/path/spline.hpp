@@ -16,15 +16,18 @@ struct spline_knot {
     point curvature; ///< vector [1/m], at right angles to the tangent
 };
 
-/// Quintic or cubic polynomial piece of a tool path, by its path length s [m] from its start; s beyond an end is held there.
+/// Quintic or cubic polynomial piece of a tool path, by its path length s [m] from its start; s beyond an end
+/// is held there.
 ///   r(u) = c0 + c1 u + ... + c5 u^5, u = 0 ... 1;   u(q) = f0 + f1 q + ... + f7 q^7, q = s/L  (feed correction)
 /// The feed correction has the exact value, slope and second derivative of u(s) at both ends, so that speed and
-/// acceleration do not jump from piece to piece; its two free coefficients are the least squares fit to the measured
-/// relation of u and s between. It is an approximation: |dr/ds| is 1 within feed_fluctuation(), and `tangent` and
-/// `curvature` are exact for the place they are given at. `part` cuts a piece to make it better; spline_path.hpp does so.
-/// Source: [Erkorkmaz2005]; knots with unit tangents and curvature vectors: the nearly arc-length parametrised quintic
-/// of [Wang1999].
-/// Throws for what is not finite, and where the piece stands still or turns back (no tangent there). Never allocates.
+/// acceleration do not jump from piece to piece; its two free coefficients are the least squares fit to the
+/// measured relation of u and s between. It is an approximation: |dr/ds| is 1 within feed_fluctuation(), and
+/// `tangent` and `curvature` are exact for the place they are given at. `part` cuts a piece to make it better;
+/// spline_path.hpp does so.
+/// Source: [Erkorkmaz2005]; knots with unit tangents and curvature vectors: the nearly arc-length parametrised
+/// quintic of [Wang1999].
+/// Throws for what is not finite, and where the piece stands still or turns back (no tangent there). Never
+/// allocates.
 class spline {
 public:
     /// r(u) = sum of c[k] u^k, u = 0 ... 1 [m].

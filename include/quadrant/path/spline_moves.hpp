@@ -5,8 +5,8 @@
 
 namespace quadrant::detail {
 
-/// A run of places in a program, as moves that join without a corner. The way to each place has the feed and the line
-/// of that place.
+/// A run of places in a program, as moves that join without a corner. The way to each place has the feed and
+/// the line of that place.
 class spline_moves {
 public:
     spline_moves(spline_degree degree, point start, std::size_t line) : path_(degree) {

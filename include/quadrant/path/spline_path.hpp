@@ -14,12 +14,13 @@ enum class spline_degree {
     cubic    ///< the tangent is; the curvature may jump
 };
 
-/// A smooth path through a run of places that come one after the other; what is known of it leaves again at once, so that
-/// a run may be as long as it likes. At each place, tangent and curvature are those of the quartic over the chord
-/// length through the five places around it (the first or last five near an end; fewer in a shorter run). Each piece
-/// is nearly parametrised by its length and cut in halves until the feed is off by no more than `feed_tolerance`.
-/// Source: [Erkorkmaz2005], [Wang1999]; see spline.hpp. The local estimate of the knots is a choice of ours: a spline over the
-/// whole run would have to be in memory.
+/// A smooth path through a run of places that come one after the other; what is known of it leaves again at
+/// once, so that a run may be as long as it likes. At each place, tangent and curvature are those of the
+/// quartic over the chord length through the five places around it (the first or last five near an end; fewer
+/// in a shorter run). Each piece is nearly parametrised by its length and cut in halves until the feed is off
+/// by no more than `feed_tolerance`.
+/// Source: [Erkorkmaz2005], [Wang1999]; see spline.hpp. The local estimate of the knots is a choice of ours: a
+/// spline over the whole run would have to be in memory.
 /// Throws invalid_parameter for two neighbours less than 1 nm apart, and where the run turns back. Allocates.
 class spline_path {
 public:

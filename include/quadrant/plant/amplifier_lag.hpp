@@ -8,7 +8,8 @@
 
 namespace quadrant {
 
-/// The current loop of an amplifier as one lag: what the motor gets of a command that is held for a step, on average over it.
+/// The current loop of an amplifier as one lag: what the motor gets of a command that is held for a step, on
+/// average over it.
 ///   di/dt = (u - i)/lag,   out = mean of i over the step h, exact
 /// Ports: command u in, mean current out, both in the command's unit.
 /// State: the current at the end of the step; given and returned by the caller, as of `slip_contact`.

@@ -6,11 +6,12 @@
 
 namespace quadrant {
 
-/// Play between what drives and what is driven: after a reversal the driven side stands still until the play is crossed.
+/// Play between what drives and what is driven: after a reversal the driven side stands still until the play is
+/// crossed.
 ///   y[k] = x[k] - width/2 if that is above y[k-1],  x[k] + width/2 if that is below y[k-1],  else y[k-1]
 /// Source: [Yeung2006] eq. (17), whose dead zone [d-, d+] is [y - width/2, y + width/2]: the play operator.
-/// Ports: driving position in, driven position out. The driven side is taken to be held by its own friction: it neither
-/// swings on nor falls back inside the play, and its weight does not choose a flank.
+/// Ports: driving position in, driven position out. The driven side is taken to be held by its own friction: it
+/// neither swings on nor falls back inside the play, and its weight does not choose a flank.
 /// State: y; `reset` at zero, in the middle of the play; `settle(x)` at x, in the middle of the play.
 /// Range: width >= 0; 0: y = x.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().

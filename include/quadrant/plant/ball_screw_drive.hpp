@@ -13,7 +13,8 @@
 namespace quadrant {
 
 namespace detail {
-/// The torque that starts an axis toward one direction: of a law that knows directions, or of one that does not.
+/// The torque that starts an axis toward one direction: of a law that knows directions, or of one that does
+/// not.
 template <class Friction> constexpr auto breakaway(const Friction& friction, bool forward) noexcept {
     if constexpr (requires { friction.breakaway(forward); })
         return friction.breakaway(forward);
@@ -22,8 +23,8 @@ template <class Friction> constexpr auto breakaway(const Friction& friction, boo
 }
 } // namespace detail
 
-/// A friction law that a rotary drive can take: `asymmetric_stribeck`, `stribeck`, `coulomb_viscous` from angular velocity to
-/// torque. slip(w) is a magnitude.
+/// A friction law that a rotary drive can take: `asymmetric_stribeck`, `stribeck`, `coulomb_viscous` from
+/// angular velocity to torque. slip(w) is a magnitude.
 template <class F, class Real>
 concept rotary_friction = requires(const F& f, quantity_of<signal::angular_velocity, Real> w) {
     { detail::breakaway(f, true) } -> std::convertible_to<quantity_of<signal::torque, Real>>;
@@ -33,19 +34,20 @@ concept rotary_friction = requires(const F& f, quantity_of<signal::angular_veloc
 
 /// Motor, screw and table of a feed drive as one rigid body on friction.
 ///   J dw/dt = Kt i + rg F - B w - T(w),   dx/dt = rg w,   rg = pitch / 2 pi
-/// Each sub-step is the exact solution for the torque at its beginning (zero-order hold). Friction by the stick rule of
-/// eq. (14): at rest it equals what is applied, up to breakaway in that direction; when w would change its sign within
-/// a sub-step the drive stops there, and the stick rule decides on the rest of it.
+/// Each sub-step is the exact solution for the torque at its beginning (zero-order hold). Friction by the stick
+/// rule of eq. (14): at rest it equals what is applied, up to breakaway in that direction; when w would change
+/// its sign within a sub-step the drive stops there, and the stick rule decides on the rest of it.
 /// Source: [Yeung2006] eqs. (1-18).
-/// Ports: motor current i[k] [A] in, held over the period; position [m] on the side of the table at sample k+1 out, before
-/// play, lead error and encoder, which are boxes of their own (`feed_drive`). A second argument [N] is an external force on
-/// the table (cutting), held too. Positive current, force and motion agree.
+/// Ports: motor current i[k] [A] in, held over the period; position [m] on the side of the table at sample k+1
+/// out, before play, lead error and encoder, which are boxes of their own (`feed_drive`). A second argument [N]
+/// is an external force on the table (cutting), held too. Positive current, force and motion agree.
 /// State: position and velocity. `reset`: at rest at zero; `settle(x)`: at rest at x.
-/// Range: substeps 1 ... 1000. Friction is held within a sub-step: a first-order error. Angles are radians; inertia and
-/// viscous friction are all that the motor feels, table and guideway included.
-/// NaN and infinities in a current or force, or a motion beyond all numbers: holds the last position, keeps the state,
-/// raises faulted().
-/// Throws "ball_screw_drive.<field> = ...: must ..." for every field and the period; the friction box in its own name.
+/// Range: substeps 1 ... 1000. Friction is held within a sub-step: a first-order error. Angles are radians;
+/// inertia and viscous friction are all that the motor feels, table and guideway included.
+/// NaN and infinities in a current or force, or a motion beyond all numbers: holds the last position, keeps the
+/// state, raises faulted().
+/// Throws "ball_screw_drive.<field> = ...: must ..." for every field and the period; the friction box in its
+/// own name.
 /// Cost: 8 multiplications a sub-step and one friction. Linear motor: `linear_motor`.
 template <class Friction = asymmetric_stribeck<>, class Real = double>
 requires rotary_friction<Friction, Real>

@@ -12,7 +12,8 @@ namespace quadrant {
 /// State: none; `reset` and `settle` set the held output and clear the fault. With phases, F(0) is not zero.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "cogging_force.<field> = ...: must ..." for period, size, phase and "cogging_force.sample_period".
-/// Cost: one sine, one cosine, 6 multiplications per harmonic. In a plant: as `cogging` of `axis_load`, in every sub-step. A
+/// Cost: one sine, one cosine, 6 multiplications per harmonic. In a plant: as `cogging` of `axis_load`, in
+/// every sub-step. A
 /// force that grows with the command: `force_ripple`.
 template <std::size_t Harmonics = 1, class Real = double> class cogging_force {
 public:

@@ -38,11 +38,13 @@ template <class Number> machine_mode<Number> base_mode(const machine_base<Number
 
 /// What the structure adds to the position of an axis: modes in parallel, shaken by the force of its motor.
 ///   q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = share_i F/M,   y = sum q_i,   reading = rigid axis + y
-/// The step is exact for a force held over the period. On a free mass a mode makes an anti-resonance at centre/sqrt(1 + share):
-/// share > 0 below it (base; collocated), -1 < share < 0 above it, share <= -1 none (motor and encoder move against each other).
-/// Source: modal superposition [Altintas2012] chapter 3; form and anti-resonance: docs/derivations/flexible_modes.md.
-/// Ports: F[k] [N], held from sample k on, in; y [m] at sample k+1 out, as a plant's reading. Positive force and share move
-/// the reading forward.
+/// The step is exact for a force held over the period. On a free mass a mode makes an anti-resonance at
+/// centre/sqrt(1 + share): share > 0 below it (base; collocated), -1 < share < 0 above it, share <= -1 none
+/// (motor and encoder move against each other).
+/// Source: modal superposition [Altintas2012] chapter 3; form and anti-resonance:
+/// docs/derivations/flexible_modes.md.
+/// Ports: F[k] [N], held from sample k on, in; y [m] at sample k+1 out, as a plant's reading. Positive force
+/// and share move the reading forward.
 /// State: deflection [m] and its speed [m/s] of each mode. `reset`: at rest; `settle(F)`: bent by a constant F.
 /// Range: any centre, also above half the sampling rate: the step is exact there too.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -133,7 +135,8 @@ public:
         }
         return z * sum;
     }
-    /// Of the machine itself, from a force that is not sampled: sum share_i/M / (s^2 + 2 zeta_i w_i s + w_i^2) [m/N].
+    /// Of the machine itself, from a force that is not sampled: sum share_i/M / (s^2 + 2 zeta_i w_i s + w_i^2)
+    /// [m/N].
     std::complex<double> continuous_response(frequency f) const {
         const std::complex<double> s{0, 2 * std::numbers::pi * f.value()};
         std::complex<double> sum = 0;

@@ -10,12 +10,14 @@ namespace quadrant {
 /// A force constant that varies with the magnets: what the motor gives of what is asked, along the travel.
 ///   y = u (1 + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i))
 /// Source: gap/FORMAT.md (effect force_ripple: ripple, ripple_period_m, ripple_phase_rad), the same signs.
-/// Ports: ripple(u, x), command or force in and out, the same signal, and the position [m]; ripple(u) stays where it was.
+/// Ports: ripple(u, x), command or force in and out, the same signal, and the position [m]; ripple(u) stays
+/// where it was.
 /// State: the position; `reset`: zero; `settle(u)` where it is.
 /// Range: the sizes, a share of the force, sum up to less than one.
 /// NaN and infinities in u or x: holds the last output, keeps the position, raises faulted().
 /// Throws "force_ripple.<field> = ...: must ..." for period, size, phase and "force_ripple.sample_period".
-/// Cost: one sine, one cosine, 6 multiplications per harmonic. In a plant: as `ripple` of `axis_load`, in every sub-step. A
+/// Cost: one sine, one cosine, 6 multiplications per harmonic. In a plant: as `ripple` of `axis_load`, in every
+/// sub-step. A
 /// force without command: `cogging_force`.
 template <signal_tag Signal = signal::force, std::size_t Harmonics = 1, class Real = double>
 class force_ripple {

@@ -9,8 +9,9 @@
 
 namespace quadrant::detail {
 
-/// What repeats: sum_{i=1..Harmonics} cosine_i cos(i angle) + sine_i sin(i angle). The one place of this law; forces, ripples,
-/// reading errors and processes ask it. Value is a number or a quantity; the first `count` harmonics are summed.
+/// What repeats: sum_{i=1..Harmonics} cosine_i cos(i angle) + sine_i sin(i angle). The one place of this law;
+/// forces, ripples, reading errors and processes ask it. Value is a number or a quantity; the first `count`
+/// harmonics are summed.
 template <std::size_t Harmonics, class Value, class Real> struct harmonic_series {
     std::array<Value, Harmonics> cosine{}, sine{};
     std::size_t count = Harmonics;
@@ -27,7 +28,8 @@ template <std::size_t Harmonics, class Value, class Real> struct harmonic_series
         }
         return sum;
     }
-    /// At so many periods; only the part beyond whole periods is turned into an angle, so that far away is as exact as near.
+    /// At so many periods; only the part beyond whole periods is turned into an angle, so that far away is as
+    /// exact as near.
     Value operator()(const Real& turns) const noexcept {
         using std::cos, std::sin;
         const Real part = turns - whole(turns);

@@ -19,19 +19,21 @@ namespace quadrant {
 /// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
 /// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
 /// or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`): friction/presliding.hpp.
-/// Load: what a motor force meets on its way to the mass, as cogging and ripple in `axis_load`; asked at x + v h/2 of each
-/// sub-step h. Default none.
+/// Load: what a motor force meets on its way to the mass, as cogging and ripple in `axis_load`; asked at x + v
+/// h/2 of each sub-step h. Default none.
 /// Ports: command u[k] [V] in, encoder reading [m] at sample k+1 out; positive command, force and motion agree.
 ///   A second argument [N] is an external force held over the period.
-/// State: position, velocity, past commands, what the friction remembers. `reset`: at rest at zero; `settle(x)`: at rest
-/// at x, friction relaxed, no command pending.
-/// Range: delay up to Capacity - 1 periods; substeps 1 ... 1000 (each advances the mass by one implicit step; the
+/// State: position, velocity, past commands, what the friction remembers. `reset`: at rest at zero;
+/// `settle(x)`: at rest at x, friction relaxed, no command pending.
+/// Range: delay up to Capacity - 1 periods; substeps 1 ... 1000 (each advances the mass by one implicit step;
+/// the
 ///   held command is averaged inside the sub-step where it changes).
-/// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the state,
-/// raises faulted(). Commands beyond the limit are clipped, limited() tells.
-/// Throws "linear_motor.<field> = ...: must ..." for every field and the period; friction box and load throw in their own
-/// name.
-/// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. With scale and encoder as boxes: `table_axis`.
+/// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the
+/// state, raises faulted(). Commands beyond the limit are clipped, limited() tells.
+/// Throws "linear_motor.<field> = ...: must ..." for every field and the period; friction box and load throw in
+/// their own name.
+/// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. With scale and encoder as
+/// boxes: `table_axis`.
 template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double,
           class Load = no_load>
 requires(friction_law<Friction, Real> || friction_with_memory<Friction, Real>) && motor_load<Load, Real> &&

@@ -12,8 +12,9 @@ struct no_load {
     no_load(const parameters&, duration) {}
 };
 
-/// What stands between motor and mass: from where the mass is, the motor's force and the external one, the force that drives
-/// the mass. Made like a block, for the length of a sub-step, and asked once in each, so it may have a state.
+/// What stands between motor and mass: from where the mass is, the motor's force and the external one, the
+/// force that drives the mass. Made like a block, for the length of a sub-step, and asked once in each, so it
+/// may have a state.
 template <class L, class Real>
 concept motor_load = std::same_as<L, no_load> ||
     (requires(L l, quantity_of<signal::position, Real> x, quantity_of<signal::force, Real> motor,

@@ -9,8 +9,8 @@ namespace quadrant::detail {
 
 /// A damped spring and mass over h while nothing pushes it: the matrix exponential of
 ///   q'' + 2 zeta w q' + w^2 q = 0,   q(h) = stay q + onward q',   q'(h) = back q + keep q'
-/// with w = 2 pi centre. What pushes it for all of h moves the place about which it rings. The one place of this law:
-/// `flexible_modes` and `sprung_mass` ask it.
+/// with w = 2 pi centre. What pushes it for all of h moves the place about which it rings. The one place of
+/// this law: `flexible_modes` and `sprung_mass` ask it.
 template <class Number> struct oscillator {
     Number stay{1}, onward{0}, back{0}, keep{1};
     Number stiffness{0}; ///< w^2 [1/s^2]

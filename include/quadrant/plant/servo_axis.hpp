@@ -13,7 +13,8 @@
 
 namespace quadrant {
 
-/// One axis with whatever sits at its joints: what simulates a machine file, and what the diagnosis fits to a log.
+/// One axis with whatever sits at its joints: what simulates a machine file, and what the diagnosis fits to a
+/// log.
 ///   command       dead zone, then limit, then lag of the amplifier
 ///   motor gain    force constant (1 + ripple(x))
 ///   force         constant - spring x - gravity sin(x - gravity_phase) + cogging(x) + process(t) + M coupling a_other
@@ -22,15 +23,17 @@ namespace quadrant {
 ///                 carries between the motor and the forces on its load
 ///   transmission  `sprung_mass` on the axis; play between motor and load
 ///   reading       load + cyclic(load)
-/// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints (`no_joint_laws`: nothing).
+/// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints
+/// (`no_joint_laws`: nothing).
 /// Source: the laws are those of the blocks named; how they join is gap/FORMAT.md's table of effects.
-/// Ports: advance(state, command, surroundings) moves the state on by one step h under a command that is held over it; positive
-/// command, force and motion agree. reading(state): what the encoder sees, without its count.
+/// Ports: advance(state, command, surroundings) moves the state on by one step h under a command that is held
+/// over it; positive command, force and motion agree. reading(state): what the encoder sees, without its count.
 /// State: a value of its own, so that one law moves many axes, and an observer may correct it by shift().
 /// Range: that of the laws; a step h > 0. Delays and counts are the caller's: they belong to the sampling.
 /// NaN and infinities in a command pass on to the state, for the caller to see. Runs in lanes.
 /// Throws "servo_axis.<field> = ...: must ..." and in the names of its laws.
-/// Cost: about 40 multiplications, an exponential with Stribeck friction, a sine and a cosine for each sum over position.
+/// Cost: about 40 multiplications, an exponential with Stribeck friction, a sine and a cosine for each sum over
+/// position.
 /// One friction law and a whole servo period in a block: `linear_motor`.
 template <class Real = double, class Laws = no_joint_laws> class servo_axis {
 public:
@@ -39,7 +42,8 @@ public:
     using contact = slip_contact<springs, Real>;
     using mask = mask_of<Real>;
 
-    /// What repeats over a place or a time: period, and cosine and sine of each harmonic. Its unit is that of the joint.
+    /// What repeats over a place or a time: period, and cosine and sine of each harmonic. Its unit is that of
+    /// the joint.
     struct repeating {
         number period{1};                               ///< [m] or [s]; > 0
         std::array<number, harmonics> cosine{}, sine{}; ///< finite

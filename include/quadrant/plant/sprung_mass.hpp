@@ -7,16 +7,17 @@
 
 namespace quadrant {
 
-/// A second mass on a spring that rides on the axis and that the encoder does not see: anti-resonance at its frequency (the
-/// axis held), resonance above it. It is part of the moving mass.
+/// A second mass on a spring that rides on the axis and that the encoder does not see: anti-resonance at its
+/// frequency (the axis held), resonance above it. It is part of the moving mass.
 ///   q'' + 2 zeta w q' + w^2 q = -dv/dt,   w = 2 pi centre,   momentum of the axis: M v + mass q'
-/// The step is exact for an acceleration that is constant over it; that acceleration is solved together with the axis: the
-/// axis sees M less what the spring takes of its own reaction (inertia()), and impulse() of what rings already.
+/// The step is exact for an acceleration that is constant over it; that acceleration is solved together with
+/// the axis: the axis sees M less what the spring takes of its own reaction (inertia()), and impulse() of what
+/// rings already.
 /// Source: [Altintas2012] chapter 3; derivation: docs/derivations/flexible_modes.md.
 /// Ports: velocities of the axis before and after the step [m/s] into advance().
 /// State: deflection q [m] and its speed w [m/s]; given and returned by the caller, as of `slip_contact`.
-/// Range: 0 <= mass, below the axis' mass; centre > 0; 0 <= damping < 1. Runs in lanes; a mass of 0 is not there.
-/// Throws "sprung_mass.<field> = ...: must ...".
+/// Range: 0 <= mass, below the axis' mass; centre > 0; 0 <= damping < 1. Runs in lanes; a mass of 0 is not
+/// there. Throws "sprung_mass.<field> = ...: must ...".
 /// Cost: 6 multiplications. Many modes in a reading: `flexible_modes`.
 template <class Real = double> class sprung_mass {
 public:

@@ -13,22 +13,25 @@
 
 namespace quadrant {
 
-/// What stands between a current command and the force of a linear motor: three phases, an inverter, two PI controllers of the
-/// current in the frame of the magnets. Where lag, ripple and limits of a drive come from.
+/// What stands between a current command and the force of a linear motor: three phases, an inverter, two PI
+/// controllers of the current in the frame of the magnets. Where lag, ripple and limits of a drive come from.
 ///   L di/dt = v - R i - e,  e = speed kf/1.5 across the magnets,  force = kf i_q        (stationary frame, exact for held v, e)
 ///   v_d = PI(0 - i_d), v_q = PI(demand - i_q), |v| <= bus/sqrt(3);  PI with zero on the motor's pole: bandwidth w, kp = w L, ki = w R
 /// Source: the drive of [LowKeck2003] (PWM inverter, two PI in the rotor frame); frames and PI: [Ellis2012].
-/// Errors of a real drive: commutation_offset (angle by which the controller takes the magnets for elsewhere: force falls with
-/// its cosine), gain_error and current_offset of the sensor of phase a (force ripples twice, once a pole pair).
-/// Ports: command in amperes of i_q, then position and speed of the mover at the start of the period (default 0); mean force of
-/// the period out. Into a mass by its external force: motor(0_V, drive(u, x, v)).
-/// State: currents alpha, beta; integrals of both PI. `reset`: no current; `settle(u, x)`: at rest at x, holding u, as far
-/// as the bus gives it.
-/// Range: current_limit of the command; steps of the current loop a period, 1 ... 1000, bandwidth below 1/12 of their rate.
-/// With switching the legs switch once a step, centre-aligned, and the current ripples; without, v is its mean.
-/// NaN and infinities: holds the last force, keeps the state, raises faulted(). limited(): command or voltage was clipped.
-/// Throws "three_phase_drive.<field> = ...: must ..." for every field and the period.
-/// Cost: about 6 sines and 60 multiplications a step, seven times the latter with switching. A lag alone: `lowpass`; ripple
+/// Errors of a real drive: commutation_offset (angle by which the controller takes the magnets for elsewhere:
+/// force falls with its cosine), gain_error and current_offset of the sensor of phase a (force ripples twice,
+/// once a pole pair).
+/// Ports: command in amperes of i_q, then position and speed of the mover at the start of the period (default
+/// 0); mean force of the period out. Into a mass by its external force: motor(0_V, drive(u, x, v)).
+/// State: currents alpha, beta; integrals of both PI. `reset`: no current; `settle(u, x)`: at rest at x,
+/// holding u, as far as the bus gives it.
+/// Range: current_limit of the command; steps of the current loop a period, 1 ... 1000, bandwidth below 1/12 of
+/// their rate. With switching the legs switch once a step, centre-aligned, and the current ripples; without, v
+/// is its mean.
+/// NaN and infinities: holds the last force, keeps the state, raises faulted(). limited(): command or voltage
+/// was clipped. Throws "three_phase_drive.<field> = ...: must ..." for every field and the period.
+/// Cost: about 6 sines and 60 multiplications a step, seven times the latter with switching. A lag alone:
+/// `lowpass`; ripple
 /// alone: `force_ripple`.
 template <class Real = double> class three_phase_drive {
 public:
@@ -182,7 +185,8 @@ private:
         s.beta = s.beta * kept + (vb - emf * Real(cos(middle))) / resistance_ * (Real(1) - kept);
         return Real(0.5) * h * (before + turned_beta(s.alpha, s.beta, -wave_ * (at + speed * h)));
     }
-    /// The same with each leg on for its share of the step, about the middle, neutral point in the middle of the bus.
+    /// The same with each leg on for its share of the step, about the middle, neutral point in the middle of
+    /// the bus.
     Real switched(state& s, Real va, Real vb, Real at, Real speed) const noexcept {
         const Real root = Real(std::numbers::sqrt3 / 2);
         std::array<Real, 3> leg{va, Real(-0.5) * va + root * vb, Real(-0.5) * va - root * vb};

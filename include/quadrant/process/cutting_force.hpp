@@ -12,7 +12,8 @@
 
 namespace quadrant {
 
-/// Harmonics of a periodic force as a Fourier transform gives them: harmonic i is Re (real + j imaginary) e^{j i w t}.
+/// Harmonics of a periodic force as a Fourier transform gives them: harmonic i is Re (real + j imaginary) e^{j
+/// i w t}.
 template <std::size_t Harmonics, class Number = double> struct harmonic_table {
     std::array<Number, Harmonics> real{}, imaginary{};
 };
@@ -28,18 +29,21 @@ requires(Count <= Harmonics) constexpr harmonic_table<Count, Number> lowest(
     return out;
 }
 
-/// The force of the cutter on an axis, from harmonics that were measured once: a source for a plant's external force.
+/// The force of the cutter on an axis, from harmonics that were measured once: a source for a plant's external
+/// force.
 ///   F(t) = scale sum_{i=1..Harmonics} real_i cos(w_i t) - imaginary_i sin(w_i t),  w_i = 2 pi i fundamental,  t = k period
 /// Source: [Jamaludin2008] eq. (3.10); its tables of 15 harmonics: `process/milling_harmonics.hpp`.
-/// Ports: no input; the force [N] at the coming sample out, the first call gives F(0). Positive pushes the axis forward.
-/// engage(false) lets the tool leave the cut, engage(true) enter it again: the force fades within `entry`, its phase goes on.
-/// State: the spindle's angle as an integer that never drifts (`turning_phase`), and how far the tool is in the cut. `reset`:
-/// t = 0, in the cut; `settle(t, engaged)`: so long after that, faded to the end.
-/// Range: the highest harmonic below half the sampling rate. A plant that holds the force over the period sees it half a period
-/// late and, at the harmonic f, smaller by sinc(f period).
-/// NaN: no input, so none; finite for ever. A dual carries derivatives by scale and harmonics, not by the fundamental.
-/// Throws "cutting_force.<field> = ...: must ..." for every field and the period.
-/// Cost: one sine, one cosine and 6 multiplications per harmonic. From feed, depths and edges instead: `milling_force`.
+/// Ports: no input; the force [N] at the coming sample out, the first call gives F(0). Positive pushes the axis
+/// forward. engage(false) lets the tool leave the cut, engage(true) enter it again: the force fades within
+/// `entry`, its phase goes on.
+/// State: the spindle's angle as an integer that never drifts (`turning_phase`), and how far the tool is in the
+/// cut. `reset`: t = 0, in the cut; `settle(t, engaged)`: so long after that, faded to the end.
+/// Range: the highest harmonic below half the sampling rate. A plant that holds the force over the period sees
+/// it half a period late and, at the harmonic f, smaller by sinc(f period).
+/// NaN: no input, so none; finite for ever. A dual carries derivatives by scale and harmonics, not by the
+/// fundamental. Throws "cutting_force.<field> = ...: must ..." for every field and the period.
+/// Cost: one sine, one cosine and 6 multiplications per harmonic. From feed, depths and edges instead:
+/// `milling_force`.
 template <std::size_t Harmonics, class Real = double>
 requires(Harmonics > 0) class cutting_force {
 public:

@@ -13,28 +13,32 @@
 
 namespace quadrant {
 
-/// Which way an edge goes through the chip: up (conventional) from thin to thick, down (climb) from thick to thin.
+/// Which way an edge goes through the chip: up (conventional) from thin to thick, down (climb) from thick to
+/// thin.
 enum class milling { up, down };
 
 /// The force of an end mill on the table, from the process: the sum over the edges that are in the cut.
 ///   tangential_j = depth (Kt h_j + Kte), radial_j = depth (Kr h_j + Kre),  h_j = feed per tooth * sin(phi_j)
 ///   feed: sum -tangential cos(phi_j) - radial sin(phi_j);  normal: sum tangential sin(phi_j) - radial cos(phi_j)
-/// phi turns clockwise (M3) from the normal, the feed is at 90 deg; in the cut: 0 ... acos(1 - 2 radial/diameter) milling up, pi
-/// minus that ... pi down. Runout moves edge j out by r_j = runout cos(2 pi j/Edges - angle); it then cuts what is left of the
-/// paths of the edges m before it, h_j = max(0, min_m (m feed sin(phi_j) + r_j - r_{j+m})), so that the force repeats with the
-/// spindle, not with the tooth.
+/// phi turns clockwise (M3) from the normal, the feed is at 90 deg; in the cut: 0 ... acos(1 - 2
+/// radial/diameter) milling up, pi minus that ... pi down. Runout moves edge j out by r_j = runout cos(2 pi
+/// j/Edges - angle); it then cuts what is left of the paths of the edges m before it, h_j = max(0, min_m (m
+/// feed sin(phi_j) + r_j - r_{j+m})), so that the force repeats with the spindle, not with the tooth.
 /// Source: [Altintas2012] chapter 2 (zero helix), runout [Kline1983].
-/// Ports: the direction [rad, from x towards y] in which the table moves against the tool; out the force [N] on the table, x and
-/// y, mean of the coming period (by the midpoints of `substeps`), as a plant holds it. For the force on the tool give the
-/// direction of the tool; both are pushed back against their own motion. Edge 0 begins at phi = 0.
-/// engage(false) lets the tool leave the cut, engage(true) enter it: the force fades within `entry`, the spindle turns on.
-/// State: the spindle's angle, an integer that never drifts, and how far the tool is in the cut. `reset`: t = 0, in the cut;
-/// `settle(t, engaged)`: so long after that.
-/// Range: rigid tool, straight edges, chip much thinner than the cutter's radius. The passing of the edges below half the sampling
-/// rate. A dual carries no derivatives by spindle, diameter and radial depth, at which edges enter and leave.
+/// Ports: the direction [rad, from x towards y] in which the table moves against the tool; out the force [N] on
+/// the table, x and y, mean of the coming period (by the midpoints of `substeps`), as a plant holds it. For the
+/// force on the tool give the direction of the tool; both are pushed back against their own motion. Edge 0
+/// begins at phi = 0. engage(false) lets the tool leave the cut, engage(true) enter it: the force fades within
+/// `entry`, the spindle turns on.
+/// State: the spindle's angle, an integer that never drifts, and how far the tool is in the cut. `reset`: t =
+/// 0, in the cut; `settle(t, engaged)`: so long after that.
+/// Range: rigid tool, straight edges, chip much thinner than the cutter's radius. The passing of the edges
+/// below half the sampling rate. A dual carries no derivatives by spindle, diameter and radial depth, at which
+/// edges enter and leave.
 /// NaN and infinities in the direction: gives the last force, the spindle stands, raises faulted().
 /// Throws "milling_force.<field> = ...: must ..." for every field and the period.
-/// Cost: substeps times Edges sines and cosines, with runout Edges times more subtractions. Measured harmonics: `cutting_force`.
+/// Cost: substeps times Edges sines and cosines, with runout Edges times more subtractions. Measured harmonics:
+/// `cutting_force`.
 template <std::size_t Edges, class Real = double>
 requires(Edges > 0) class milling_force {
 public:

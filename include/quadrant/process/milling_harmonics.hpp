@@ -11,8 +11,8 @@ namespace quadrant::milling_harmonics {
 /// Of the tables; the spindle speed printed beside them, 1360 rpm, would be 22.67 Hz.
 inline constexpr frequency fundamental = frequency::from_value(23.294);
 
-/// Ours: the tables are sums of an FFT whose scale is not printed. With 2/6053 N the peaks are 130 to 144 N; 2/8000 N
-/// gives about the 100 N of the thesis' plot.
+/// Ours: the tables are sums of an FFT whose scale is not printed. With 2/6053 N the peaks are 130 to 144 N;
+/// 2/8000 N gives about the 100 N of the thesis' plot.
 inline constexpr quantity<si::force> scale = quantity<si::force>::from_value(2.0 / 6053);
 
 /// Table 3.5, x axis: A_i and B_i of eq. (3.10).

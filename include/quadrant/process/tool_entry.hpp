@@ -6,8 +6,8 @@
 
 namespace quadrant {
 
-/// How far a tool is in the cut: 0 ... 1, moving at a constant rate towards where `engage` sends it, so that a cutting
-/// force neither starts nor ends with a jump.
+/// How far a tool is in the cut: 0 ... 1, moving at a constant rate towards where `engage` sends it, so that a
+/// cutting force neither starts nor ends with a jump.
 class tool_entry {
 public:
     tool_entry() = default;

@@ -8,8 +8,8 @@
 
 namespace quadrant {
 
-/// The angle of something that turns at constant speed, sampled for days: counted in 2^-64 of a turn in an integer that
-/// wraps by itself, so that nothing drifts, nothing grows and whole turns are exact.
+/// The angle of something that turns at constant speed, sampled for days: counted in 2^-64 of a turn in an
+/// integer that wraps by itself, so that nothing drifts, nothing grows and whole turns are exact.
 /// An increment is off by at most 2^-65 of a turn: 1e-10 of a turn after 100 years at 2 kHz.
 class turning_phase {
 public:

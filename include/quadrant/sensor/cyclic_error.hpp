@@ -7,14 +7,16 @@ namespace quadrant {
 
 /// What an encoder's interpolation, or an eccentric scale, adds to the position.
 ///   y = x + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i)
-/// Source: gap/FORMAT.md (effect encoder_cyclic_error: cyclic_m, cyclic_period_m, cyclic_phase_rad), the same signs.
+/// Source: gap/FORMAT.md (effect encoder_cyclic_error: cyclic_m, cyclic_period_m, cyclic_phase_rad), the same
+/// signs.
 /// Ports: position [m] in, reading [m] out. The period is that of the scale's signal (4 um on the table of
 /// [Jamaludin2008]), or of a turn of the screw.
 /// State: none; `reset` and `settle` set the held output and clear the fault. With phases, y(0) is not zero.
 /// Range: 2 pi sum i size_i <= period, or the reading would run backwards.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "cyclic_error.<field> = ...: must ..." for period, size, phase and "cyclic_error.sample_period".
-/// Cost: one sine, one cosine, 6 multiplications per harmonic. The counts of the encoder: `quantizer`, behind it.
+/// Cost: one sine, one cosine, 6 multiplications per harmonic. The counts of the encoder: `quantizer`, behind
+/// it.
 template <std::size_t Harmonics = 1, class Real = double> class cyclic_error {
 public:
     using input = signal::position;

@@ -9,10 +9,11 @@
 
 namespace quadrant {
 
-/// Noise of a sensor, normally distributed and independent from sample to sample: what a tachometer or an interpolated
-/// encoder adds to its wire. The same seed gives the same noise on every machine.
+/// Noise of a sensor, normally distributed and independent from sample to sample: what a tachometer or an
+/// interpolated encoder adds to its wire. The same seed gives the same noise on every machine.
 ///   y[k] = deviation sqrt(-2 ln u) cos(2 pi v),  u and v in (0, 1] from `splitmix64` of seed and k
-/// Source: [Box1958] for the normal distribution, [Steele2014] for the generator, which is one of k: no state but a count.
+/// Source: [Box1958] for the normal distribution, [Steele2014] for the generator, which is one of k: no state
+/// but a count.
 /// Ports: no input; noise of the coming sample out. Mean 0, variance deviation^2, never beyond 8.6 deviations.
 /// State: k; `reset`: k = 0; `settle(t)`: so long after that.
 /// Range: deviation >= 0; 0: none. Give every wire another seed, or their noise is the same.

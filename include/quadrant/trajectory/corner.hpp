@@ -41,16 +41,19 @@ struct stretch {
     }
 };
 
-/// How a joint of two pieces is driven through without a stop: the end of the first and the beginning of the second at the
-/// same time. While the speed along the first falls from v to 0 within a time tau, that along the second rises from 0 to v:
+/// How a joint of two pieces is driven through without a stop: the end of the first and the beginning of the
+/// second at the same time. While the speed along the first falls from v to 0 within a time tau, that along the
+/// second rises from 0 to v:
 ///   r = r1(s1) + r2(s2) - P,   r' = v ((1 - g) t1 + g t2),   r'' = v/tau g' (t2 - t1) + curvatures
-/// with the joint P and g(t/tau) the speed change of the profile kind with two ramps. Position, velocity and acceleration
-/// are continuous at any joint (corner, jump of curvature), the velocity of an axis stays between its two values, and
+/// with the joint P and g(t/tau) the speed change of the profile kind with two ramps. Position, velocity and
+/// acceleration are continuous at any joint (corner, jump of curvature), the velocity of an axis stays between
+/// its two values, and
 ///   g1 v |t2 - t1| / tau + 1.13 k v^2 <= A,   g2 v |t2 - t1| / tau^2 + c v^2/tau + k' v^3 <= J    (each axis)
-/// give the shortest tau for a speed. Each piece is left, or reached, v tau/2 from P; in the middle both are d = m v tau
-/// from it (m = 1/12, cubic 0.075), so that neither path nor P is further away than d |t2 - t1| + 0.75 (k1 + k2) d^2.
-/// Source: [Tajima2016] (a transition of velocity between two lines within the limits of the axes, duration from the
-/// tolerance); curved pieces, and the constants of their terms, by the bounds in docs/trajectory.md.
+/// give the shortest tau for a speed. Each piece is left, or reached, v tau/2 from P; in the middle both are d
+/// = m v tau from it (m = 1/12, cubic 0.075), so that neither path nor P is further away than d |t2 - t1| +
+/// 0.75 (k1 + k2) d^2.
+/// Source: [Tajima2016] (a transition of velocity between two lines within the limits of the axes, duration
+/// from the tolerance); curved pieces, and the constants of their terms, by the bounds in docs/trajectory.md.
 /// Plain SI numbers; never throws or allocates.
 class corner {
 public:

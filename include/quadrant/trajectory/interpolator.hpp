@@ -14,18 +14,23 @@ struct path_reference {
 
 /// A path in, a reference for every axis in every servo period out.
 ///   while (!drive.full() && moves are left) drive.push(next move);   axes(drive());
-/// Position, velocity, acceleration and jerk are those of one continuous motion r(s(t)) (two pieces at once in a corner), so
-/// that between samples too every axis stays within its limits, and |r'|, |s''|, |s'''| within those of the path.
-/// At every stop the motion ends on a servo period, exactly at the end of the piece: the last piece before it is driven a
-/// little slower (less than one period longer). Dwells last whole periods, rounded up.
-/// Source: [Yeung2006] (trajectory generation, interpolation per control interval), [ErkorkmazAltintas2001] (profiles, refitted
-/// times), [Tajima2016] (corners). Equations: docs/trajectory.md.
-/// Ports: moves by `push`, when there is room; one path_reference a call. No input can be NaN: segments are finite.
-/// State: the window of moves, the piece under way, the time into it; `settle(place)` forgets all and stands there; the next
-/// move may then start anywhere. Where moves come too late it stops at the end of what it knows, within all limits.
+/// Position, velocity, acceleration and jerk are those of one continuous motion r(s(t)) (two pieces at once in
+/// a corner), so that between samples too every axis stays within its limits, and |r'|, |s''|, |s'''| within
+/// those of the path.
+/// At every stop the motion ends on a servo period, exactly at the end of the piece: the last piece before it
+/// is driven a little slower (less than one period longer). Dwells last whole periods, rounded up.
+/// Source: [Yeung2006] (trajectory generation, interpolation per control interval), [ErkorkmazAltintas2001]
+/// (profiles, refitted times), [Tajima2016] (corners). Equations: docs/trajectory.md.
+/// Ports: moves by `push`, when there is room; one path_reference a call. No input can be NaN: segments are
+/// finite.
+/// State: the window of moves, the piece under way, the time into it; `settle(place)` forgets all and stands
+/// there; the next move may then start anywhere. Where moves come too late it stops at the end of what it
+/// knows, within all limits.
 /// Range: limits above 0, infinite = none; those that the profile cannot keep must be infinite.
-/// Throws "interpolator.path.jerk = ...: must ..."; `push`: "line = 12: ..." for what cannot be driven, and changes nothing.
-/// Cost: a call allocates nothing, and looks at no more pieces than it passes (at most Window); some 100 kB with Window 128.
+/// Throws "interpolator.path.jerk = ...: must ..."; `push`: "line = 12: ..." for what cannot be driven, and
+/// changes nothing.
+/// Cost: a call allocates nothing, and looks at no more pieces than it passes (at most Window); some 100 kB
+/// with Window 128.
 /// One thread: `push` between calls. For one axis from rest to rest without a path: `profile`.
 template <std::size_t Window = 128> class interpolator {
 public:

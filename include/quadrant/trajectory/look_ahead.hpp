@@ -8,12 +8,14 @@
 
 namespace quadrant::trajectory {
 
-/// The next moves of a path and how fast each joint may be passed, so that the speed can always come down in time: up to
-/// Window moves; beyond the last one known the path is taken to end. Moves that follow smoothly (tangent and curvature, limits
-/// alike) are one piece, at most Window/4 of them; joints of pieces are passed without acceleration along the path.
-/// Backwards over the window: the highest speed at the start of a piece from which that at its end can be reached; forwards,
-/// when a piece is begun: what can be reached from the speed there is. More of the path known never makes a joint slower,
-/// so that what is under way stays valid.
+/// The next moves of a path and how fast each joint may be passed, so that the speed can always come down in
+/// time: up to Window moves; beyond the last one known the path is taken to end. Moves that follow smoothly
+/// (tangent and curvature, limits alike) are one piece, at most Window/4 of them; joints of pieces are passed
+/// without acceleration along the path.
+/// Backwards over the window: the highest speed at the start of a piece from which that at its end can be
+/// reached; forwards,
+/// when a piece is begun: what can be reached from the speed there is. More of the path known never makes a
+/// joint slower, so that what is under way stays valid.
 /// Source: [Altintas2012]; [Tajima2016] for the joints (`corner`).
 /// Refused, with the line: a gap in the path, no feed, a corner to be driven through with no tolerance.
 /// Plain SI numbers; only `push` may throw, nothing allocates. For the motion itself: `interpolator`.
@@ -158,14 +160,14 @@ private:
                near(last.whole.within.acceleration, next.within.acceleration, 0.5) &&
                near(last.whole.within.jerk, next.within.jerk, 0.5);
     }
-    /// What is left of a piece [m] when the speed goes from `in` to `out` between its two joints; below 0: it cannot. A stop
-    /// keeps one period in hand, so that its time can be fitted to whole periods.
+    /// What is left of a piece [m] when the speed goes from `in` to `out` between its two joints; below 0: it
+    /// cannot. A stop keeps one period in hand, so that its time can be fitted to whole periods.
     double room(const piece& p, double leg_in, double in, const corner& end, double out) const noexcept {
         const double way = speed_change::quickest(kind_, in, out, p.whole.within).distance();
         return p.whole.length - leg_in - way - end.leg(out) - (out > 0 ? 0 : in * period_);
     }
-    /// Backwards from the newest piece to the second, or to what no further move can change: a joint at its highest speed,
-    /// and all before it.
+    /// Backwards from the newest piece to the second, or to what no further move can change: a joint at its
+    /// highest speed, and all before it.
     void plan() noexcept {
         const corner stop;
         bool settled = false;

@@ -10,8 +10,8 @@
 
 namespace quadrant::trajectory {
 
-/// d^3r/ds^3 of a piece of path [1/m^2]. Of a spline: the slope of its curvature vector, by a central difference over a
-/// thousandth of the piece.
+/// d^3r/ds^3 of a piece of path [1/m^2]. Of a spline: the slope of its curvature vector, by a central
+/// difference over a thousandth of the piece.
 inline point third_derivative(const segment& path, double s) noexcept {
     if (std::get_if<line>(&path.shape())) return {};
     if (const auto* round = std::get_if<arc>(&path.shape())) {
@@ -25,9 +25,9 @@ inline point third_derivative(const segment& path, double s) noexcept {
 }
 
 /// The largest that the derivatives of a piece of path by its length become: each axis alone, and as vectors.
-/// Line: as it is. Arc: the value in its middle plus what it can gain to an end, at most that of the circle. Spline: from
-/// differences of its places on a grid of 48 (so with its feed correction), with 2, 5 and 25 % for what lies between, and the
-/// same of its tangent, curvature and third derivative there.
+/// Line: as it is. Arc: the value in its middle plus what it can gain to an end, at most that of the circle.
+/// Spline: from differences of its places on a grid of 48 (so with its feed correction), with 2, 5 and 25 % for
+/// what lies between, and the same of its tangent, curvature and third derivative there.
 struct path_shape {
     point slope;   ///< |dr/ds|
     point bend;    ///< |d^2r/ds^2| [1/m]
@@ -89,8 +89,9 @@ struct plain_limits {
 /// What the speed along a piece may do so that every axis stays within its limits: with r(s(t)),
 ///   x' = r' v,   x'' = r' a + r'' v^2,   x''' = r' j + 3 r'' v a + r''' v^3,
 /// speed first (r'' v^2 may take 0.6 of an axis' acceleration and r''' v^3 0.3 of its jerk), then acceleration
-/// (3 r'' v a may take 0.3 of the jerk), then jerk with the rest; every product at its largest over the piece. Where the
-/// vector of both parts, hypot(a, curvature v^2), is within the limit of an axis, that is enough for it.
+/// (3 r'' v a may take 0.3 of the jerk), then jerk with the rest; every product at its largest over the piece.
+/// Where the vector of both parts, hypot(a, curvature v^2), is within the limit of an axis, that is enough for
+/// it.
 /// Source: chain rule; [Altintas2012] for the mapping of axis limits to the path.
 inline bounds along_path(const path_shape& shape, double feed, const plain_limits& within) noexcept {
     bounds b{std::min(feed, within.path.velocity), within.path.acceleration, within.path.jerk};

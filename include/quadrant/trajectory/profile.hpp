@@ -4,11 +4,11 @@
 
 namespace quadrant::trajectory {
 
-/// One length in the shortest time, from one speed to another, both not negative: the speed goes to the highest that the
-/// limits and the length allow, stays there, and goes to the last one; no acceleration at either end.
+/// One length in the shortest time, from one speed to another, both not negative: the speed goes to the highest
+/// that the limits and the length allow, stays there, and goes to the last one; no acceleration at either end.
 ///   D(v0, v) + D(v, v1) <= L, v <= feed: the highest v (the distances D grow with it); what is left of L is cruise.
-/// Time-optimal under limits of velocity, acceleration and jerk (trapezoidal_acceleration): compared with published durations
-/// of Ruckig and with a brute-force search in tests/trajectory/profile.cpp.
+/// Time-optimal under limits of velocity, acceleration and jerk (trapezoidal_acceleration): compared with
+/// published durations of Ruckig and with a brute-force search in tests/trajectory/profile.cpp.
 /// `stretch` makes it last longer: first by a lower cruise, then by a slower change, so that limits stay kept.
 /// Plain SI numbers; never throws or allocates. For moves with units and errors use `profile`.
 class speed_profile {
@@ -96,10 +96,11 @@ private:
 /// A move of one length on one line, with units: position, velocity, acceleration and jerk at any time.
 /// Equations: `speed_profile` and `speed_change`; kinds: `profile_kind`.
 /// `in_whole_periods` makes the duration a whole number of servo periods, by less than one period longer.
-/// Throws "profile.length = ...: must ..." for what is not a move, and "line = 12: the jerk limit cannot be met within the
+/// Throws "profile.length = ...: must ..." for what is not a move, and "line = 12: the jerk limit cannot be met
+/// within the
 /// block: ..." when the speed cannot go from `from` to `to` within the length.
-/// Cost: about a hundred square roots to make, two dozen operations at a time to ask; 250 bytes. For a path of many moves:
-/// `interpolator`. For the logistic curve of the precision stage: `s_curve`.
+/// Cost: about a hundred square roots to make, two dozen operations at a time to ask; 250 bytes. For a path of
+/// many moves: `interpolator`. For the logistic curve of the precision stage: `s_curve`.
 class profile {
 public:
     /// A move: its length, its limits, and the speeds at its ends.

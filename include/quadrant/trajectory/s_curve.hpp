@@ -8,11 +8,13 @@ namespace quadrant::trajectory {
 
 /// The S-curve move of the precision stage: a logistic curve, slow at both ends, very fast in the middle.
 ///   x(t) = L (g(a (t/T - 1/2)) - g(-a/2)) / (1 - 2 g(-a/2)),  g(y) = 1 / (1 + exp(-y))
-/// Source: read from the peak speed of [LowKeck2003] (1.127 m/s for 0.30 m in 1 s: steepness a = 15 gives 1.126).
+/// Source: read from the peak speed of [LowKeck2003] (1.127 m/s for 0.30 m in 1 s: steepness a = 15 gives
+/// 1.126).
 /// Peaks: speed k a/(4 T), acceleration k a^2/(6 sqrt(3) T^2), jerk k a^3/(8 T^3), k = L / (1 - 2 g(-a/2)).
-/// At both ends it jumps, by k a/T g(-a/2) (1 - g(-a/2)) in speed: 2.5 mm/s of 1.13 m/s with a = 15. A `profile` does not.
-/// Range: duration > 0, steepness > 0; length of either sign, finite. t is held to 0 ... T; beyond the ends it stands still.
-/// Throws "s_curve.duration = ...: must be finite and above 0".
+/// At both ends it jumps, by k a/T g(-a/2) (1 - g(-a/2)) in speed: 2.5 mm/s of 1.13 m/s with a = 15. A
+/// `profile` does not.
+/// Range: duration > 0, steepness > 0; length of either sign, finite. t is held to 0 ... T; beyond the ends it
+/// stands still. Throws "s_curve.duration = ...: must be finite and above 0".
 /// Cost: one exponential and one division a time.
 class s_curve {
 public:

@@ -12,12 +12,13 @@ struct along {
     double s = 0, v = 0, a = 0, j = 0;
 };
 
-/// From one speed to another, at rest in acceleration at both ends: the acceleration goes up along a ramp, stays, and goes
-/// down along the same ramp; its peak is (to - from) / (duration - ramp). Half the way of the speed is made in half the
-/// time, so that the distance is (from + to)/2 duration whatever the ramp.
-/// Ramp of the acceleration, x = t / ramp: x (trapezoidal) or 3 x^2 - 2 x^3 (cubic, jerk 1.5 times the mean at x = 1/2).
-/// Source: [ErkorkmazAltintas2001] (trapezoidal), [Yeung2006] (the kinds), the cubic ramp is the smoothstep polynomial.
-/// Plain SI numbers; never throws or allocates.
+/// From one speed to another, at rest in acceleration at both ends: the acceleration goes up along a ramp,
+/// stays, and goes down along the same ramp; its peak is (to - from) / (duration - ramp). Half the way of the
+/// speed is made in half the time, so that the distance is (from + to)/2 duration whatever the ramp.
+/// Ramp of the acceleration, x = t / ramp: x (trapezoidal) or 3 x^2 - 2 x^3 (cubic, jerk 1.5 times the mean at
+/// x = 1/2).
+/// Source: [ErkorkmazAltintas2001] (trapezoidal), [Yeung2006] (the kinds), the cubic ramp is the smoothstep
+/// polynomial. Plain SI numbers; never throws or allocates.
 struct speed_change {
     double from = 0, to = 0, duration = 0, ramp = 0; ///< [m/s, m/s, s, s]; ramp is at most duration / 2
     bool cubic = false;
@@ -73,8 +74,9 @@ private:
     }
 };
 
-/// The highest x between `low` and `high` that leaves some slack, for a slack that falls with x: not below 0 and at most
-/// `enough` where it is returned. Regula falsi (Illinois), halving where a slack is not finite; `low` where nothing is left.
+/// The highest x between `low` and `high` that leaves some slack, for a slack that falls with x: not below 0
+/// and at most `enough` where it is returned. Regula falsi (Illinois), halving where a slack is not finite;
+/// `low` where nothing is left.
 template <class Slack> double highest(double low, double high, double enough, Slack slack) noexcept {
     double above = slack(high);
     if (above >= 0) return high;

@@ -14,28 +14,33 @@
 
 namespace quadrant::trajectory {
 
-/// Keeps a stream of positions within limits of velocity, acceleration and jerk, sample by sample, whatever comes in: a hand
-/// wheel, a joint of a robot, an external planner that jumps.
+/// Keeps a stream of positions within limits of velocity, acceleration and jerk, sample by sample, whatever
+/// comes in: a hand wheel, a joint of a robot, an external planner that jumps.
 ///   1. E = x[k] - p[k-1] - s,  s = x[k] - x[k-1]:   step p by s + sign(E) c w,  c = acceleration T^2,
 ///      (n+1) w - n (n+1)/2 = |E|/c,  n = largest whole number with n (n+1)/2 <= |E|/c:   the greatest speed relative to the
 ///      stream from which it still stops at the stream, slowing down by c a sample; held to velocity and acceleration
 ///   2. y = mean of the last N of p,   N = ceil(2 acceleration / (jerk T))
-/// Then |y'| <= velocity, |y''| <= acceleration, |y'''| <= jerk for the differences of y, always: a mean exceeds nothing, and
-/// the acceleration changes by (a[k] - a[k-N])/(N T) at most. Without a jerk limit (infinite) N = 1.
-/// Source: step 1 is a discrete form of what LinuxCNC's limit3 does; step 2 is the moving average behind a CNC's interpolator.
-/// Ports: position in, position out. A stream within the limits passes unchanged but late by delay() = (N-1) T/2.
-/// Overshoot: none towards a stream that stands or moves evenly, unless it turned away harder than the limits allow.
-/// Time: a move from rest takes that of the best acceleration-limited one plus N T, where the best jerk-limited takes
-/// acceleration/jerk = N T/2 more.
-/// State: p, its last step, the last input, N values of p; `reset` at rest at zero, `settle(x)` at rest at x. `shift(by)`: the
-/// frame of positions moves. limited() = the last sample could not follow.
+/// Then |y'| <= velocity, |y''| <= acceleration, |y'''| <= jerk for the differences of y, always: a mean
+/// exceeds nothing, and the acceleration changes by (a[k] - a[k-N])/(N T) at most. Without a jerk limit
+/// (infinite) N = 1.
+/// Source: step 1 is a discrete form of what LinuxCNC's limit3 does; step 2 is the moving average behind a
+/// CNC's interpolator.
+/// Ports: position in, position out. A stream within the limits passes unchanged but late by delay() = (N-1)
+/// T/2.
+/// Overshoot: none towards a stream that stands or moves evenly, unless it turned away harder than the limits
+/// allow.
+/// Time: a move from rest takes that of the best acceleration-limited one plus N T, where the best jerk-limited
+/// takes acceleration/jerk = N T/2 more.
+/// State: p, its last step, the last input, N values of p; `reset` at rest at zero, `settle(x)` at rest at x.
+/// `shift(by)`: the frame of positions moves. limited() = the last sample could not follow.
 /// Range: velocity > 0, may be infinite; acceleration finite, > 0; jerk > 0, may be infinite; N <= Capacity.
-/// |x| <= range() = acceleration T^2/(100 eps): there the roundings of three positions are up to 4 % of the acceleration limit. In double at 1 kHz
-/// and 1 m/s^2 that is 45 km, in float 84 mm: count positions from where the axis is (`shift`), or take double.
-/// NaN, infinities, positions beyond range(): holds the last output, keeps the state, raises faulted().
-/// Throws "stream_limiter.<field> = ...: must ..." for period, velocity, acceleration, jerk.
-/// Cost: 1 square root, 2 divisions, 8 (Capacity + 6) bytes. Whole moves that are known: `interpolator`; no acceleration limit:
-/// `rate_limiter`.
+/// |x| <= range() = acceleration T^2/(100 eps): there the roundings of three positions are up to 4 % of the
+/// acceleration limit. In double at 1 kHz and 1 m/s^2 that is 45 km, in float 84 mm: count positions from where
+/// the axis is (`shift`), or take double. NaN, infinities, positions beyond range(): holds the last output,
+/// keeps the state, raises faulted(). Throws "stream_limiter.<field> = ...: must ..." for period, velocity,
+/// acceleration, jerk.
+/// Cost: 1 square root, 2 divisions, 8 (Capacity + 6) bytes. Whole moves that are known: `interpolator`; no
+/// acceleration limit: `rate_limiter`.
 template <std::size_t Capacity, class Real = double>
 requires(Capacity >= 1) class stream_limiter {
 public:

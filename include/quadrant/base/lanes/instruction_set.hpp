@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-/// The instruction set as a type. A function that is compiled with -mavx2 and the same function compiled without are
-/// two functions; the linker keeps one of two that have the same name. With the set in the type they have two names.
+/// The instruction set as a type. A function that is compiled with -mavx2 and the same function compiled
+/// without are two functions; the linker keeps one of two that have the same name. With the set in the type
+/// they have two names.
 namespace quadrant::isa {
 
-/// The extensions of an x86 processor that decide about floating point, one bit each; and whether xsimd is there.
+/// The extensions of an x86 processor that decide about floating point, one bit each; and whether xsimd is
+/// there.
 enum extension : unsigned {
     sse2 = 1,
     sse3 = 2,

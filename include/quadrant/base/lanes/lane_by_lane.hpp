@@ -9,9 +9,9 @@
 
 namespace quadrant {
 
-/// W blocks of one lane behind the call of one block in lanes: for a law whose state holds whole numbers (where in a ring
-/// the delay of this lane is read). It loops over its lanes and costs what W blocks cost. The blocks run in lanes<1>, a
-/// double that carries the instruction set in its type.
+/// W blocks of one lane behind the call of one block in lanes: for a law whose state holds whole numbers (where
+/// in a ring the delay of this lane is read). It loops over its lanes and costs what W blocks cost. The blocks
+/// run in lanes<1>, a double that carries the instruction set in its type.
 /// Lane i's block is of(i); what is not a verb of all blocks is asked of it, such as response.
 template <class Block, several_lanes Real> class lane_by_lane {
 public:

@@ -5,8 +5,9 @@
 
 #include <cmath>
 
-/// The functions of <cmath> on lanes, found by argument-dependent lookup as those of `dual` are. In registers exp, log,
-/// sin and cos are xsimd's; docs/lanes.md says how far they lie from the C library's. tan, atan2 and pow call the C
+/// The functions of <cmath> on lanes, found by argument-dependent lookup as those of `dual` are. In registers
+/// exp, log, sin and cos are xsimd's; docs/lanes.md says how far they lie from the C library's. tan, atan2 and
+/// pow call the C
 /// library lane by lane: a filter designed with them has the coefficients of its scalar twin, bit for bit.
 namespace quadrant {
 
@@ -28,8 +29,8 @@ template <std::size_t W, class Isa> lanes<W, Isa> sqrt(const lanes<W, Isa>& x) n
         },
         x);
 }
-/// xsimd's in registers; the C library's in a lane beyond +-708, where the result is no normal number (an infinity and a NaN too:
-/// without SSE4 xsimd would turn them into integers).
+/// xsimd's in registers; the C library's in a lane beyond +-708, where the result is no normal number (an
+/// infinity and a NaN too: without SSE4 xsimd would turn them into integers).
 template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) noexcept {
     const auto near = less_equal(abs(x), lanes<W, Isa>(708));
     lanes<W, Isa> y = lanes<W, Isa>::map(
@@ -43,9 +44,9 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
             if (!near[i]) y.set(i, std::exp(x[i]));
     return y;
 }
-/// exp(-x) for x >= 0, within one unit in the last place; beyond 708, where it is no normal number any more, that of 708. 2^-k from
-/// the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the work of `exp`, and the same on every
-/// instruction set.
+/// exp(-x) for x >= 0, within one unit in the last place; beyond 708, where it is no normal number any more,
+/// that of 708. 2^-k from the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the
+/// work of `exp`, and the same on every instruction set.
 template <std::size_t W, class Isa> lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
     using number = lanes<W, Isa>;
     const number most(708), shift(0x1.8p52);
@@ -107,8 +108,8 @@ template <std::size_t W, class Isa> lanes<W, Isa> tan(const lanes<W, Isa>& x) no
     return lanes<W, Isa>::one_by_one([](double v) { return std::tan(v); }, x);
 }
 namespace detail {
-/// Rounds in registers what has a fraction. From 2^52 on a number is whole, and an infinity or a NaN stays: without SSE4
-/// xsimd would turn them into integers.
+/// Rounds in registers what has a fraction. From 2^52 on a number is whole, and an infinity or a NaN stays:
+/// without SSE4 xsimd would turn them into integers.
 template <std::size_t W, class Isa, class Round>
 lanes<W, Isa> rounded(const lanes<W, Isa>& x, const Round& round) noexcept {
     const auto has_fraction = less(abs(x), lanes<W, Isa>(0x1p52));

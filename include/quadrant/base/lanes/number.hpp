@@ -12,13 +12,14 @@
 
 namespace quadrant {
 
-/// A number that holds W independent instances: run W loops side by side, one in each lane, with the registers of the
-/// processor. Every operation works lane by lane; + - * / and sqrt give in each lane what a double gives, bit for bit
-/// (exp, log, sin and the like: docs/lanes.md). Fits into a quantity.
-/// Comparisons are functions that return a mask: less(a, b), select(mask, a, b), any(mask) (select.hpp). There is no
-/// operator<, because one bool cannot answer for W lanes.
-/// With xsimd (Debian: libxsimd-dev) W numbers fill registers: 2 with SSE2, 4 with AVX, 8 with AVX-512; without it, or
-/// when W is odd, the lanes are W doubles. `Isa` is the instruction set, by default that of the translation unit.
+/// A number that holds W independent instances: run W loops side by side, one in each lane, with the registers
+/// of the processor. Every operation works lane by lane; + - * / and sqrt give in each lane what a double
+/// gives, bit for bit (exp, log, sin and the like: docs/lanes.md). Fits into a quantity.
+/// Comparisons are functions that return a mask: less(a, b), select(mask, a, b), any(mask) (select.hpp). There
+/// is no operator<, because one bool cannot answer for W lanes.
+/// With xsimd (Debian: libxsimd-dev) W numbers fill registers: 2 with SSE2, 4 with AVX, 8 with AVX-512; without
+/// it, or when W is odd, the lanes are W doubles. `Isa` is the instruction set, by default that of the
+/// translation unit.
 template <std::size_t W, class Isa = isa::here> class lanes {
     using registers = detail::lane_registers<W, Isa>;
     static constexpr std::size_t pieces = W / registers::width;
@@ -186,9 +187,9 @@ private:
     std::array<piece, pieces> piece_;
 };
 
-/// Lanes that take a sample all together or not at all, such as the axes of one table: `finite` is true of them without a look, so
-/// no block inside holds, and the loop around the blocks checks its inputs once, at its border (`xy_control`). A block of its own
-/// should have `lanes`, which hold each for itself.
+/// Lanes that take a sample all together or not at all, such as the axes of one table: `finite` is true of them
+/// without a look, so no block inside holds, and the loop around the blocks checks its inputs once, at its
+/// border (`xy_control`). A block of its own should have `lanes`, which hold each for itself.
 template <std::size_t W, class Isa = isa::here> using lanes_in_step = lanes<W, isa::in_step<Isa>>;
 
 /// W.

@@ -14,8 +14,9 @@
 
 #ifdef XSIMD_HPP
 namespace quadrant::detail {
-/// One of xsimd's sets with all extensions of the translation unit in its name: xsimd's own functions on it are then
-/// told apart by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also of exp and sin.
+/// One of xsimd's sets with all extensions of the translation unit in its name: xsimd's own functions on it are
+/// then told apart by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also of
+/// exp and sin.
 template <class Set, unsigned Extensions> struct lane_set : Set {};
 } // namespace quadrant::detail
 
@@ -36,8 +37,9 @@ struct get_bool_simd_register<T, quadrant::detail::lane_set<avx512f, Extensions>
 #    endif
 } // namespace xsimd::types
 
-// The argument of sin and cos, brought near zero. xsimd's own way depends on the largest of the lanes and calls functions
-// that are no templates, which the linker could not tell apart between sets; this one is each lane's own.
+// The argument of sin and cos, brought near zero. xsimd's own way depends on the largest of the lanes and calls
+// functions that are no templates, which the linker could not tell apart between sets; this one is each lane's
+// own.
 namespace xsimd::kernel::detail {
 template <class Set, unsigned Extensions>
 struct trigo_reducer<batch<double, quadrant::detail::lane_set<Set, Extensions>>, trigo_radian_tag> {

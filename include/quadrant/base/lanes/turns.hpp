@@ -7,10 +7,11 @@ namespace quadrant {
 /// Cosine and sine of an angle given in turns.
 template <class Real> struct on_circle { Real cosine, sine; };
 
-/// cos(2 pi t) and sin(2 pi t) in lanes for |t| <= 4: the nearest quarter turn is taken off exactly, and the rest, at most an
-/// eighth of a turn, goes through the polynomials of Cephes' sin and cos (S. Moshier, netlib). One reduction and no
-/// multiplication by pi before it: within 2e-16 of the true values, and the same on every instruction set. Found by its argument's
-/// namespace, so that what uses it needs no include of lanes.
+/// cos(2 pi t) and sin(2 pi t) in lanes for |t| <= 4: the nearest quarter turn is taken off exactly, and the
+/// rest, at most an eighth of a turn, goes through the polynomials of Cephes' sin and cos (S. Moshier, netlib).
+/// One reduction and no
+/// multiplication by pi before it: within 2e-16 of the true values, and the same on every instruction set.
+/// Found by its argument's namespace, so that what uses it needs no include of lanes.
 template <std::size_t W, class Isa> on_circle<lanes<W, Isa>> circle_of_turns(const lanes<W, Isa>& t) noexcept {
     using number = lanes<W, Isa>;
     const number quarters = floor(number(4) * t + number(0.5));

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
-/// Several numbers of lanes side by side in one wider number: the springs of a friction, the taps of a filter. Where the wider one
-/// fills wider registers, no number goes through memory on its way.
+/// Several numbers of lanes side by side in one wider number: the springs of a friction, the taps of a filter.
+/// Where the wider one fills wider registers, no number goes through memory on its way.
 namespace quadrant {
 
 namespace detail {

@@ -98,7 +98,8 @@ inline fitted with_steps(const readings& r, const fitted& from, double margin) {
     return best;
 }
 
-/// A model with one term more, fitted; the model itself where the term cannot join. `margin`: what each jump has to pay.
+/// A model with one term more, fitted; the model itself where the term cannot join. `margin`: what each jump
+/// has to pay.
 inline fitted with_term(const readings& r, const fitted& from, term t, double margin) {
     link_model m = from.model;
     const auto freed = [&](link_model& x) {

@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// e = A cos(2 pi p/period + phase) of one axis at its place p, which r sees as e cos t (of y: e sin t). Each run has its own
-/// amplitude and phase, so that a force (cogging), whose effect changes with the feed, is found too.
+/// e = A cos(2 pi p/period + phase) of one axis at its place p, which r sees as e cos t (of y: e sin t). Each
+/// run has its own amplitude and phase, so that a force (cogging), whose effect changes with the feed, is found
+/// too.
 class cyclic_search {
 public:
     cyclic_search(const std::vector<circle_run>& runs, const residuals& left, double shortest)
@@ -109,8 +110,8 @@ private:
         }
         return all.solve(total);
     }
-    /// Of all runs, for frequencies `step` apart, as if cosine and sine were orthogonal, which over many periods they are: the
-    /// phasor of each cell turns on by the same angle every time.
+    /// Of all runs, for frequencies `step` apart, as if cosine and sine were orthogonal, which over many
+    /// periods they are: the phasor of each cell turns on by the same angle every time.
     std::vector<double> energies(int axis, const std::vector<double>& frequency, double step) const {
         std::vector<double> out(frequency.size());
         struct phasor {

@@ -11,8 +11,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Where a reference moves at constant speed along circles, from the reference alone: pieces of constant speed, in each of
-/// them the longest stretches that keep to the circle through 60 degrees of their beginning.
+/// Where a reference moves at constant speed along circles, from the reference alone: pieces of constant speed,
+/// in each of them the longest stretches that keep to the circle through 60 degrees of their beginning.
 class circle_search {
 public:
     circle_search(const std::vector<double>& x, const std::vector<double>& y, double written)
@@ -110,8 +110,8 @@ inline std::pair<const axis_log*, const axis_log*> circle_axes(const machine_log
     return {moving[0], moving[1]};
 }
 
-/// Every whole circle at constant feed in a log, found from the references: one run each. What comes before its last whole
-/// turns is run in. Throws bad_input where there is none.
+/// Every whole circle at constant feed in a log, found from the references: one run each. What comes before its
+/// last whole turns is run in. Throws bad_input where there is none.
 inline std::vector<circle_run> find_circles(const machine_log& log, std::size_t number = 0) {
     const auto [x, y] = circle_axes(log);
     const double written = std::max(x->reference_step, y->reference_step), period = log.sample_period_s;

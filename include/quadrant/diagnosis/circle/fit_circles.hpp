@@ -12,8 +12,8 @@ struct circle_bin {
     double deviation, weight;
 };
 
-/// A degree a bin, near reversals a quarter. What lies within 5 degrees of a reversal counts a tenth: it says how high a spike is,
-/// but not much about the form of the circle (ball-bar evaluation leaves it out for that).
+/// A degree a bin, near reversals a quarter. What lies within 5 degrees of a reversal counts a tenth: it says
+/// how high a spike is, but not much about the form of the circle (ball-bar evaluation leaves it out for that).
 inline std::vector<circle_bin> binned(const std::vector<circle_run>& runs) {
     constexpr double degree = std::numbers::pi / 180, fine = degree / 4, near = 15 * degree, at = 5 * degree;
     const auto bin_of = [](double angle) {
@@ -71,7 +71,8 @@ public:
         used_.assign(patterns.size(), false);
     }
 
-    /// Circular error that a coefficient of 1 leaves in the worst run; of what is constant along the circle its largest value.
+    /// Circular error that a coefficient of 1 leaves in the worst run; of what is constant along the circle its
+    /// largest value.
     double circularity(std::size_t c) const {
         const auto k = static_cast<Eigen::Index>(c);
         return range_(k) > 0 ? range_(k) : largest_(k);
@@ -98,8 +99,8 @@ public:
         return {};
     }
 
-    /// Coefficients and standard errors of what is in; those of the others are 0. `afresh`: how alike neighbours err is worked
-    /// out again, else it is that of the last time.
+    /// Coefficients and standard errors of what is in; those of the others are 0. `afresh`: how alike
+    /// neighbours err is worked out again, else it is that of the last time.
     void solve(bool afresh = true) {
         const auto in = indices();
         value_ = error_ = Eigen::VectorXd::Zero(columns_);
@@ -119,7 +120,8 @@ public:
     double value(std::size_t c) const { return value_(static_cast<Eigen::Index>(c)); }
     double standard_error(std::size_t c) const { return error_(static_cast<Eigen::Index>(c)); }
 
-    /// Root mean square of what neighbouring bins err alike, as of the last solve afresh: no noise, but what no column says.
+    /// Root mean square of what neighbouring bins err alike, as of the last solve afresh: no noise, but what no
+    /// column says.
     double structure() const {
         double product = 0, weight = 0;
         for (Eigen::Index i = 1; i < residual_.size(); ++i) {
@@ -138,7 +140,8 @@ private:
             if (used_[c]) in.push_back(static_cast<Eigen::Index>(c));
         return in;
     }
-    /// By how much neighbours that err alike widen a variance: 1 + 2 sum of the residual's correlations within 30 bins.
+    /// By how much neighbours that err alike widen a variance: 1 + 2 sum of the residual's correlations within
+    /// 30 bins.
     double correlation() const {
         constexpr Eigen::Index reach = 30;
         const double power = residual_.squaredNorm();

@@ -25,8 +25,8 @@ struct circle_groups {
     }
 };
 
-/// All errors that a coefficient each describes, fitted to all runs at once; what is not above its detection limit is taken
-/// out, weakest first, until all that is left is needed.
+/// All errors that a coefficient each describes, fitted to all runs at once; what is not above its detection
+/// limit is taken out, weakest first, until all that is left is needed.
 class joint_fit {
 public:
     struct column {
@@ -75,7 +75,8 @@ public:
 
     std::vector<circle_pattern> patterns;
     std::vector<column> columns;
-    /// What is not found below [m]: a tenth of the resolution, and the second order of the largest error's pattern.
+    /// What is not found below [m]: a tenth of the resolution, and the second order of the largest error's
+    /// pattern.
     double floor = 0;
 
 private:

@@ -33,7 +33,8 @@ inline circle_run_result measured(const circle_run& run, const std::vector<doubl
     return out;
 }
 
-/// What is periodic in what is left, the strongest first; each is taken out of `left` and of `runs` before the next is sought.
+/// What is periodic in what is left, the strongest first; each is taken out of `left` and of `runs` before the
+/// next is sought.
 inline std::vector<periodic_error> take_periodic(std::vector<circle_run>& runs, residuals& left,
                                                  const std::vector<std::size_t>& groups, double shortest,
                                                  double floor, std::array<double, 3>& limits) {

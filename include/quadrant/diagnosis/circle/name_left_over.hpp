@@ -6,7 +6,8 @@
 /// What is found beside the joint fit, as errors with a name.
 namespace quadrant::diagnosis::detail {
 
-/// The patterns are first order: within 1 % of the loops that were tried. A spike's height depends on its shape: 15 %.
+/// The patterns are first order: within 1 % of the loops that were tried. A spike's height depends on its
+/// shape: 15 %.
 inline circle_number interval_of(double value, double standard_error, double relative = 0.01) {
     const double reach = std::hypot(1.96 * standard_error, relative * value);
     return {value, value - reach, value + reach};

@@ -6,11 +6,12 @@
 #include <array>
 #include <string_view>
 
-/// What each error of a circle is called, what its sign means, what tells it from others and what may be behind it.
+/// What each error of a circle is called, what its sign means, what tells it from others and what may be behind
+/// it.
 namespace quadrant::diagnosis {
 
-/// The words for one error of a circle: its name, what a positive value means, what tells it from others, what may cause
-/// it.
+/// The words for one error of a circle: its name, what a positive value means, what tells it from others, what
+/// may cause it.
 struct circle_error_words {
     std::string_view name, sign, needs;
     std::array<std::string_view, 4> effects; ///< of the machine file; empty ones are none
@@ -87,7 +88,8 @@ inline const circle_error_words& words_of_circle_error(std::string_view name) {
 }
 
 namespace detail {
-/// An error with everything that does not depend on the runs; effects that the machine cannot have are left out.
+/// An error with everything that does not depend on the runs; effects that the machine cannot have are left
+/// out.
 inline circle_error named_error(std::string_view name, std::string axis, std::string unit,
                                 const std::vector<std::string>& excluded) {
     const circle_error_words& w = words_of_circle_error(name);

@@ -44,8 +44,9 @@ inline since_reversal reversed(const circle_point& p, int axis) {
 /// How far the nearest reversal of either axis is, in radians.
 inline double from_reversal(double angle) { return std::abs(std::remainder(angle, std::numbers::pi / 2)); }
 
-/// A reversal spike of height 1: (1 - e^(-a/rise))^order e^(-a/decay) over its peak, a the angle since the reversal. That is the
-/// step of a friction force seen through a position loop; the order makes the slow beginning of presliding.
+/// A reversal spike of height 1: (1 - e^(-a/rise))^order e^(-a/decay) over its peak, a the angle since the
+/// reversal. That is the step of a friction force seen through a position loop; the order makes the slow
+/// beginning of presliding.
 struct spike_shape {
     double rise = 0.01, decay = 0.03; ///< [rad]
     int order = 1;
@@ -64,7 +65,8 @@ struct spike_shape {
     }
 };
 
-/// The errors that a coefficient each describes, those of the set-up first. `largest`: radius that a bow is given for.
+/// The errors that a coefficient each describes, those of the set-up first. `largest`: radius that a bow is
+/// given for.
 inline std::vector<circle_pattern> circle_patterns(circle_source source, std::size_t logs,
                                                    const std::vector<double>& radii, double largest) {
     using std::cos, std::sin;
@@ -101,8 +103,9 @@ inline std::vector<circle_pattern> circle_patterns(circle_source source, std::si
     return all;
 }
 
-/// Play b: the axis stands b/2 behind its motion. Where it reverses it stays until the motor has gone all of it, then follows:
-/// an outward step that stays. `passed`: the play as far as it is known, for the step's width; coefficient: b.
+/// Play b: the axis stands b/2 behind its motion. Where it reverses it stays until the motor has gone all of
+/// it, then follows: an outward step that stays. `passed`: the play as far as it is known, for the step's
+/// width; coefficient: b.
 inline circle_pattern backlash_pattern(int axis, double passed) {
     return {"backlash", axis == 0 ? "x" : "y", "m", [axis, passed](const circle_point& p) {
                 const double gone = p.radius * (1 - std::cos(reversed(p, axis).angle)),

@@ -4,14 +4,15 @@
 
 #include <complex>
 
-/// What is periodic along an axis (a cyclic error) or in time (a vibration), sought in what the other errors leave.
+/// What is periodic along an axis (a cyclic error) or in time (a vibration), sought in what the other errors
+/// leave.
 namespace quadrant::diagnosis::detail {
 
 /// Sample by sample of every run.
 using residuals = std::vector<std::vector<double>>;
 
-/// A sum of squares of noise with so many degrees of freedom stays below this many times its mean in all of `places` places,
-/// but for one record in a thousand [Laurent2000].
+/// A sum of squares of noise with so many degrees of freedom stays below this many times its mean in all of
+/// `places` places, but for one record in a thousand [Laurent2000].
 inline double noise_peak(double freedom, double places) {
     const double l = std::log(1000 * places);
     return 1 + 2 * std::sqrt(l / freedom) + 2 * l / freedom;
@@ -22,8 +23,8 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-/// Mean power of noise around place k of a spectrum, from the larger of both sides' medians: what is smooth there is no peak.
-/// Without enough neighbours infinite.
+/// Mean power of noise around place k of a spectrum, from the larger of both sides' medians: what is smooth
+/// there is no peak. Without enough neighbours infinite.
 inline double around(const std::vector<double>& power, std::size_t k, std::size_t next, std::size_t many) {
     if (k < next + many / 2 || k + next + many / 2 >= power.size()) return HUGE_VAL;
     const auto at = [&](std::size_t i) { return power.begin() + static_cast<std::ptrdiff_t>(i); };

@@ -15,7 +15,8 @@ namespace detail {
 inline constexpr std::array radius_columns{std::string_view("t_s"), std::string_view("angle_deg"),
                                            std::string_view("radius_m"), std::string_view("nominal_radius_m")};
 
-/// The columns of an instrument's file, in the order of `radius_columns`, and the step in which the radius was written.
+/// The columns of an instrument's file, in the order of `radius_columns`, and the step in which the radius was
+/// written.
 struct radius_table {
     std::array<std::vector<double>, 4> columns;
     written_step step;
@@ -68,9 +69,10 @@ inline bool is_radius_file(std::string_view text) {
     return false;
 }
 
-/// A file of a ball-bar or grid plate: CSV with `t_s`, `angle_deg` (from x towards y, rising or falling, with or without jumps
-/// of 360), `radius_m` (as measured) and `nominal_radius_m`, other columns ignored. A run ends where the angle turns back or
-/// the nominal radius changes; several runs may follow each other. Throws bad_input with line and column.
+/// A file of a ball-bar or grid plate: CSV with `t_s`, `angle_deg` (from x towards y, rising or falling, with
+/// or without jumps of 360), `radius_m` (as measured) and `nominal_radius_m`, other columns ignored. A run ends
+/// where the angle turns back or the nominal radius changes; several runs may follow each other. Throws
+/// bad_input with line and column.
 inline std::vector<circle_run> read_radius(std::string_view text, std::string_view file,
                                            std::size_t number = 0) {
     text = detail::without_byte_order_mark(text);

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-/// Runs along a circle at constant feed: what the ball-bar diagnosis is made from. All values SI, angles in radians.
+/// Runs along a circle at constant feed: what the ball-bar diagnosis is made from. All values SI, angles in
+/// radians.
 namespace quadrant::diagnosis {
 
 /// What measured the radius. An encoder sees no error that lies behind it.
@@ -65,7 +66,8 @@ inline double turned(const std::vector<double>& x, const std::vector<double>& y,
     return angle - begin;
 }
 
-/// The first sample from which on what was turned is whole turns, so that a run in is left out; 0 turns when there is not one.
+/// The first sample from which on what was turned is whole turns, so that a run in is left out; 0 turns when
+/// there is not one.
 inline std::size_t cut_to_whole_turns(std::vector<double>& angle, std::size_t& turns) {
     const double step =
         angle.size() < 2 ? 0 : std::abs(angle.back() - angle.front()) / double(angle.size() - 1);

@@ -6,8 +6,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// The shape of the spikes of one axis in one group of runs: of a grid of rises, decays (0.3 to 25 degrees) and orders
-/// the one that leaves least of the mean of all reversals, beside the step of a play and a cubic for the form of the circle.
+/// The shape of the spikes of one axis in one group of runs: of a grid of rises, decays (0.3 to 25 degrees) and
+/// orders the one that leaves least of the mean of all reversals, beside the step of a play and a cubic for the
+/// form of the circle.
 inline spike_shape fit_spike(const std::vector<circle_bin>& bins, const std::vector<std::size_t>& group_of_run,
                              std::size_t group, int axis, double passed) {
     constexpr double degree = std::numbers::pi / 180, before = 12 * degree, after = 40 * degree,

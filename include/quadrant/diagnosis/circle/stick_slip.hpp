@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Jumps back and forth of one axis within 25 degrees after its reversals, of what is quicker than 6 degrees in what the other
-/// errors leave. A jump counts when it is eight times the
+/// Jumps back and forth of one axis within 25 degrees after its reversals, of what is quicker than 6 degrees in
+/// what the other errors leave. A jump counts when it is eight times the
 /// usual size of what is left more than 35 degrees from the reversals.
 struct stick_slip_found {
     double swings = 0;            ///< a reversal, median

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A tone of fixed frequency, from the mean power of half-second pieces (Hann) of every run: it must stand out of its neighbours
-/// in each group of feeds, for what moves in frequency with the feed is none.
+/// A tone of fixed frequency, from the mean power of half-second pieces (Hann) of every run: it must stand out
+/// of its neighbours in each group of feeds, for what moves in frequency with the feed is none.
 class vibration_search {
 public:
     vibration_search(const std::vector<circle_run>& runs, const residuals& left,

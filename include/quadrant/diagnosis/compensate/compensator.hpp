@@ -17,8 +17,8 @@ using contact_block =
     maxwell_slip<friction_contact::most, signal::velocity, signal::voltage>; ///< with its give
 using travel_block = cogging_harmonics<harmonics::most, signal::voltage>;    ///< what repeats along the travel
 
-/// Friction by its level over speed: Coulomb and Stribeck friction of a fitted plant, without the viscous part, which the
-/// cascade has a key for. At rest it is off: what still pushes there makes a stopped axis creep on.
+/// Friction by its level over speed: Coulomb and Stribeck friction of a fitted plant, without the viscous part,
+/// which the cascade has a key for. At rest it is off: what still pushes there makes a stopped axis creep on.
 inline level_block::parameters level_parameters(const plant_model& p) {
     const auto& f = p.friction;
     const double widest = 1e-4; // [m/s], far below any path
@@ -83,11 +83,11 @@ struct compensated_forces {
     bool operator==(const compensated_forces&) const = default;
 };
 
-/// What a controller adds to its command so that the axis need not be late first: forces of a fitted plant, told from the
-/// reference alone.
+/// What a controller adds to its command so that the axis need not be late first: forces of a fitted plant,
+/// told from the reference alone.
 ///   u = friction(v_ref) + (a_c Fc + a_v B |v_ref|)/kf + Fc along(r) side/kf + cogging(r) + (k r - F)/kf
-/// Ports: position reference [m] in, command out, to be added before or behind the controller's limit. Nothing measured goes
-/// in, so that no gain or delay margin changes. State: that of the blocks.
+/// Ports: position reference [m] in, command out, to be added before or behind the controller's limit. Nothing
+/// measured goes in, so that no gain or delay margin changes. State: that of the blocks.
 class compensator {
 public:
     compensator(const plant_model& p, const compensated_forces& what, double period)

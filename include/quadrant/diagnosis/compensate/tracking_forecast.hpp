@@ -13,9 +13,9 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Forecasts on one axis of one log. The error that was logged, plus what a compensation changes in the simulated loop: what
-/// the simulation does not know stays in the forecast. The simulated sensor and converter are exact, for their rounding is
-/// in the log already.
+/// Forecasts on one axis of one log. The error that was logged, plus what a compensation changes in the
+/// simulated loop: what the simulation does not know stays in the forecast. The simulated sensor and converter
+/// are exact, for their rounding is in the log already.
 class tracking_forecast {
 public:
     tracking_forecast(const axis_description& axis, const axis_log& log, double period)
@@ -115,9 +115,10 @@ private:
         for (const auto& g : all) out.glitch += std::abs(g.peak.value()) / static_cast<double>(all.size());
         return out;
     }
-    /// Median over the draws. The interval goes from the least of them, and of a plant that is just as found, to their
-    /// largest, wider on both sides by twice what the simulation of the logged loop missed: that is in the forecast, and in
-    /// the compensated loop the simulation may miss as much the other way.
+    /// Median over the draws. The interval goes from the least of them, and of a plant that is just as found,
+    /// to their
+    /// largest, wider on both sides by twice what the simulation of the logged loop missed: that is in the
+    /// forecast, and in the compensated loop the simulation may miss as much the other way.
     void summarise(compensation& c, const figures& now, const figures& missed, const figures& as_found,
                    const std::vector<figures>& after, std::size_t inside) const {
         const auto over = [&](double figures::*of) {

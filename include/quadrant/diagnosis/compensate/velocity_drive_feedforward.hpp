@@ -4,12 +4,13 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// What a velocity drive has to be asked for, beside the controller's feedback, so that its motor moves as the reference r does: the drive's
-/// loop read backwards, to the second derivative. With F = M r'' + B r' - constant force,
+/// What a velocity drive has to be asked for, beside the controller's feedback, so that its motor moves as the
+/// reference r does: the drive's loop read backwards, to the second derivative. With F = M r'' + B r' -
+/// constant force,
 ///   P:   asked = r' + F / gain
 ///   PI:  asked = r' + (B / integral) r''        the integral holds the rest
-/// and what is asked acts one period (difference and hold) and the drive's delay late: r'' times that is added. Units of the command a
-/// [m/s], [m/s^2], and of the command.
+/// and what is asked acts one period (difference and hold) and the drive's delay late: r'' times that is added.
+/// Units of the command a [m/s], [m/s^2], and of the command.
 struct velocity_drive_feedforward {
     double velocity = 1, acceleration = 0, bias = 0;
 
@@ -28,8 +29,9 @@ struct velocity_drive_feedforward {
     }
 };
 
-/// The keys of the controller in front of a velocity drive, as one compensation; none where its kind has no such keys. Friction that turns
-/// with the direction is left to the drive's loop and to the controller's feedback: no key of such a controller pays it.
+/// The keys of the controller in front of a velocity drive, as one compensation; none where its kind has no
+/// such keys. Friction that turns with the direction is left to the drive's loop and to the controller's
+/// feedback: no key of such a controller pays it.
 inline std::vector<compensation> for_velocity_drive(const plant_model& p, const controller_description& c,
                                                     double period, bool in_volts,
                                                     std::vector<std::string> causes) {

@@ -4,9 +4,9 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Commands below the dead zone have no effect, larger ones lose it: an output stage without bias, or a controller's dead
-/// band in the drive. Joins the actuator. Shows when the command changes its sign, at any speed; friction turns with the
-/// velocity instead.
+/// Commands below the dead zone have no effect, larger ones lose it: an output stage without bias, or a
+/// controller's dead band in the drive. Joins the actuator. Shows when the command changes its sign, at any
+/// speed; friction turns with the velocity instead.
 inline constexpr effect actuator_dead_zone{
     .name = "actuator_dead_zone",
     .label = "actuator dead zone",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// A current loop of first order, 1/(lag s + 1), behind the command. Joins the actuator. Shows as a phase that bends and an
-/// amplitude that falls with frequency, where a delay keeps the amplitude.
+/// A current loop of first order, 1/(lag s + 1), behind the command. Joins the actuator. Shows as a phase that
+/// bends and an amplitude that falls with frequency, where a delay keeps the amplitude.
 inline constexpr effect actuator_lag{
     .name = "actuator_lag",
     .label = "current-loop lag",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The drive clips below the limit that the controller knows. Joins the actuator. Shows only while the command is large: the
-/// axis gets less than it was told, always the same force.
+/// The drive clips below the limit that the controller knows. Joins the actuator. Shows only while the command
+/// is large: the axis gets less than it was told, always the same force.
 inline constexpr effect actuator_saturation{
     .name = "actuator_saturation",
     .label = "drive limit below the controller's",

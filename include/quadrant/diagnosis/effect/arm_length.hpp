@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The payload sits at another distance than described. Moves the inertia with the square of the length and gravity with the
+/// The payload sits at another distance than described. Moves the inertia with the square of the length and
+/// gravity with the
 /// length itself: where the inertia of the payload is too small to show, it is one group with `payload_mass`.
 inline constexpr effect arm_length{
     .name = "arm_length",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// B (1 + b sign v) v + Fc (1 + c sign v) sign v: friction differs by direction. Joins the force, in the friction
-/// box. The Coulomb part alone is a constant force, moving and at rest; the viscous part is not.
+/// B (1 + b sign v) v + Fc (1 + c sign v) sign v: friction differs by direction. Joins the force, in the
+/// friction box. The Coulomb part alone is a constant force, moving and at rest; the viscous part is not.
 inline constexpr effect asymmetric_friction{
     .name = "asymmetric_friction",
     .label = "friction that differs by direction",

@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Play between the motor and the encoder on the load: the reading stands still until the motor has crossed it. Joins the
-/// position. Shows at each reversal as a pause of the reading at full command, as long as the play is wide. A direct drive
+/// Play between the motor and the encoder on the load: the reading stands still until the motor has crossed it.
+/// Joins the position. Shows at each reversal as a pause of the reading at full command, as long as the play is
+/// wide. A direct drive
 /// cannot have it: name it in excluded_effects.
 inline constexpr effect backlash{
     .name = "backlash",

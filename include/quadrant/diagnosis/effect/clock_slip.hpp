@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The drive's clock runs slower or faster than the controller's: now and then a set-point never arrives, or comes twice, and between these
-/// moments its age grows or shrinks by a period. Joins the drive.
+/// The drive's clock runs slower or faster than the controller's: now and then a set-point never arrives, or
+/// comes twice, and between these moments its age grows or shrinks by a period. Joins the drive.
 inline constexpr effect clock_slip{
     .name = "clock_slip",
     .label = "clocks that slip",

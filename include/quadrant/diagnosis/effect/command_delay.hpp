@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Set-points reach the loops of the drive later (or earlier) than described. Joins the drive. Shows as a force that follows the
-/// velocity and acceleration of the set-points.
+/// Set-points reach the loops of the drive later (or earlier) than described. Joins the drive. Shows as a force
+/// that follows the velocity and acceleration of the set-points.
 inline constexpr effect command_delay{
     .name = "command_delay",
     .label = "delay of the set-points",

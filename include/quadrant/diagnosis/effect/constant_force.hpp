@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// A force that never changes: gravity on a tilted axis, an amplifier's offset. Joins the force, with the motor's
-/// sign. Shows as a residual with a mean.
+/// A force that never changes: gravity on a tilted axis, an amplifier's offset. Joins the force, with the
+/// motor's sign. Shows as a residual with a mean.
 inline constexpr effect constant_force{
     .name = "constant_force",
     .label = "constant force",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = Fc sign(v), stick at rest [Armstrong1994]. Joins the force, in the friction box. Shows as a residual that
-/// jumps with the direction and does not change with speed.
+/// F = Fc sign(v), stick at rest [Armstrong1994]. Joins the force, in the friction box. Shows as a residual
+/// that jumps with the direction and does not change with speed.
 inline constexpr effect coulomb_friction{
     .name = "coulomb_friction",
     .label = "Coulomb friction",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// M c a_other: the acceleration of the other axis forces this one, through a guide that is not square or a base that gives
-/// way. Joins the force. Shows while the other axis accelerates, at rest too.
+/// M c a_other: the acceleration of the other axis forces this one, through a guide that is not square or a
+/// base that gives way. Joins the force. Shows while the other axis accelerates, at rest too.
 inline constexpr effect cross_coupling{
     .name = "cross_coupling",
     .label = "coupling from the other axis",

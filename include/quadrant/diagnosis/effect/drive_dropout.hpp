@@ -9,8 +9,9 @@ struct stretch_of_rows {
     std::size_t begin = 0, end = 0;
 };
 
-/// The part in which a force of zero in place of the drive's explains the most of what is left: the largest sum of
-/// r^2 - (r - u)^2 over neighbouring rows. Empty where it explains less than half of the drive's own force there.
+/// The part in which a force of zero in place of the drive's explains the most of what is left: the largest sum
+/// of r^2 - (r - u)^2 over neighbouring rows. Empty where it explains less than half of the drive's own force
+/// there.
 inline stretch_of_rows silent_part(std::span<const double> left, std::span<const double> given) {
     stretch_of_rows best;
     double most = 0, sum = 0;
@@ -35,8 +36,8 @@ inline stretch_of_rows silent_part(std::span<const double> left, std::span<const
 
 namespace quadrant::diagnosis::suspect {
 
-/// The drive gives nothing in one part of the record, and no column says so: it switched itself off, or its power failed. Joins the
-/// drive. The two times are of the record, so that no machine file has a key for them.
+/// The drive gives nothing in one part of the record, and no column says so: it switched itself off, or its
+/// power failed. Joins the drive. The two times are of the record, so that no machine file has a key for them.
 inline constexpr effect drive_dropout{
     .name = "drive_dropout",
     .label = "drive that switched itself off",

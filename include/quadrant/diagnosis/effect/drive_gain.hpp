@@ -16,8 +16,8 @@ inline constexpr std::array<std::pair<const char*, double drive_model::*>, 5> dr
 
 namespace quadrant::diagnosis::suspect {
 
-/// A gain inside the drive differs: the velocity of a volt, P or I of the velocity loop, P of the position loop, duty of a position
-/// error. Joins the drive. Shows as a force that follows the drive's own error.
+/// A gain inside the drive differs: the velocity of a volt, P or I of the velocity loop, P of the position
+/// loop, duty of a position error. Joins the drive. Shows as a force that follows the drive's own error.
 inline constexpr effect drive_gain{
     .name = "drive_gain",
     .label = "gain inside the drive",

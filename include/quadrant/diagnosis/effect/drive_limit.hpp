@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The drive gives less force, or less duty, than described at most. Joins the drive. Shows only while its error is large.
+/// The drive gives less force, or less duty, than described at most. Joins the drive. Shows only while its
+/// error is large.
 inline constexpr effect drive_limit{
     .name = "drive_limit",
     .label = "limit inside the drive",

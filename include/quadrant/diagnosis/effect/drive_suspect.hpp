@@ -5,8 +5,8 @@
 /// What the suspects of a drive with loops of its own share.
 namespace quadrant::diagnosis::detail {
 
-/// A number that is freed between a quarter and four times its value, from the best of several ratios: where friction holds a model that
-/// is driven too weakly, no slope leads out.
+/// A number that is freed between a quarter and four times its value, from the best of several ratios: where
+/// friction holds a model that is driven too weakly, no slope leads out.
 inline parameter freed_from_the_best(const screening& s, const char* key, double& (*of)(plant_model&)) {
     plant_model leader = s.leader;
     const double value = of(leader);
@@ -16,7 +16,8 @@ inline parameter freed_from_the_best(const screening& s, const char* key, double
     return out;
 }
 
-/// One start that frees a number of the drive between a quarter and four times its value; none where the drive has no such number.
+/// One start that frees a number of the drive between a quarter and four times its value; none where the drive
+/// has no such number.
 inline void free_if_there(std::vector<std::vector<parameter>>& starts, const screening& s, const char* key,
                           double& (*of)(plant_model&)) {
     plant_model leader = s.leader;

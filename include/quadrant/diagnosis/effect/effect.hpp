@@ -44,8 +44,8 @@ inline parameter freed(const char* key, double& (*of)(plant_model&), double valu
             .step = 1e-3};
 }
 
-/// The value from which a fit begins, of those that may be tried: where the gradient sees nothing (a dead zone, a limit,
-/// a play) only looking helps. Each costs one pass over the log.
+/// The value from which a fit begins, of those that may be tried: where the gradient sees nothing (a dead zone,
+/// a limit, a play) only looking helps. Each costs one pass over the log.
 inline double best_start(const screening& s, double& (*of)(plant_model&), const std::vector<double>& values) {
     const fitter fit(s.record.observer, s.record.score);
     std::vector<fit_course> looks;
@@ -61,8 +61,8 @@ inline double best_start(const screening& s, double& (*of)(plant_model&), const 
     return values[static_cast<std::size_t>(least - looks.begin())];
 }
 
-/// Where the fit of a limit begins: the best of several shares of the largest value that the record shows. No slope leads to a limit that
-/// clips nothing.
+/// Where the fit of a limit begins: the best of several shares of the largest value that the record shows. No
+/// slope leads to a limit that clips nothing.
 inline parameter limit_below(const screening& s, const char* key, double& (*of)(plant_model&), double most) {
     return {.key = key,
             .of = of,

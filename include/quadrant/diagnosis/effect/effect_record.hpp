@@ -34,7 +34,8 @@ struct effect {
     std::array<std::string_view, 3> equivalent{};
     /// An effect that this one holds as a part: no second name for it.
     std::string_view holds{};
-    /// Every axis has some of it: effects of this kind are tried together from the start, as in a linear regression.
+    /// Every axis has some of it: effects of this kind are tried together from the start, as in a linear
+    /// regression.
     bool everyday = false;
     std::string_view shows{}; ///< as what it shows in the residual force
     key_list keys{};

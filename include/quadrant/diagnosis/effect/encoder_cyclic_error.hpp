@@ -8,9 +8,9 @@ inline harmonics& encoder_cyclic_error_harmonics(plant_model& p) { return p.cycl
 
 namespace quadrant::diagnosis::suspect {
 
-/// Reading = x + cyclic sin(2 pi x / period + phase): the interpolation error of an encoder, or an eccentric scale. Joins the
-/// measurement. Keeps its size in position at every speed, so that as a force it grows with the square of the speed; a
-/// periodic force does the reverse.
+/// Reading = x + cyclic sin(2 pi x / period + phase): the interpolation error of an encoder, or an eccentric
+/// scale. Joins the measurement. Keeps its size in position at every speed, so that as a force it grows with
+/// the square of the speed; a periodic force does the reverse.
 inline constexpr effect encoder_cyclic_error{
     .name = "encoder_cyclic_error",
     .label = "cyclic encoder error",
@@ -56,7 +56,8 @@ inline constexpr effect encoder_cyclic_error{
         s.record.observer.run(s.leader, innovation);
         innovation.resize(s.record.position.size()); // those of the position
         std::vector<std::vector<parameter>> out;
-        // Coarse and fine periods apart: at constant speed the rows themselves are a grating, and alias one into the other.
+        // Coarse and fine periods apart: at constant speed the rows themselves are a grating, and alias one
+        // into the other.
         const double shortest = std::max(8 * s.record.resolution, travel / 1e5);
         for (double longest = 0.5 * travel; longest > shortest; longest /= 20)
             for (double period : spatial_peaks(innovation, s.record.position, longest,

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = kf u with another kf than described. Joins the actuator gain. Scales whatever the command does: acceleration,
-/// and also what balances friction and offset.
+/// F = kf u with another kf than described. Joins the actuator gain. Scales whatever the command does:
+/// acceleration, and also what balances friction and offset.
 inline constexpr effect force_constant{
     .name = "force_constant",
     .label = "force constant",

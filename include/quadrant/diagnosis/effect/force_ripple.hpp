@@ -8,9 +8,9 @@ inline harmonics& force_ripple_harmonics(plant_model& p) { return p.ripple; }
 
 namespace quadrant::diagnosis::suspect {
 
-/// kf (1 + ripple sin(2 pi x / period + phase)): the force of a motor varies with the magnets. Joins the actuator's gain.
-/// Shows as a residual that repeats with position and grows with the command; without command there is none, which tells
-/// it from cogging.
+/// kf (1 + ripple sin(2 pi x / period + phase)): the force of a motor varies with the magnets. Joins the
+/// actuator's gain. Shows as a residual that repeats with position and grows with the command; without command
+/// there is none, which tells it from cogging.
 inline constexpr effect force_ripple{
     .name = "force_ripple",
     .label = "force ripple",

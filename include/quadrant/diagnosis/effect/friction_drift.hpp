@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Fc (1 + drift (1 - exp(-t / time))) sign(v): the Coulomb level changes over the log, as the guides warm up. Joins the
-/// force, in the friction box. Shows as the same stroke that needs another force later.
+/// Fc (1 + drift (1 - exp(-t / time))) sign(v): the Coulomb level changes over the log, as the guides warm up.
+/// Joins the force, in the friction box. Shows as the same stroke that needs another force later.
 inline constexpr effect friction_drift{
     .name = "friction_drift",
     .label = "friction that drifts with time",

@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// The sine and cosine of the position that the residual force holds, beside friction that is not modelled either:
+/// The sine and cosine of the position that the residual force holds, beside friction that is not modelled
+/// either:
 /// -residual = sine sin q + cosine cos q + viscous v + coulomb sign v.
 inline Eigen::Vector2d weight_in_residual(const screening& s) {
     const double fast = 0.01 * s.record.scale.speed;
@@ -23,8 +24,9 @@ inline Eigen::Vector2d weight_in_residual(const screening& s) {
 
 namespace quadrant::diagnosis::suspect {
 
-/// Torque -m g l sin(q - q0): the weight of an arm, a tilting table, an unbalanced chuck. Joins the force of a rotary axis.
-/// Shows as a residual that follows the sine of the position, at rest too. Over a small angle a sine is a constant force and a
+/// Torque -m g l sin(q - q0): the weight of an arm, a tilting table, an unbalanced chuck. Joins the force of a
+/// rotary axis. Shows as a residual that follows the sine of the position, at rest too. Over a small angle a
+/// sine is a constant force and a
 /// spring: one group there.
 inline constexpr effect gravity{
     .name = "gravity",

@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// How the missing friction grows with what the drive transmits: `slope` beside a level that stays, `share` without one.
+/// How the missing friction grows with what the drive transmits: `slope` beside a level that stays, `share`
+/// without one.
 struct friction_over_load {
     double slope = 0, share = 0;
 };
@@ -31,9 +32,9 @@ inline friction_over_load friction_over_load_in(const screening& s) {
 
 namespace quadrant::diagnosis::suspect {
 
-/// The Coulomb level grows by load_friction |motor - load|, what the drive carries between the motor and the constant forces on
-/// its load (constant force, spring, gravity): teeth and nuts that are pressed together rub. Joins the friction. Shows as a
-/// jump with the direction that is large where the motor pushes much.
+/// The Coulomb level grows by load_friction |motor - load|, what the drive carries between the motor and the
+/// constant forces on its load (constant force, spring, gravity): teeth and nuts that are pressed together rub.
+/// Joins the friction. Shows as a jump with the direction that is large where the motor pushes much.
 inline constexpr effect load_friction{
     .name = "load_friction",
     .label = "friction that grows with the load",

@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// M dv/dt with another M than described. Joins the inertia. Shows as a residual proportional to the acceleration,
+/// M dv/dt with another M than described. Joins the inertia. Shows as a residual proportional to the
+/// acceleration,
 /// and only there: friction and offset keep their size, which is what tells it from the force constant.
 inline constexpr effect mass{
     .name = "mass",

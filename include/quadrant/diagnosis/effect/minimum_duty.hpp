@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The servo adds another least duty in the direction of its error than described. Joins the drive. Shows as a force of one size that
-/// turns with the sign of the error; without a measured duty it is much like friction in the direction of motion.
+/// The servo adds another least duty in the direction of its error than described. Joins the drive. Shows as a
+/// force of one size that turns with the sign of the error; without a measured duty it is much like friction in
+/// the direction of motion.
 inline constexpr effect minimum_duty{
     .name = "minimum_duty",
     .label = "least duty of the servo",

@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A payload is a part of the described inertia and gravity. A hundredth is the rounding of numbers with two digits.
+/// A payload is a part of the described inertia and gravity. A hundredth is the rounding of numbers with two
+/// digits.
 inline key_fault payload_beyond_its_axis(const axis_description& a) {
     constexpr double rounding = 1.01;
     const plant_model p(a, 0);
@@ -37,8 +38,9 @@ inline std::string feedforwards_of_payload(const plant_model& p, double, std::st
 
 namespace quadrant::diagnosis::suspect {
 
-/// Another mass at the end of the arm than described. Moves the inertia by m l^2 and the gravity torque by m g l together, which
-/// `mass` and `gravity` do one by one. Without `gravity_torque_Nm` the arm turns in a level plane.
+/// Another mass at the end of the arm than described. Moves the inertia by m l^2 and the gravity torque by m g
+/// l together, which `mass` and `gravity` do one by one. Without `gravity_torque_Nm` the arm turns in a level
+/// plane.
 inline constexpr effect payload_mass{
     .name = "payload_mass",
     .label = "another payload",

@@ -8,9 +8,9 @@ inline harmonics& position_dependent_friction_harmonics(plant_model& p) { return
 
 namespace quadrant::diagnosis::suspect {
 
-/// Fc (1 + amplitude sin(2 pi x / period + phase)) sign(v): the Coulomb level varies along the travel, as on a guide that is
-/// not straight or a screw that is tight at one end. Joins the force, in the friction box. Shows as a residual that repeats
-/// with position and turns its sign with the direction; cogging does not turn.
+/// Fc (1 + amplitude sin(2 pi x / period + phase)) sign(v): the Coulomb level varies along the travel, as on a
+/// guide that is not straight or a screw that is tight at one end. Joins the force, in the friction box. Shows
+/// as a residual that repeats with position and turns its sign with the direction; cogging does not turn.
 inline constexpr effect position_dependent_friction{
     .name = "position_dependent_friction",
     .label = "friction that varies along the travel",

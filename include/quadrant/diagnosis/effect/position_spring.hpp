@@ -4,9 +4,9 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = -k x + F0: a cable carrier, a bellows, a spring-balanced axis. Joins the force. Shows as a residual proportional to
-/// the position, at rest too, that does not turn with the direction. Where the spring is at ease is its own: the constant
-/// belongs to it, so that the zero of the position does not matter.
+/// F = -k x + F0: a cable carrier, a bellows, a spring-balanced axis. Joins the force. Shows as a residual
+/// proportional to the position, at rest too, that does not turn with the direction. Where the spring is at
+/// ease is its own: the constant belongs to it, so that the zero of the position does not matter.
 inline constexpr effect position_spring{
     .name = "position_spring",
     .label = "spring force",

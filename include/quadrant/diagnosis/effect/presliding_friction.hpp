@@ -4,9 +4,10 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Friction that gives way before it slips and remembers where it turned: elements in parallel, each a spring with its share
-/// of the friction level (Maxwell-slip [Jamaludin2008] eq. 3.6-3.8; Dahl and LuGre have nearly the same curve). Joins the
-/// force, in the friction box. Shows within some ten micrometres after each reversal and in small motions. Every contact
+/// Friction that gives way before it slips and remembers where it turned: elements in parallel, each a spring
+/// with its share of the friction level (Maxwell-slip [Jamaludin2008] eq. 3.6-3.8; Dahl and LuGre have nearly
+/// the same curve). Joins the force, in the friction box. Shows within some ten micrometres after each reversal
+/// and in small motions. Every contact
 /// gives way a little: ten times record_scales::give() is no cause.
 inline constexpr effect presliding_friction{
     .name = "presliding_friction",

@@ -15,8 +15,9 @@ inline constexpr own_law drag{.name = "quadratic_drag",
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = -q v |v|: air that a fast table pushes, oil that a way cover squeezes, a fan. Joins the force. Shows as a residual that
-/// grows with the square of the speed and turns its sign with it; viscous friction grows with the speed itself.
+/// F = -q v |v|: air that a fast table pushes, oil that a way cover squeezes, a fan. Joins the force. Shows as
+/// a residual that grows with the square of the speed and turns its sign with it; viscous friction grows with
+/// the speed itself.
 inline constexpr effect quadratic_drag{
     .name = detail::drag.name,
     .label = "drag with the square of the speed",

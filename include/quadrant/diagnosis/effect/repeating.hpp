@@ -19,8 +19,8 @@ void add_harmonic(std::vector<parameter>& ps, const char* key, double size) {
     amplitude([](plant_model& p) -> double& { return Box(p).sine[I]; });
 }
 
-/// Period and amplitudes of the harmonics, one to `Count`, each up to `size`. The period moves by one line of the
-/// spectrum, period/length of the record along z, or by a tenth.
+/// Period and amplitudes of the harmonics, one to `Count`, each up to `size`. The period moves by one line of
+/// the spectrum, period/length of the record along z, or by a tenth.
 template <harmonics_of Box, std::size_t Count>
 std::vector<parameter> repeating(const char* period_key, const char* size_key, double period, double length,
                                  double size) {
@@ -54,9 +54,9 @@ std::array<double, Count> comb(std::span<const double> signal, std::span<const d
     return power;
 }
 
-/// The two periods whose harmonics, down to `shortest`, gather most of the signal. A peak of the spectrum may be any harmonic,
-/// but a longer period gathers a line's own power again and must find more of its own, else it is the same line under a name
-/// that repeats.
+/// The two periods whose harmonics, down to `shortest`, gather most of the signal. A peak of the spectrum may
+/// be any harmonic, but a longer period gathers a line's own power again and must find more of its own, else it
+/// is the same line under a name that repeats.
 template <std::size_t Count>
 std::vector<double> comb_periods(std::span<const double> signal, std::span<const double> z, double longest,
                                  double shortest, std::size_t skip) {
@@ -82,7 +82,8 @@ std::vector<double> comb_periods(std::span<const double> signal, std::span<const
     const auto is = [line = all.front().period / (*high - *low)](double ratio) { // a whole number
         return std::abs(ratio / std::round(ratio) - 1) < line;
     };
-    // Beside the one that gathers most the shortest that it may be a multiple of; where there is none, the next best.
+    // Beside the one that gathers most the shortest that it may be a multiple of; where there is none, the next
+    // best.
     const found* second = nullptr;
     for (const found& f : all)
         if (const double ratio = all.front().period / f.period; ratio > 1.5 && is(ratio) &&
@@ -96,8 +97,9 @@ std::vector<double> comb_periods(std::span<const double> signal, std::span<const
     return out;
 }
 
-/// Whether the motion repeats with one of the first multiples of this period: it is then where it was one time before, and
-/// was not in between. What repeats in time with the motion cannot be told from what follows the motion.
+/// Whether the motion repeats with one of the first multiples of this period: it is then where it was one time
+/// before, and was not in between. What repeats in time with the motion cannot be told from what follows the
+/// motion.
 inline bool motion_repeats(std::span<const double> position, double rows) {
     const auto apart = [&](double shift) {
         const auto by = static_cast<std::size_t>(std::lround(shift));

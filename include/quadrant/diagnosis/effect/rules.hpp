@@ -15,7 +15,8 @@ struct rules {
     double least_shrink_of_band = 0.5; ///< the same of what one channel sees
     double structure = 5;              ///< log-score of blocks above their limit that still counts as the floor
     double immaterial =
-        0.3; ///< of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
+        /// of the tolerance cloud's residual force: what is left below it is no finding (a tenth in energy)
+        0.3;
     double near_floor = 3; ///< times the noise's residual force: more is left is not explained
     std::size_t most_causes = 4, beam = 2;
     std::size_t in_pairs = 4; ///< of the single effects that are tried two at once where none pays
@@ -26,15 +27,15 @@ struct rules {
     int first_look = 2;       ///< steps from each start
     bool near_rivals = false; ///< a cause's rivals are only those that gained something where it was found
     std::size_t forms = 4;    ///< of the forms without a name that are fitted to the end
-    /// When the search ends with what it has; the names that it did not come to are told, and count against what it has.
-    /// With such an end the result depends on how fast the computer is.
+    /// When the search ends with what it has; the names that it did not come to are told, and count against
+    /// what it has. With such an end the result depends on how fast the computer is.
     using clock = std::chrono::steady_clock;
     clock::time_point until = clock::time_point::max();
     clock::time_point (*now)() = clock::now; ///< another clock, for tests
 };
 
-/// Some half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to the end, fewer
-/// rivals. What is named is fitted and judged as ever, on the whole record.
+/// Some half of the time: a second way only where it is nearly as good, shorter first looks, fewer fitted to
+/// the end, fewer rivals. What is named is fitted and judged as ever, on the whole record.
 inline rules fast_rules() {
     rules r;
     r.abreast = 0.8;

@@ -5,8 +5,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Whether one gain is above another by more than a margin, and not in a few places only: the scatter of the places where either has a say
-/// leaves one chance in a hundred.
+/// Whether one gain is above another by more than a margin, and not in a few places only: the scatter of the
+/// places where either has a say leaves one chance in a hundred.
 inline bool everywhere(const std::vector<double>& gain, const std::vector<double>& other) {
     std::vector<double> more;
     for (std::size_t i = 0; i < gain.size(); ++i)
@@ -21,9 +21,10 @@ inline bool everywhere(const std::vector<double>& gain, const std::vector<double
 
 namespace quadrant::diagnosis::suspect {
 
-/// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator. Shows as
-/// pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are found. A suspect when
-/// they speak for a loss clearly more than for none and than for pulses of half or twice the size or turned over, and
+/// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator.
+/// Shows as pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are
+/// found. A suspect when they speak for a loss clearly more than for none and than for pulses of half or twice
+/// the size or turned over, and
 /// in most places: losses know nothing of the motion.
 inline constexpr effect sample_loss{
     .name = "sample_loss",

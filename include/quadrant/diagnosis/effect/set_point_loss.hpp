@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Which they were is not known: a model has what
-/// they do on average, a set-point that lags.
+/// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Which they were is not
+/// known: a model has what they do on average, a set-point that lags.
 inline constexpr effect set_point_loss{
     .name = "set_point_loss",
     .label = "lost set-points",

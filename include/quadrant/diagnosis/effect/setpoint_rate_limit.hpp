@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The servo follows its set-points at most so fast: a profile velocity in its registers. Joins the drive. Shows while the set-points
-/// move faster.
+/// The servo follows its set-points at most so fast: a profile velocity in its registers. Joins the drive.
+/// Shows while the set-points move faster.
 inline constexpr effect setpoint_rate_limit{
     .name = "setpoint_rate_limit",
     .label = "profile velocity of the servo",

@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = (Fs - Fc) exp(-|v|/vs) sign(v) on top of the Coulomb level [Jamaludin2008] eq. (3.5). Joins the force, in the
-/// friction box. Shows as a residual that grows as the axis gets slower.
+/// F = (Fs - Fc) exp(-|v|/vs) sign(v) on top of the Coulomb level [Jamaludin2008] eq. (3.5). Joins the force,
+/// in the friction box. Shows as a residual that grows as the axis gets slower.
 inline constexpr effect stribeck_friction{
     .name = "stribeck_friction",
     .label = "Stribeck friction",

@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Frequencies at which a small second mass would take most out of the innovations, the best first: one pass for each of a
-/// ladder whose rungs are as close as a light damping is wide, and where it leads uphill the gain of a linear step in its mass.
+/// Frequencies at which a small second mass would take most out of the innovations, the best first: one pass
+/// for each of a ladder whose rungs are as close as a light damping is wide, and where it leads uphill the gain
+/// of a linear step in its mass.
 inline std::vector<double> ringing_frequencies(const screening& s, double lowest, double highest,
                                                std::size_t most) {
     constexpr double rung = 1.12;
@@ -49,9 +50,9 @@ inline std::vector<double> ringing_frequencies(const screening& s, double lowest
 
 namespace quadrant::diagnosis::suspect {
 
-/// A second mass on a spring, part of the moving mass, that the encoder does not see: anti-resonance at the frequency given
-/// (the first mass held), resonance above it [Altintas2012] ch. 3. Joins the inertia. Shows as ringing after each jerk, and in
-/// a multi-sine as a phase that turns twice.
+/// A second mass on a spring, part of the moving mass, that the encoder does not see: anti-resonance at the
+/// frequency given (the first mass held), resonance above it [Altintas2012] ch. 3. Joins the inertia. Shows as
+/// ringing after each jerk, and in a multi-sine as a phase that turns twice.
 inline constexpr effect structural_resonance{
     .name = "structural_resonance",
     .label = "structural resonance",

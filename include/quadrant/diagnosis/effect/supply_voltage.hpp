@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The drive runs from another voltage than described. Joins the drive. Scales the torque of every duty, as the torque constant does.
+/// The drive runs from another voltage than described. Joins the drive. Scales the torque of every duty, as the
+/// torque constant does.
 inline constexpr effect supply_voltage{
     .name = "supply_voltage",
     .label = "supply voltage of the drive",

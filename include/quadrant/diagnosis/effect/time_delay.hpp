@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// The command acts later (or earlier) than described: u(t - delay). Joins the actuator. Shows as a phase that grows
-/// with frequency while the amplitude stays.
+/// The command acts later (or earlier) than described: u(t - delay). Joins the actuator. Shows as a phase that
+/// grows with frequency while the amplitude stays.
 inline constexpr effect time_delay{
     .name = "time_delay",
     .label = "time delay",

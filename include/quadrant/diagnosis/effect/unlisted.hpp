@@ -2,8 +2,9 @@
 #pragma once
 #include "own_effect.hpp"
 
-/// What no list names: a force of any smooth form over one quantity. Never a cause; a rival to the causes. Where such a form
-/// predicts held-out motion better than a name does, the name is the nearest of a list, not the effect.
+/// What no list names: a force of any smooth form over one quantity. Never a cause; a rival to the causes.
+/// Where such a form predicts held-out motion better than a name does, the name is the nearest of a list, not
+/// the effect.
 namespace quadrant::diagnosis::unlisted {
 
 namespace detail {
@@ -11,8 +12,8 @@ namespace detail {
 enum class over { position, velocity, time, command };
 inline constexpr std::size_t terms = 6;
 
-/// Legendre polynomials between two ends, constant outside: value[0], value[1] the ends, then the size of each [N]. They reach
-/// over the whole range, so that each stretch of motion says something about all of it.
+/// Legendre polynomials between two ends, constant outside: value[0], value[1] the ends, then the size of each
+/// [N]. They reach over the whole range, so that each stretch of motion says something about all of it.
 template <over Of> double curve(const law_point& now, const own_law::values& value, own_law::memory&) {
     const double z = Of == over::position   ? now.position
                      : Of == over::velocity ? now.velocity
@@ -76,8 +77,8 @@ inline constexpr effect by_position = detail::form<detail::over::position>(
     by_velocity = detail::form<detail::over::velocity>("the velocity"), ///< as friction would be
     by_time = detail::form<detail::over::time>("time"),                 ///< as what warms up or wears would be
     by_command = detail::form<detail::over::command>("the command");    ///< as an amplifier that bends would be
-/// A force that no list names, as a free curve over one of four quantities: where it predicts best, a cause says so
-/// (better_form).
+/// A force that no list names, as a free curve over one of four quantities: where it predicts best, a cause
+/// says so (better_form).
 inline constexpr std::array curves{&by_position, &by_velocity, &by_time, &by_command};
 
 } // namespace quadrant::diagnosis::unlisted

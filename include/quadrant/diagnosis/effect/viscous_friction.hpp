@@ -4,8 +4,8 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = B v with another B than described. Joins the force, in the friction box. Shows as a residual proportional to
-/// the velocity.
+/// F = B v with another B than described. Joins the force, in the friction box. Shows as a residual
+/// proportional to the velocity.
 inline constexpr effect viscous_friction{
     .name = "viscous_friction",
     .label = "viscous friction",

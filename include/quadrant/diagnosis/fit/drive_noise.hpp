@@ -8,8 +8,9 @@
 
 namespace quadrant::diagnosis {
 
-/// What the replay of a drive makes of noise in the position that it is fed: its force for a reading that is wrong by one unit in a
-/// single row, in the middle of a record at rest [N/m]. An integral keeps its share to the end.
+/// What the replay of a drive makes of noise in the position that it is fed: its force for a reading that is
+/// wrong by one unit in a single row, in the middle of a record at rest [N/m]. An integral keeps its share to
+/// the end.
 inline std::vector<double> reaction_to_reading(const plant_model& described, const driven_motion& of) {
     drive_model d = described.drive;
     d.force_limit = d.maximum_duty = d.rate_limit = drive_model::none;
@@ -28,11 +29,12 @@ inline std::vector<double> reaction_to_reading(const plant_model& described, con
     return out;
 }
 
-/// The integral of a velocity loop inside a position loop adds up the noise of the position reading: each row adds an independent
-/// step to the replayed force, which drifts as far as the record is long. Below the frequency w where this drift exceeds the noise
-/// that the reading itself makes of a mass,
+/// The integral of a velocity loop inside a position loop adds up the noise of the position reading: each row
+/// adds an independent step to the replayed force, which drifts as far as the record is long. Below the
+/// frequency w where this drift exceeds the noise that the reading itself makes of a mass,
 ///   M w^2 = position_gain velocity_integral / w,
-/// no force can be distinguished from it. Returns the pole of the filter that takes the drift out of the innovations; 1: no drift.
+/// no force can be distinguished from it. Returns the pole of the filter that takes the drift out of the
+/// innovations; 1: no drift.
 inline double drift_pole_of(const plant_model& described, double period) {
     const drive_model& d = described.drive;
     if (d.kind != drive_kind::position || !d.has_integral() || !(d.position_gain > 0)) return 1;
@@ -57,7 +59,8 @@ inline std::vector<double> innovation_of(const std::vector<double>& reaction, do
     }
     return out;
 }
-/// Gains of a channel for noise that makes these innovations of a single wrong reading: of white noise, and of the worst tone.
+/// Gains of a channel for noise that makes these innovations of a single wrong reading: of white noise, and of
+/// the worst tone.
 inline void set_gains(channel& c, const std::vector<double>& e) {
     const std::size_t n = e.size(), m = c.mean;
     std::vector<double> sum(n + 1, 0.0), mean(n, 0.0);

@@ -10,8 +10,8 @@
 
 namespace quadrant::diagnosis {
 
-/// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so that no pivot
-/// depends on them.
+/// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so
+/// that no pivot depends on them.
 template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
     const Eigen::VectorXd size =
         a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
@@ -268,14 +268,16 @@ private:
     scoring scoring_;
 };
 
-/// One fit on its way: it asks for the innovations of some plants, takes them, and asks again, until it is done. Many courses that
-/// ask at the same time share the lanes of a pass (fitter::run).
+/// One fit on its way: it asks for the innovations of some plants, takes them, and asks again, until it is
+/// done. Many courses that ask at the same time share the lanes of a pass (fitter::run).
 class fit_course {
 public:
-    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a first look
+    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a
+    /// first look
     /// at one more effect: the others' slopes are those of the model without it.
-    /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again. Slopes cost a pass
-    /// for each parameter, a step costs one; the last steps are taken with new slopes in any case.
+    /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again.
+    /// Slopes cost a pass for each parameter, a step costs one; the last steps are taken with new slopes in any
+    /// case.
     fit_course(const fitter& f, const plant_model& start, const std::vector<parameter>& ps, int iterations,
                fitter::columns known = {}, int chords = 4)
         : fitter_(&f), known_(std::move(known)), iterations_(iterations),

@@ -4,7 +4,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// The log of one axis with the acceleration of the axis of its kind that moves most beside it, zero-phase filtered to the
+/// The log of one axis with the acceleration of the axis of its kind that moves most beside it, zero-phase
+/// filtered to the
 /// bandwidth of the residual force: what cross-coupling would follow.
 inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period,
                                double bandwidth_Hz) {

@@ -79,8 +79,8 @@ public:
     void end(const pass_input& in, std::size_t k) {
         advance(newer_, state_, command(in, k, 0), Real(in.period) - delay_.late, in.substeps);
         if (!in.acceleration) return;
-        // Second difference of the model's positions. Its corrections at row k are taken out: the velocity's by the jump
-        // between the two periods, the position's because each way begins behind it.
+        // Second difference of the model's positions. Its corrections at row k are taken out: the velocity's by
+        // the jump between the two periods, the position's because each way begins behind it.
         const Real way = state_.load - begun_at_, period(in.period);
         keep(in, in.acceleration, k,
              k == 0 ? Real(0)
@@ -162,8 +162,8 @@ private:
     Real way_{0}, ended_with_{0};      ///< in the period before: way, velocity at its end
 };
 
-/// The observer of predictor.hpp on up to lanes times groups plants, from the first row to the last. The groups take turns, so that
-/// the processor works on the next one while a step waits for its own last result.
+/// The observer of predictor.hpp on up to lanes times groups plants, from the first row to the last. The groups
+/// take turns, so that the processor works on the next one while a step waits for its own last result.
 template <class Real> void pass(const pass_input& in) {
     constexpr std::size_t width = lane_count<Real>;
     std::vector<lane_group<Real>> groups;

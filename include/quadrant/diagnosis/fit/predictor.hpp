@@ -10,20 +10,22 @@
 
 namespace quadrant::diagnosis {
 
-/// The passes to use: those of this translation unit's instruction set; in a program that has more of them, those of the best set
-/// that the processor has.
+/// The passes to use: those of this translation unit's instruction set; in a program that has more of them,
+/// those of the best set that the processor has.
 #ifdef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 const pass_table& passes();
 #else
 inline const pass_table& passes() { return passes_of<>; }
 #endif
 
-/// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what the
-/// correction had to be. One pass, no drift of the double integrator, and a right model leaves only the encoder's
+/// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what
+/// the correction had to be. One pass, no drift of the double integrator, and a right model leaves only the
+/// encoder's
 /// rounding: the innovation
 ///   e[k] = y[k] - reading(x(t_k));  x += L1 e, v += L2 e;  then one period of the plant
 /// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
-/// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is short.
+/// A constant force error d shows as e = d T^2 / (M (1 - z)^2), which is d / (M (2 pi corner)^2) when T is
+/// short.
 struct predictor {
     /// e'[k] = e[k] - e[k-1] + pole e'[k-1]: makes a drift of independent steps a signal of one size.
     static void take_drift_out(std::vector<double>& e, double pole) {
@@ -46,9 +48,9 @@ struct predictor {
     double drift_pole =
         1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
-    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the model chose from
-    /// the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the second difference of the
-    /// model's positions around each row, over the square of the period [m/s^2].
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the
+    /// model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the
+    /// second difference of the model's positions around each row, over the square of the period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const {
         const std::span one(&plant, 1);
@@ -63,8 +65,8 @@ struct predictor {
         pass(one, command, into, acceleration);
         return 0;
     }
-    /// The same for several plants, some at a time side by side: a third of the time and less. One list of innovations a plant, of
-    /// accelerations where they are asked for, and of choices likewise.
+    /// The same for several plants, some at a time side by side: a third of the time and less. One list of
+    /// innovations a plant, of accelerations where they are asked for, and of choices likewise.
     void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
              std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const {
         for (std::size_t i = 0; i < plants.size();) {
@@ -79,14 +81,15 @@ struct predictor {
         }
     }
 
-    /// Rows of the innovations: those of the position, and behind them, where something was measured behind the drive, what the
-    /// drive gives otherwise.
+    /// Rows of the innovations: those of the position, and behind them, where something was measured behind the
+    /// drive, what the drive gives otherwise.
     std::size_t rows() const { return position.size() * (drive && drive->tapped() ? 2 : 1); }
 
     /// Both poles of the observer.
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
 
-    /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss tell it.
+    /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss
+    /// tell it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
                                       const loss_assumption& a) const {
         return lost_commands::find(command, innovation, loss_response(plant), whole_periods(plant.delay),
@@ -123,7 +126,8 @@ private:
         return out;
     }
 
-    /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share its replay.
+    /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share
+    /// its replay.
     void drive_each(std::span<const plant_model> plants, std::array<std::vector<double>, abreast>& own,
                     std::array<const double*, abreast>& command_of,
                     std::span<std::vector<double>> innovation) const {

@@ -20,15 +20,16 @@ struct axis_record {
     double bandwidth_Hz = 0; ///< of the residual force
     double resolution = 0;   ///< step of the position, at least the rounding of its column [m]
     record_scales scale{};   ///< what is long, fast and strong here
-    /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the command is logged.
+    /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the
+    /// command is logged.
     std::vector<double> reaction{};
     predictor observer;
     scoring score{};
 };
 
 /// Rows where one motion ends and the next begins: the velocity of the reference changes sign, starts or stops.
-/// Segments are at least five blocks long and at most thirty; they, not samples, are left out and resampled, because the
-/// samples inside one motion say the same thing again and again.
+/// Segments are at least five blocks long and at most thirty; they, not samples, are left out and resampled,
+/// because the samples inside one motion say the same thing again and again.
 inline std::vector<std::size_t> motion_segments(std::span<const double> motion, double period,
                                                 const record_scales& scale) {
     const auto shortest = std::max<std::size_t>(1, static_cast<std::size_t>(5 * scale.block() / period));
@@ -52,9 +53,9 @@ inline std::vector<std::size_t> motion_segments(std::span<const double> motion, 
 }
 
 /// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
-/// accelerations through the identical zero-phase filter. Both are second differences of positions, so that a right
-/// model leaves the encoder's rounding only. Rows that are left out (axis_record::left_out) count as if nothing were left
-/// there.
+/// accelerations through the identical zero-phase filter. Both are second differences of positions, so that a
+/// right model leaves the encoder's rounding only. Rows that are left out (axis_record::left_out) count as if
+/// nothing were left there.
 inline std::vector<double> residual_force(const plant_model& plant, std::span<const double> position,
                                           std::span<const double> model_acceleration, double period,
                                           double bandwidth_Hz, std::span<const unsigned char> left_out = {}) {
@@ -82,8 +83,8 @@ inline double residual_force_floor(double mass, double sigma, double period, dou
     return sigma * std::sqrt(sum);
 }
 
-/// White noise of the position in the innovations of a model, robust against what the model does not explain; not below the
-/// rounding of `resolution` [m].
+/// White noise of the position in the innovations of a model, robust against what the model does not explain;
+/// not below the rounding of `resolution` [m].
 inline double position_noise(const std::vector<double>& innovation, const scoring& s, double resolution) {
     std::vector<double> half_difference(innovation.size());
     for (std::size_t k = 1; k < half_difference.size(); ++k)
@@ -92,8 +93,8 @@ inline double position_noise(const std::vector<double>& innovation, const scorin
     return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
 }
 
-/// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in a sub-step, in ten
-/// at most. A contact of one spring, which stands for what no record shows, needs none.
+/// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in
+/// a sub-step, in ten at most. A contact of one spring, which stands for what no record shows, needs none.
 inline std::size_t substeps_of(const plant_model& described, double period) {
     const auto& f = described.friction;
     if (f.contact.elements < 2) return 1;
@@ -108,9 +109,9 @@ struct gap_rows {
     std::vector<unsigned char> gap, settling;
 };
 
-/// The rows of gaps that last longer than the response of the observer. It follows what was filled into a shorter one (a missing
-/// row, a wrong reading) without harm. Behind a longer one its state is unknown, as at the start of a record, and as many rows
-/// go by before it is judged.
+/// The rows of gaps that last longer than the response of the observer. It follows what was filled into a
+/// shorter one (a missing row, a wrong reading) without harm. Behind a longer one its state is unknown, as at
+/// the start of a record, and as many rows go by before it is judged.
 inline gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows, std::size_t skip) {
     gap_rows out;
     const std::size_t n = left_out.size();
@@ -131,7 +132,8 @@ inline gap_rows long_gaps(std::span<const unsigned char> left_out, double respon
     return out;
 }
 
-/// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not judged.
+/// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not
+/// judged.
 inline std::vector<std::size_t> lay_blocks(std::size_t block, std::size_t skip,
                                            const std::vector<unsigned char>& settling, std::size_t rows) {
     std::vector<std::size_t> out;
@@ -159,8 +161,8 @@ inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows)
     return out;
 }
 
-/// residual_force() of a model on a record. Where something was measured behind the drive, what this drive would have made otherwise is
-/// part of it, unless only what lies behind the drive is asked for.
+/// residual_force() of a model on a record. Where something was measured behind the drive, what this drive
+/// would have made otherwise is part of it, unless only what lies behind the drive is asked for.
 inline std::vector<double> residual_of(const axis_record& r, const plant_model& plant,
                                        std::span<const double> model_acceleration, bool behind_drive = false) {
     auto out = residual_force(plant, r.position, model_acceleration, r.period, r.bandwidth_Hz, r.left_out);

@@ -37,9 +37,10 @@ inline double mean_square(const std::vector<double>& x) {
     return sum;
 }
 
-/// The band of a regression. Noise in an explaining signal makes its factor too small by the noise's share of the variance, so
-/// the noise of the reading is a hundredth of the acceleration's variance at most. Below that limit, three times the frequency
-/// that holds 98 % of the velocity's power: faster dynamics are not of the motion. 0: there is no such band.
+/// The band of a regression. Noise in an explaining signal makes its factor too small by the noise's share of
+/// the variance, so the noise of the reading is a hundredth of the acceleration's variance at most. Below that
+/// limit, three times the frequency that holds 98 % of the velocity's power: faster dynamics are not of the
+/// motion. 0: there is no such band.
 inline double regression_band(const axis_log& log, double period) {
     constexpr double finer = 0.8, share = 0.01, motion = 0.98;
     const double noise = reading_noise(log.position, log.position_step);
@@ -67,8 +68,9 @@ struct regression_part {
 
 } // namespace detail
 
-/// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the position. All
-/// signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may have any size there.
+/// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
+/// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
+/// have any size there.
 inline axis_regression regress(const axis_log& log, double period) {
     axis_regression out;
     out.band_Hz = detail::regression_band(log, period);

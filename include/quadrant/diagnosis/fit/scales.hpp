@@ -7,9 +7,9 @@
 
 namespace quadrant::diagnosis {
 
-/// What is long, fast and strong on one axis, measured from its record. Every threshold, start value and bound of the
-/// diagnosis is a multiple of one of these or has no dimension, so that the answer does not depend on the size of the
-/// machine, on its speed or on the unit of its command (docs/diagnosis.md, Scales).
+/// What is long, fast and strong on one axis, measured from its record. Every threshold, start value and bound
+/// of the diagnosis is a multiple of one of these or has no dimension, so that the answer does not depend on
+/// the size of the machine, on its speed or on the unit of its command (docs/diagnosis.md, Scales).
 struct record_scales {
     double travel = 0;     ///< distance between the ends of the position [m]
     double speed = 0;      ///< largest velocity, smoothed to `corner_Hz` [m/s]
@@ -26,14 +26,15 @@ struct record_scales {
     double block() const { return 3 / corner_Hz; }
     /// Upper limit of the residual force's band.
     double bandwidth_Hz() const { return 5.0 / 3 * corner_Hz; }
-    /// Displacement by which every sticking contact gives way: no record shows less than half a count, and a millionth of
-    /// the travel matters to nobody [m].
+    /// Displacement by which every sticking contact gives way: no record shows less than half a count, and a
+    /// millionth of the travel matters to nobody [m].
     double give() const { return std::max({0.5 * count, 1e-6 * travel, least_give}); }
 };
 
 namespace detail {
 
-/// White noise of the position, its rounding included: robust rms of its third difference, which no smooth motion is in.
+/// White noise of the position, its rounding included: robust rms of its third difference, which no smooth
+/// motion is in.
 inline double reading_noise(std::span<const double> position, double resolution) {
     constexpr std::size_t rows = 64;
     std::vector<double> ms;
@@ -50,11 +51,12 @@ inline double reading_noise(std::span<const double> position, double resolution)
 
 } // namespace detail
 
-/// The scales of one axis. The time scale is the frequency at which a hundredth of the commanded force (its rms about the
-/// mean, F) displaces the mass M by the standard deviation s of the reading's noise:
+/// The scales of one axis. The time scale is the frequency at which a hundredth of the commanded force (its rms
+/// about the mean, F) displaces the mass M by the standard deviation s of the reading's noise:
 ///   M (2 pi corner)^2 s = F / 100
-/// At higher frequencies the noise hides such a force, at lower ones the record shows it. Neither the sample rate nor a
-/// controller is in it. It stays where the record can show it: 17 rows in a cycle at least, 30 cycles in the record.
+/// At higher frequencies the noise hides such a force, at lower ones the record shows it. Neither the sample
+/// rate nor a controller is in it. It stays where the record can show it: 17 rows in a cycle at least, 30
+/// cycles in the record.
 inline record_scales scales_of(const plant_description& plant, const axis_log& log, double period,
                                double resolution) {
     record_scales out;

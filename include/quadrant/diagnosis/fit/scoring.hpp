@@ -12,9 +12,9 @@ namespace quadrant::diagnosis {
 /// Divides scores before they become probabilities: blocks are not independent.
 inline constexpr double score_temperature = 5;
 
-/// One view of the innovations: their means over `mean` rows, judged in blocks. The first channel takes every row; each
-/// further one averages over longer stretches, in which the noise of the reading, which the observer follows, falls much
-/// faster than a force does.
+/// One view of the innovations: their means over `mean` rows, judged in blocks. The first channel takes every
+/// row; each further one averages over longer stretches, in which the noise of the reading, which the observer
+/// follows, falls much faster than a force does.
 struct channel {
     std::size_t mean = 1, block = 100; ///< rows a mean, rows a block
     double nu = 3;                     ///< effective independent samples of a block
@@ -26,9 +26,9 @@ struct channel {
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
 };
 
-/// How innovations become a score. A block of a channel counts nu/2 log(mean square + floor^2): free of scale, so that
-/// pulses and quiet stretches, fast and slow forces all count, each against the noise of its own band; bounded below by
-/// the floor. nu is far below the number of rows because innovations are correlated.
+/// How innovations become a score. A block of a channel counts nu/2 log(mean square + floor^2): free of scale,
+/// so that pulses and quiet stretches, fast and slow forces all count, each against the noise of its own band;
+/// bounded below by the floor. nu is far below the number of rows because innovations are correlated.
 struct scoring {
     std::size_t block = 100, skip = 100; ///< rows a block of the first channel, rows not scored at the start
     std::vector<channel> channels{};
@@ -66,8 +66,8 @@ inline std::vector<double> block_ms(const std::vector<double>& e, const channel&
     return block_ms(seen(e, c), 0, c.block / c.mean);
 }
 
-/// What means over c.mean rows see of the reading's noise behind an observer with both poles at `pole`: the noise
-/// passes (1 - 1/z)^2 / (1 - pole/z)^2.
+/// What means over c.mean rows see of the reading's noise behind an observer with both poles at `pole`: the
+/// noise passes (1 - 1/z)^2 / (1 - pole/z)^2.
 inline void set_gains(channel& c, double pole) {
     const std::size_t points = 16 * c.mean + 4096;
     double sum = 0, worst = 0;
@@ -84,8 +84,8 @@ inline void set_gains(channel& c, double pole) {
     c.rounding = worst;
 }
 
-/// The channels of a record: every row, a fifth of a block, then five times longer each, as long as there are `least`
-/// blocks. `segment`: of every row; lay(block): the first rows of the blocks of this length.
+/// The channels of a record: every row, a fifth of a block, then five times longer each, as long as there are
+/// `least` blocks. `segment`: of every row; lay(block): the first rows of the blocks of this length.
 template <class Lay>
 std::vector<channel> channels_of(std::size_t mean, double resolution, double pole,
                                  const std::vector<std::size_t>& segment, Lay lay) {
@@ -108,8 +108,8 @@ std::vector<channel> channels_of(std::size_t mean, double resolution, double pol
     return out;
 }
 
-/// The channels of a record and the same again for the rows behind it, in which a signal with white noise of the same size stands that
-/// no observer follows.
+/// The channels of a record and the same again for the rows behind it, in which a signal with white noise of
+/// the same size stands that no observer follows.
 inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t rows) {
     const std::size_t own = channels.size();
     for (std::size_t i = 0; i < own; ++i) {

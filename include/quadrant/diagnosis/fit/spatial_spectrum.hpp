@@ -9,9 +9,9 @@
 
 namespace quadrant::diagnosis {
 
-/// Periods at which a signal repeats along z (a position), the strongest first: the signal is gathered in bins of z, a
-/// quarter of the shortest period wide, and transformed; `shortest` to `longest`, `count` at most. A bin adds up what falls
-/// into it, so that places where the axis dwells weigh more, as in a sum over rows.
+/// Periods at which a signal repeats along z (a position), the strongest first: the signal is gathered in bins
+/// of z, a quarter of the shortest period wide, and transformed; `shortest` to `longest`, `count` at most. A
+/// bin adds up what falls into it, so that places where the axis dwells weigh more, as in a sum over rows.
 inline std::vector<double> spatial_peaks(std::span<const double> signal, std::span<const double> z,
                                          double longest, double shortest, std::size_t count,
                                          std::size_t skip = 0) {

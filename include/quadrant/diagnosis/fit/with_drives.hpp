@@ -9,7 +9,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// What was measured behind the drive, in the unit of what its law gives; empty: nothing. `step`: of the column, in that unit.
+/// What was measured behind the drive, in the unit of what its law gives; empty: nothing. `step`: of the
+/// column, in that unit.
 inline std::vector<double> measured_behind(const axis_description& axis, const axis_log& log, double& step) {
     const bool servo = axis.drive.kind == drive_kind::position_servo;
     const auto scaled = [&](const std::vector<double>& x, double by, double written) {
@@ -72,7 +73,8 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
 
 } // namespace detail
 
-/// The log with the axes of such drives made ready; the others stay as they are. A note names columns that only a drive would use.
+/// The log with the axes of such drives made ready; the others stay as they are. A note names columns that only
+/// a drive would use.
 inline machine_log with_drives(const machine_description& machine, machine_log log) {
     for (axis_log& logged : log.axes)
         for (const axis_description& axis : machine.axes) {

@@ -5,8 +5,8 @@
 
 namespace quadrant::diagnosis {
 
-/// How finely a row is simulated when a drive closes its loop inside the plant: its fastest loop turns by a twentieth of a radian at
-/// most in a step, in two hundred steps at most.
+/// How finely a row is simulated when a drive closes its loop inside the plant: its fastest loop turns by a
+/// twentieth of a radian at most in a step, in two hundred steps at most.
 inline int steps_of_drive(const plant_model& plant, double period) {
     const drive_model& d = plant.drive;
     const double mass = plant.moving_mass();
@@ -18,15 +18,15 @@ inline int steps_of_drive(const plant_model& plant, double period) {
     return static_cast<int>(std::clamp(std::ceil(20 * period * rate), 8.0, 200.0));
 }
 
-/// Whether a loop can be simulated from what the log asks for: a position drive follows its set-points, a velocity drive needs the
-/// controller that closes the position.
+/// Whether a loop can be simulated from what the log asks for: a position drive follows its set-points, a
+/// velocity drive needs the controller that closes the position.
 inline bool can_close(const axis_description& axis, const axis_log& log) {
     if (axis.drive.takes_position()) return log.drive != nullptr;
     return axis.controller && log.has_reference;
 }
 
-/// The axis with its drive's loops closed inside the plant, on a clock finer than the log's, started where the log starts. `command` of
-/// the result is what the actuator gets, mean over each row.
+/// The axis with its drive's loops closed inside the plant, on a clock finer than the log's, started where the
+/// log starts. `command` of the result is what the actuator gets, mean over each row.
 inline closed_loop_run simulate_driven(const axis_description& axis, const plant_model& plant, double period,
                                        const axis_log& log) {
     const driven_motion& motion = *log.drive;

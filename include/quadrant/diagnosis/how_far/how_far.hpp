@@ -6,9 +6,9 @@
 
 namespace quadrant::diagnosis {
 
-/// How far the gap shrinks: the gap of the machine file as given, after each cause, and with everything added, in force,
-/// position and command. On the hold-out log when there is one, else on motion segments predicted by parameters that
-/// were fitted without them.
+/// How far the gap shrinks: the gap of the machine file as given, after each cause, and with everything added,
+/// in force, position and command. On the hold-out log when there is one, else on motion segments predicted by
+/// parameters that were fitted without them.
 class how_far {
 public:
     explicit how_far(const axis_case& c)
@@ -45,7 +45,8 @@ public:
             else
                 ++plant_effects_added;
             stage after = at(case_.path[plant_effects_added], controller);
-            // A controller's gap is not behind the command: its force is what it commands otherwise than logged.
+            // A controller's gap is not behind the command: its force is what it commands otherwise than
+            // logged.
             if (of_controller)
                 compare(c, energy(case_.command_difference(log_, *case_.axis.controller)),
                         energy(case_.command_difference(log_, *controller)));

@@ -16,7 +16,8 @@ struct driven_motion;
 struct axis_log {
     std::string name;
     bool still = false; ///< neither reference nor position ever changes: a parked axis
-    /// "V", "A" or "N" ("Nm" of a rotary axis); of a drive with loops of its own also "m_per_s", "rad_per_s", "m", "rad" or "duty";
+    /// "V", "A" or "N" ("Nm" of a rotary axis); of a drive with loops of its own also "m_per_s", "rad_per_s",
+    /// "m", "rad" or "duty";
     /// empty: no command was recorded.
     std::string command_unit = "V";
     std::vector<double> reference; ///< position reference [m]
@@ -47,13 +48,14 @@ struct axis_log {
     std::vector<double> motor{}; ///< a second encoder, on the motor; empty: none
     std::string motor_unit{};    ///< "rad" of the motor's turn, or "m": in units of the load
     double motor_step = 0;
-    /// Displacement of a sticking axis that says nothing of its contact: `position` is that of parts that move against each other [m].
+    /// Displacement of a sticking axis that says nothing of its contact: `position` is that of parts that move
+    /// against each other [m].
     double least_give = 0;
     std::vector<double>
         controller_reads{}; ///< where `position` is not what the controller read: that; else empty
     std::vector<unsigned char> drive_off{}; ///< of each row: 1 where the drive is switched off; empty: never
-    /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got, as measured or as the
-    /// described drive made it, and this is what the drive received and saw.
+    /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got,
+    /// as measured or as the described drive made it, and this is what the drive received and saw.
     std::shared_ptr<const driven_motion> drive{};
     std::vector<double> asked{}; ///< then: the controller's output, as logged
 };

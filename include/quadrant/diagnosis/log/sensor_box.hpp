@@ -8,7 +8,8 @@
 namespace quadrant::diagnosis {
 
 /// The step in which a position column really moves: the smallest difference that nearly all differences of
-/// neighbouring rows are multiples of; at least the rounding of the column. Needs no dynamics. 0: it never moves.
+/// neighbouring rows are multiples of; at least the rounding of the column. Needs no dynamics. 0: it never
+/// moves.
 inline double observed_count(std::span<const double> position, double rounding) {
     std::vector<double> steps;
     for (std::size_t k = 1; k < position.size(); ++k)

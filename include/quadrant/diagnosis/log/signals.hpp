@@ -25,8 +25,8 @@ inline double quantile(std::vector<double> x, double f) {
     return *at;
 }
 
-/// Low-pass without phase: a second-order Butterworth run forwards and backwards, -3 dB at `corner` in all. Both
-/// ends are continued by point reflection, so that a record that begins in motion has no step.
+/// Low-pass without phase: a second-order Butterworth run forwards and backwards, -3 dB at `corner` in all.
+/// Both ends are continued by point reflection, so that a record that begins in motion has no step.
 inline std::vector<double> zero_phase(std::span<const double> x, double corner_Hz, double period) {
     const std::size_t n = x.size();
     if (n < 3) return {x.begin(), x.end()};

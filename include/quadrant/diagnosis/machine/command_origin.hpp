@@ -4,9 +4,9 @@
 
 namespace quadrant::diagnosis {
 
-/// Where the command column of a log was taken: before the amplifier (what the controller asked for), or behind it (a
-/// measured current, force or torque). Behind it the limit, dead zone, lag, delay and lost samples of the amplifier are
-/// already in the column, so they cannot be the cause of a gap.
+/// Where the command column of a log was taken: before the amplifier (what the controller asked for), or behind
+/// it (a measured current, force or torque). Behind it the limit, dead zone, lag, delay and lost samples of the
+/// amplifier are already in the column, so they cannot be the cause of a gap.
 enum class command_origin { asked, measured };
 
 /// The word of a machine file for it.

@@ -8,8 +8,9 @@
 
 namespace quadrant::diagnosis {
 
-/// What a drive takes: a current, force or torque (every servo amplifier in torque mode), a velocity (+-10 V, or in units of the
-/// axis), a position (cyclic synchronous position), or a position that a proportional law turns into the duty of a bridge.
+/// What a drive takes: a current, force or torque (every servo amplifier in torque mode), a velocity (+-10 V,
+/// or in units of the axis), a position (cyclic synchronous position), or a position that a proportional law
+/// turns into the duty of a bridge.
 enum class drive_kind { current, velocity, position, position_servo };
 inline constexpr std::array<std::string_view, 4> drive_kinds{"current", "velocity", "position",
                                                              "position_servo"};

@@ -14,7 +14,8 @@
 
 /// What the simulation believes of a machine: the contents of a machine file (schema quadrant.machine/1).
 /// Field names are the file's keys, so that a message, the file and the code say the same word; all values SI.
-/// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad and N m.
+/// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad
+/// and N m.
 namespace quadrant::diagnosis {
 
 struct effect;
@@ -55,7 +56,8 @@ struct payload_description {
     std::optional<double> mass_kg, arm_m, link_mass_kg;
 };
 
-/// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb", "static", ...).
+/// Relative, hard, uniform inside. The key is the file's ("mass", "force_constant", "viscous", "coulomb",
+/// "static", ...).
 struct tolerance_description {
     std::map<std::string, double> given;
     static constexpr double unstated = 0.05; ///< FORMAT.md: absent means 0.05 and a note
@@ -83,7 +85,8 @@ struct encoder_description {
         cyclic_phase_rad; ///< reading = x + cyclic sin(2 pi x/period + phase)
 };
 
-/// Force from the process: mean_N + sum of force_N[i] sin(2 pi (i + 1) fundamental t + phase[i]), t from the first row of a log.
+/// Force from the process: mean_N + sum of force_N[i] sin(2 pi (i + 1) fundamental t + phase[i]), t from the
+/// first row of a log.
 struct process_description {
     std::optional<double> fundamental_Hz, mean_N;
     std::vector<double> force_N, phase_rad;

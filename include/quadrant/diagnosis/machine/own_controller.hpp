@@ -53,15 +53,16 @@ template <class Loop> running_loop running(Loop loop) {
 
 } // namespace detail
 
-/// A controller of your own in the place of the cascade: replayed on the log, run in the closed loop, judged, and, with keys,
-/// mended. `make` builds it from the values of the keys, as new, whenever one is needed:
+/// A controller of your own in the place of the cascade: replayed on the log, run in the closed loop, judged,
+/// and, with keys, mended. `make` builds it from the values of the keys, as new, whenever one is needed:
 ///   machine.axes[0].controller = own_controller({{"gain_V_per_m", 9000}, {"lead_Hz", 40}}, [](std::span<const double> v) {
 ///       return my_lead{.gain = v[0], .lead = v[1]}; });
-/// The loop is anything copyable that is called once a sample, reference and measured position in, command out: with doubles (SI,
-/// command in the column's unit) or with quantities, as every loop of quadrant. Its sample period is its own affair; the
-/// limit and the DAC of the machine file follow it. It begins a log by settle(cascade start), settle(loop_start) or
-/// settle(position, command), whichever it has; else the first row is run through it.
-/// What `make` throws for values that a search tries counts as no fit; for the given values it is passed on.
+/// The loop is anything copyable that is called once a sample, reference and measured position in, command out:
+/// with doubles (SI, command in the column's unit) or with quantities, as every loop of quadrant. Its sample
+/// period is its own affair; the limit and the DAC of the machine file follow it. It begins a log by
+/// settle(cascade start), settle(loop_start) or settle(position, command), whichever it has; else the first row
+/// is run through it. What `make` throws for values that a search tries counts as no fit; for the given values
+/// it is passed on.
 template <class Make> controller_description own_controller(std::vector<own_key> keys, Make make) {
     controller_description out;
     out.own = {std::move(keys), [make = std::move(make)](std::span<const double> values) {

@@ -16,8 +16,8 @@ constexpr std::string_view name_of(transmission_kind k) {
     return transmission_kinds[static_cast<std::size_t>(k)];
 }
 
-/// Between the motor and the load: position of the load = position of the motor in units of the load, its errors added, less play
-/// and wind-up.
+/// Between the motor and the load: position of the load = position of the motor in units of the load, its
+/// errors added, less play and wind-up.
 struct transmission_description {
     std::optional<transmission_kind> kind;
     std::optional<double> travel_per_turn_m; ///< of the load

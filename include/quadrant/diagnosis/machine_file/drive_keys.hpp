@@ -3,8 +3,8 @@
 #include "../machine/machine.hpp"
 #include "../text/json_keys.hpp"
 
-/// What a machine file says of a drive beside the keys of effects: its kind, its timing and its filter, and which key is of which
-/// kind.
+/// What a machine file says of a drive beside the keys of effects: its kind, its timing and its filter, and
+/// which key is of which kind.
 namespace quadrant::diagnosis::detail {
 
 /// Numbers of a drive that are described and not searched.

@@ -21,7 +21,8 @@ inline std::vector<std::string_view> boxes_of_effects() {
     return out;
 }
 
-/// Names under `tolerance` of an axis of this kind, each with the key that it is the tolerance of and that key's effect.
+/// Names under `tolerance` of an axis of this kind, each with the key that it is the tolerance of and that
+/// key's effect.
 struct tolerance_name {
     std::string_view name;
     const machine_key* key;

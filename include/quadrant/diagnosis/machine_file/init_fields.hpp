@@ -5,8 +5,9 @@
 
 namespace quadrant::diagnosis {
 
-/// One number that begins a machine file: the option that asks for it, where it goes, and between what sizes it usually is.
-/// Key, unit and meaning are those of a linear axis (axis_words.hpp); so are the sizes, where the unit is.
+/// One number that begins a machine file: the option that asks for it, where it goes, and between what sizes it
+/// usually is. Key, unit and meaning are those of a linear axis (axis_words.hpp); so are the sizes, where the
+/// unit is.
 struct init_field {
     const char* option;
     const char* box;

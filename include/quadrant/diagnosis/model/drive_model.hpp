@@ -6,8 +6,8 @@
 
 namespace quadrant::diagnosis {
 
-/// The drive of a plant model: the numbers that a fit may move, neutral where nothing is described. SI, in the words of a linear
-/// axis.
+/// The drive of a plant model: the numbers that a fit may move, neutral where nothing is described. SI, in the
+/// words of a linear axis.
 struct drive_model {
     static constexpr double none = std::numeric_limits<double>::infinity();
 
@@ -28,11 +28,13 @@ struct drive_model {
     double supply = 1;                                                           ///< [V]
     double start_force = 0; ///< of the velocity loop's integral at the first row, which no file can know [N]
 
-    /// How old a reading of the position is beside what the drive received and what was measured behind it, which other
+    /// How old a reading of the position is beside what the drive received and what was measured behind it,
+    /// which other
     /// registers hold: no file can know it [s].
     double reading_age = 0;
-    /// How long before what is measured behind the drive was read the drive took the set-point of its row, beside its delay: registers are read
-    /// before or after the goal is written, which no file can know either [s].
+    /// How long before what is measured behind the drive was read the drive took the set-point of its row,
+    /// beside its delay: registers are read before or after the goal is written, which no file can know either
+    /// [s].
     double tap_lateness = 0;
 
     drive_model() = default;

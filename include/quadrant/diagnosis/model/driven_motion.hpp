@@ -20,7 +20,8 @@ public:
                  (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
           state_(line_state::at(values[0])) {}
 
-    /// Mean of the set-point and of its velocity [a row] from `begin` to `end`, in rows; call with rising times.
+    /// Mean of the set-point and of its velocity [a row] from `begin` to `end`, in rows; call with rising
+    /// times.
     struct stretch {
         double value, velocity;
     };
@@ -60,8 +61,8 @@ private:
     long next_ = 0; ///< the set-point that arrives next
 };
 
-/// What a drive with loops of its own received, and the motion that it saw: as logged. Its law is replayed on this, so that nothing is
-/// judged through a loop that hides what is wrong.
+/// What a drive with loops of its own received, and the motion that it saw: as logged. Its law is replayed on
+/// this, so that nothing is judged through a loop that hides what is wrong.
 struct driven_motion {
     static constexpr std::size_t parts = 4; ///< of a row, in which the drive acts with one velocity
 
@@ -70,14 +71,16 @@ struct driven_motion {
     bool in_volts = false;                  ///< a velocity drive's command
     std::vector<double> position, velocity; ///< of the motor [m], [m/s]
     std::vector<unsigned char> off;         ///< rows in which the drive gives nothing; empty: none
-    /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing was.
+    /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing
+    /// was.
     std::vector<double> measured;
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
     double to_position =
         0; ///< scales what the drive gives otherwise than measured to the noise of the reading [m]
 
-    /// The velocity of the position: central differences of the sixth order, to half a per cent at a seventh of the sample rate. No
+    /// The velocity of the position: central differences of the sixth order, to half a per cent at a seventh of
+    /// the sample rate. No
     /// filter: a drive that is excited fast follows the fast velocity.
     void find_velocity() {
         velocity = derivative(position, period);
@@ -108,8 +111,8 @@ struct driven_motion {
         std::vector<double>
             beside; ///< measured less given where it was measured: duty, else force [N]; empty: no tap
     };
-    /// The actuator's command is what this drive gives, moved to what was measured: a bridge that follows set-points in steps was read
-    /// once a row only, and its mean over the row is not that reading.
+    /// The actuator's command is what this drive gives, moved to what was measured: a bridge that follows
+    /// set-points in steps was read once a row only, and its mean over the row is not that reading.
     replay run(const drive_model& d) const {
         const auto fine = in_parts(d);
         replay out{row_means(fine), {}};
@@ -125,7 +128,8 @@ struct driven_motion {
         out.command = to_actuator(d, std::move(out.command));
         return out;
     }
-    /// The drive with the best of seven moments each for the readings of position and tap within a row. A set-point that arrives between
+    /// The drive with the best of seven moments each for the readings of position and tap within a row. A
+    /// set-point that arrives between
     /// two moments makes a step, which no slope sees: a fit has to begin on the right side of it.
     drive_model with_timing(drive_model d) const {
         drive_model best = d;
@@ -140,8 +144,8 @@ struct driven_motion {
         }
         return best;
     }
-    /// What this drive gives less what was measured, as the force that it would have made on the axis [N]; `force_constant`: of the
-    /// plant.
+    /// What this drive gives less what was measured, as the force that it would have made on the axis [N];
+    /// `force_constant`: of the plant.
     std::vector<double> force_beside_tap(const drive_model& d, double force_constant) const {
         auto out = to_actuator(d, run(d).beside);
         for (double& f : out) f *= -force_constant;
@@ -193,7 +197,8 @@ private:
                     through_four(velocity, k, p));
             }
     }
-    /// The cubic through a row, the one before and the two behind it, at the share p of the way to the next row.
+    /// The cubic through a row, the one before and the two behind it, at the share p of the way to the next
+    /// row.
     static double through_four(const std::vector<double>& x, std::size_t k, double p) {
         const std::size_t n = x.size();
         const double a = x[k > 0 ? k - 1 : 0], b = x[k], c = x[std::min(k + 1, n - 1)],

@@ -8,9 +8,9 @@
 
 namespace quadrant::diagnosis {
 
-/// The contact that gives way before it slips: elements in parallel, each a spring that slips at its share of the
-/// friction level (Maxwell-slip, [Jamaludin2008] section 3.2). One element is a sticking contact with a little give; four
-/// with spread lengths are presliding friction, whose memory of inner loops is Masing's.
+/// The contact that gives way before it slips: elements in parallel, each a spring that slips at its share of
+/// the friction level (Maxwell-slip, [Jamaludin2008] section 3.2). One element is a sticking contact with a
+/// little give; four with spread lengths are presliding friction, whose memory of inner loops is Masing's.
 struct friction_contact {
     static constexpr std::size_t most = 4;
     std::size_t elements = 1;
@@ -38,7 +38,8 @@ struct friction_contact {
         for (std::size_t i = 0; i < elements; ++i) sum += weights[i] * std::min(1.0, z / l[i]);
         return sum;
     }
-    /// The way at which the virgin curve reaches 1 - 1/e of the level: the length of an exponential (Dahl, LuGre).
+    /// The way at which the virgin curve reaches 1 - 1/e of the level: the length of an exponential (Dahl,
+    /// LuGre).
     double way_to_63_percent() const {
         constexpr double wanted = 0.6321205588285577;
         double low = 0, high = 0;

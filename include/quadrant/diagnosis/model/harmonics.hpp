@@ -11,8 +11,8 @@
 
 namespace quadrant::diagnosis {
 
-/// sum of cosine_i cos(2 pi i z / period) + sine_i sin(2 pi i z / period), i = 1, 2, ...: what repeats along z, a
-/// position or a time. In the files size_i sin(2 pi i z / period + phase_i).
+/// sum of cosine_i cos(2 pi i z / period) + sine_i sin(2 pi i z / period), i = 1, 2, ...: what repeats along z,
+/// a position or a time. In the files size_i sin(2 pi i z / period + phase_i).
 struct harmonics {
     static constexpr std::size_t most = 8;
     double period = 0;     ///< in the unit of z

@@ -7,11 +7,12 @@
 
 namespace quadrant::diagnosis {
 
-/// What of an innovation follows linearly from what was known before it: its own last rows and the last steps of the
-/// command,
+/// What of an innovation follows linearly from what was known before it: its own last rows and the last steps
+/// of the command,
 ///   e[k] ~ sum of_innovation[i] e[k-1-i] + sum of_step[i] step[k-1-i]
-/// (ARX [Ljung1999] ch. 4, weighted least squares). What is left is white and unrelated to the command: sensor noise that
-/// came back through the feedback, a delay, a lag or a gain that is not as modelled are all in the sum.
+/// (ARX [Ljung1999] ch. 4, weighted least squares). What is left is white and unrelated to the command: sensor
+/// noise that came back through the feedback, a delay, a lag or a gain that is not as modelled are all in the
+/// sum.
 struct linear_past {
     static constexpr Eigen::Index order = 10;
     static constexpr std::size_t first = 10; ///< row that has a past

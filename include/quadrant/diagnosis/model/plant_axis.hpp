@@ -7,8 +7,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Laws of effects at the joints of one plant. They are called through a pointer that this program set, so that code for another
-/// instruction set may call them too.
+/// Laws of effects at the joints of one plant. They are called through a pointer that this program set, so that
+/// code for another instruction set may call them too.
 class plant_laws {
 public:
     using state = own_laws::memories;

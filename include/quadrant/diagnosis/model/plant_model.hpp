@@ -18,8 +18,8 @@ struct arm_load {
     double gravity() const { return (mass + link_mass / 2) * 9.80665 * arm; }
 };
 
-/// The plant that the diagnosis simulates: the described machine plus whatever the effects under trial join to it.
-/// Boxes in the order of the loop; every member is neutral when its effect is absent. SI numbers.
+/// The plant that the diagnosis simulates: the described machine plus whatever the effects under trial join to
+/// it. Boxes in the order of the loop; every member is neutral when its effect is absent. SI numbers.
 struct plant_model {
     static constexpr std::size_t max_harmonics = harmonics::most;
 

@@ -11,7 +11,8 @@
 
 namespace quadrant::diagnosis {
 
-/// What a drive that loses commands is taken to do: in each period it keeps the command before with this probability.
+/// What a drive that loses commands is taken to do: in each period it keeps the command before with this
+/// probability.
 struct loss_assumption {
     double probability = 0.05;
     bool learned = false; ///< the probability is only where to begin
@@ -30,18 +31,19 @@ struct lossy_commands {
     std::vector<double> gain_by_place{}; ///< the same, for each 500 rows
 };
 
-/// A lost command leaves a pulse of known shape in the innovations, as large as the command's step. In a closed loop the
-/// sensor's noise is in the step and in the innovation, and so is every linear error of the model: what follows linearly from
-/// the past is taken out first (linear_past), and with it the mean of the losses. In what is left each period either kept
-/// its command or lost it; pulses overlap, so that the histories are followed side by side, row by row, and the likeliest `abreast` of
-/// them are kept (M-algorithm [Anderson1984]). The weight of a loss is the share of the histories that have it, `lag` rows later.
-/// What is explained is taken out of the innovations, so that the past is found anew without the pulses, a few times
+/// A lost command leaves a pulse of known shape in the innovations, as large as the command's step. In a closed
+/// loop the sensor's noise is in the step and in the innovation, and so is every linear error of the model:
+/// what follows linearly from the past is taken out first (linear_past), and with it the mean of the losses. In
+/// what is left each period either kept its command or lost it; pulses overlap, so that the histories are
+/// followed side by side, row by row, and the likeliest `abreast` of them are kept (M-algorithm
+/// [Anderson1984]). The weight of a loss is the share of the histories that have it, `lag` rows later. What is
+/// explained is taken out of the innovations, so that the past is found anew without the pulses, a few times
 /// over. Noise is normal but for a share of strangers (Cauchy, three times as wide), its size that of the
 /// neighbourhood, a median over `window` rows. A command that hardly changed says nothing: its weight stays p.
 class lost_commands {
 public:
-    /// `response`: innovations after one volt too much in one period, to where it has died away; `reading_noise`: least standard
-    /// deviation of the position [m].
+    /// `response`: innovations after one volt too much in one period, to where it has died away;
+    /// `reading_noise`: least standard deviation of the position [m].
     static lossy_commands find(std::span<const double> command, std::span<const double> innovation,
                                const std::vector<double>& response, std::size_t delay_rows,
                                double reading_noise, const loss_assumption& a) {
@@ -58,7 +60,8 @@ private:
                                  reach = 32; ///< reach: rows of a pulse at most
     static constexpr double stands_out = 2;  ///< times the noise that a loss would have to be
 
-    /// One way that it may have been: which of the last periods were lost, and what is still to come of their pulses.
+    /// One way that it may have been: which of the last periods were lost, and what is still to come of their
+    /// pulses.
     struct history {
         double score = 0, applied = 0;
         std::uint64_t lost = 0;

@@ -8,8 +8,8 @@
 
 namespace quadrant::diagnosis {
 
-/// What an encoder reads wrongly or does not reach is in no log of that encoder: the loop holds the reading, not the tool, where
-/// it should be. What it is, and the instrument that sees it.
+/// What an encoder reads wrongly or does not reach is in no log of that encoder: the loop holds the reading,
+/// not the tool, where it should be. What it is, and the instrument that sees it.
 struct blind_spot {
     std::string_view what, instrument;
 };
@@ -28,8 +28,9 @@ inline constexpr std::array blind_spots_of_an_angle{
                "a dial gauge on an arm of the table while the axis reverses"},
 };
 
-/// Where it bears on what was said of an axis: a claim that machine and simulation agree holds as far as the encoder sees, and a
-/// suspected sensor is judged by its own reading. Else nothing: the log shows enough that is unexplained.
+/// Where it bears on what was said of an axis: a claim that machine and simulation agree holds as far as the
+/// encoder sees, and a suspected sensor is judged by its own reading. Else nothing: the log shows enough that
+/// is unexplained.
 inline std::vector<unseen> unseen_by(const axis_result& a, const std::vector<cause>& causes) {
     const auto of_the_sensor = [](std::string_view name) {
         const effect* e = effect_named(name);

@@ -20,7 +20,8 @@ public:
     void rest(double units) {
         append(units * unit_, [](double) { return 0.0; });
     }
-    /// Constant speed between ramps of the shape (1 - cos)/2; a stroke too short for the speed takes a lower one.
+    /// Constant speed between ramps of the shape (1 - cos)/2; a stroke too short for the speed takes a lower
+    /// one.
     void stroke(double length, double speed, double acceleration) {
         stroke(length, speed, acceleration, [](double, double) { return 0.0; });
     }
@@ -59,8 +60,8 @@ private:
     std::vector<double> out_{x_};
 };
 
-/// Tones at equal ratios up to a tenth of the sample rate or 200 cycles in a unit of time, of equal acceleration, with
-/// Schroeder's phases.
+/// Tones at equal ratios up to a tenth of the sample rate or 200 cycles in a unit of time, of equal
+/// acceleration, with Schroeder's phases.
 class multi_sine {
 public:
     multi_sine(double period, double unit)

@@ -6,7 +6,8 @@
 
 namespace quadrant::diagnosis {
 
-/// One of the names that a record does not tell apart: its effect, and the model of the whole axis under this name.
+/// One of the names that a record does not tell apart: its effect, and the model of the whole axis under this
+/// name.
 struct confusable {
     const effect* name = nullptr;
     candidate model;
@@ -14,8 +15,8 @@ struct confusable {
     bool equivalent(const confusable& other) const { return may_be_one(*name, *other.name); }
 };
 
-/// Where a motion is tried before the machine drives it: the axis as described, under the controller that runs it or a
-/// stand-in, with the noise and the steps of the encoder that its log had.
+/// Where a motion is tried before the machine drives it: the axis as described, under the controller that runs
+/// it or a stand-in, with the noise and the steps of the encoder that its log had.
 class proving_ground {
 public:
     /// `scale`: of that log.
@@ -27,8 +28,8 @@ public:
         if (!axis_.controller) axis_.controller = stand_in(axis.plant);
     }
 
-    /// A record of the motion as a machine with this plant would leave it, one step a period as in the fits; empty when it does
-    /// not follow.
+    /// A record of the motion as a machine with this plant would leave it, one step a period as in the fits;
+    /// empty when it does not follow.
     axis_log record(const plant_model& plant, const planned_motion& m) const {
         axis_log log;
         log.name = axis_.name;
@@ -48,10 +49,11 @@ public:
         return log;
     }
 
-    /// Log-score by which a record of the motion tells the truth from the other name: both fitted again to a machine that
-    /// has the truth's plant, the calibration inside its tolerance too, and judged as in every diagnosis on motion that was not
-    /// fitted. `whole`: the other name also fitted anew from the machine file, as the diagnosis of that record would. Two names
-    /// of one model (gap/FORMAT.md) are told apart only where their forces are, as there.
+    /// Log-score by which a record of the motion tells the truth from the other name: both fitted again to a
+    /// machine that has the truth's plant, the calibration inside its tolerance too, and judged as in every
+    /// diagnosis on motion that was not fitted. `whole`: the other name also fitted anew from the machine file,
+    /// as the diagnosis of that record would. Two names of one model (gap/FORMAT.md) are told apart only where
+    /// their forces are, as there.
     double gain(const planned_motion& m, const confusable& truth, const confusable& other, bool whole) const {
         const axis_log log = record(truth.model.fit.plant, m);
         if (log.position.empty()) return 0;
@@ -74,8 +76,8 @@ public:
 private:
     static constexpr int first_look = 6; ///< steps of a fit
 
-    /// P and PI of the velocity for an axis whose controller is not described, with the crossover that its dead time allows and
-    /// the feedforward of its mass and its viscous friction.
+    /// P and PI of the velocity for an axis whose controller is not described, with the crossover that its dead
+    /// time allows and the feedforward of its mass and its viscous friction.
     controller_description stand_in(const plant_description& p) const {
         const double dead_time = p.delay_s + axis_.actuator.lag_s.value_or(0) + 1.5 * period_;
         const double crossover = std::min(0.5 / scale_.response(), 0.35 / dead_time);

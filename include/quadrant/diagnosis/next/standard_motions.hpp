@@ -29,9 +29,10 @@ struct planned_motion {
     bool slips = true; ///< friction slips for most of the time; false: the contact gives way and holds
 };
 
-/// Motions that have told effects apart on servo axes, each 3 to 7 units of time long (record_scales::unit()), inside the
-/// travel, velocity and acceleration that the log showed. No reversal is smaller than sixty counts. None when the log stands
-/// still. The multi-sines ask for frequencies that the log may not have had, and say which.
+/// Motions that have told effects apart on servo axes, each 3 to 7 units of time long (record_scales::unit()),
+/// inside the travel, velocity and acceleration that the log showed. No reversal is smaller than sixty counts.
+/// None when the log stands still. The multi-sines ask for frequencies that the log may not have had, and say
+/// which.
 inline std::vector<planned_motion> standard_motions(const shown_motion& shown, double period,
                                                     const record_scales& scale) {
     using detail::worded;

@@ -8,8 +8,8 @@
 
 namespace quadrant::diagnosis {
 
-/// Draws whole motion segments with replacement, the same draws for the same number of segments: how many times each
-/// segment counts in each draw. Samples inside a segment are correlated; segments are what is independent.
+/// Draws whole motion segments with replacement, the same draws for the same number of segments: how many times
+/// each segment counts in each draw. Samples inside a segment are correlated; segments are what is independent.
 inline std::vector<std::vector<double>> segment_draws(std::size_t segments, std::size_t draws = 400) {
     std::mt19937_64 random(20080901);
     std::vector<std::vector<double>> out(draws, std::vector<double>(segments, 0.0));

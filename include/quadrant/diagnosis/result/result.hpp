@@ -120,8 +120,8 @@ struct axis_result {
     axis_kind kind = axis_kind::linear;
     std::string command_unit = "V"; ///< of the command gaps
     bool cut = false;               ///< the time was up before the search had ended (rules::until)
-    /// Two positions are compared, and nothing is known of forces: the gap is that of the positions, and the residual signals are
-    /// differences of them [m].
+    /// Two positions are compared, and nothing is known of forces: the gap is that of the positions, and the
+    /// residual signals are differences of them [m].
     bool positions_only = false;
     bool driven = false; ///< its drive closes loops of its own: a box between controller and actuator
 };

@@ -6,8 +6,9 @@
 
 namespace quadrant::diagnosis {
 
-/// A linear axis has a mass, forces and metres, a rotary one an inertia, torques and radians. The mathematics is one: inside
-/// the diagnosis every axis has the linear names, and what a file, a message or a page shows is put into its own words.
+/// A linear axis has a mass, forces and metres, a rotary one an inertia, torques and radians. The mathematics
+/// is one: inside the diagnosis every axis has the linear names, and what a file, a message or a page shows is
+/// put into its own words.
 enum class axis_kind { linear, rotary };
 
 constexpr const char* name_of(axis_kind k) { return k == axis_kind::rotary ? "rotary" : "linear"; }

@@ -41,8 +41,8 @@ inline std::string in_quotes(std::string_view text) { return '"' + one_line(text
 
 } // namespace detail
 
-/// A file that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no single
-/// place is at fault. Line and column count from 1, the column in characters.
+/// A file that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no
+/// single place is at fault. Line and column count from 1, the column in characters.
 struct bad_input : std::runtime_error {
     bad_input(std::string_view file, std::string_view message)
         : std::runtime_error(fmt::format("{}: {}", detail::one_line(file), detail::one_line(message, 400))) {}

@@ -5,8 +5,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// The cells of one CSV line (RFC 4180), blanks around them dropped. A quoted cell may hold commas and doubled quotes,
-/// no line break.
+/// The cells of one CSV line (RFC 4180), blanks around them dropped. A quoted cell may hold commas and doubled
+/// quotes, no line break.
 class csv_cells {
 public:
     explicit csv_cells(std::string_view line) : line_(line) {}

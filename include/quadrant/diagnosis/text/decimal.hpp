@@ -53,8 +53,8 @@ public:
         same_size.last = value;
     }
 
-    /// Decimal unit of the last digit that the column keeps; 0: nothing was rounded. A format of a fixed number of
-    /// significant digits (%g, %e) rounds large values more coarsely than small ones: the coarsest counts.
+    /// Decimal unit of the last digit that the column keeps; 0: nothing was rounded. A format of a fixed number
+    /// of significant digits (%g, %e) rounds large values more coarsely than small ones: the coarsest counts.
     double step() const {
         constexpr std::size_t seldom = 100, enough = 20;
         if (finest_ == none || changes_ * seldom < rows_) return 0; // set values: whole as they stand

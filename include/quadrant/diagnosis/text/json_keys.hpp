@@ -37,8 +37,8 @@ template <class Use> void each_axis(const json_node& top, Use use) {
     }
 }
 
-/// One number of a file and the member that holds it; an optional one is absent where the file has no such key, another
-/// one is 0 there.
+/// One number of a file and the member that holds it; an optional one is absent where the file has no such key,
+/// another one is 0 there.
 template <class Target> struct number_key {
     const char* name;
     number_rule rule;

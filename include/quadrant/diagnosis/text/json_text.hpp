@@ -8,8 +8,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Builds the document itself: the library's own parsers keep the last of two equal keys without a word, nest without
-/// a limit and, with a callback, take time by the square of the number of objects.
+/// Builds the document itself: the library's own parsers keep the last of two equal keys without a word, nest
+/// without a limit and, with a callback, take time by the square of the number of objects.
 class json_builder final : public nlohmann::json_sax<nlohmann::json> {
 public:
     json_builder(std::string_view text, std::string_view file) : text_(text), file_(file) {}

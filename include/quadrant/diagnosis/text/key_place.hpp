@@ -7,7 +7,8 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// Line and column, from 1, of the key at a dotted path of a JSON text that parses; {0, 0} when it is written with escapes.
+/// Line and column, from 1, of the key at a dotted path of a JSON text that parses; {0, 0} when it is written
+/// with escapes.
 inline std::pair<std::size_t, std::size_t> key_place(std::string_view text, std::string_view path) {
     std::vector<std::string> open;
     const auto here = [&] {

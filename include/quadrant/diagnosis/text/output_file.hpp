@@ -39,11 +39,12 @@ private:
 
 } // namespace detail
 
-/// A file that is written piece by piece and has its name when it is whole and on the disk: a reader sees the old file
-/// or the new one. Until then it has no name at all, where the file system can (O_TMPFILE), so that a program that is
-/// killed leaves nothing behind; elsewhere it has a unique one in the same folder. The new file has the old one's
-/// permissions. A link is followed: its target is replaced. What is no regular file (a device, a FIFO) is written to
-/// and never replaced. Every function throws bad_input, and what is not finished is not written.
+/// A file that is written piece by piece and has its name when it is whole and on the disk: a reader sees the
+/// old file or the new one. Until then it has no name at all, where the file system can (O_TMPFILE), so that a
+/// program that is killed leaves nothing behind; elsewhere it has a unique one in the same folder. The new file
+/// has the old one's permissions. A link is followed: its target is replaced. What is no regular file (a
+/// device, a FIFO) is written to and never replaced. Every function throws bad_input, and what is not finished
+/// is not written.
 class output_file {
 public:
     /// Opens the file, or refuses it, before anything is computed.
@@ -100,8 +101,8 @@ public:
 private:
     static constexpr int tries = 100;
 
-    /// The file that a link means, also where there is none yet. True for what stands for an open file of the process
-    /// (/dev/stdout), which has no name to be replaced.
+    /// The file that a link means, also where there is none yet. True for what stands for an open file of the
+    /// process (/dev/stdout), which has no name to be replaced.
     bool follow_links() {
         constexpr int most = 40;
         std::error_code fault;

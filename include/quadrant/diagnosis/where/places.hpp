@@ -9,8 +9,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// Share of the residual's energy that its mean per bin predicts, the means taken from the other folds: a share that
-/// is only noise comes out at zero, not above it. Rows with bin < 0 stand apart and are not predicted.
+/// Share of the residual's energy that its mean per bin predicts, the means taken from the other folds: a share
+/// that is only noise comes out at zero, not above it. Rows with bin < 0 stand apart and are not predicted.
 inline estimate predicted_share(const std::vector<double>& residual, const axis_record& r,
                                 const std::vector<int>& bin, int bins,
                                 const std::vector<std::vector<double>>& draws) {
@@ -156,8 +156,9 @@ inline std::vector<place> regimes(const std::vector<double>& residual, const axi
     return out;
 }
 
-/// Amplitude density of a signal [unit/sqrt(Hz)] by averaged periodograms with a Hann window, half overlapped, at a hundred
-/// lines up to the bandwidth, each window as long as the cycle of the first. Direct sums: a report needs no library.
+/// Amplitude density of a signal [unit/sqrt(Hz)] by averaged periodograms with a Hann window, half overlapped,
+/// at a hundred lines up to the bandwidth, each window as long as the cycle of the first. Direct sums: a report
+/// needs no library.
 inline void spectrum(const std::vector<double>& x, double period, double up_to_Hz,
                      std::vector<double>& frequency, std::vector<double>& density) {
     frequency.clear();

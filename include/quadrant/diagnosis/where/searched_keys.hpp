@@ -14,8 +14,8 @@ struct searched_key {
     std::vector<double> only{}; ///< the values that it may have; empty: any
 };
 
-/// A small size of a quantity on this axis, a hundredth of what its unit is made of there: largest command, speed and time constant
-/// of the record. 0: the word holds no unit.
+/// A small size of a quantity on this axis, a hundredth of what its unit is made of there: largest command,
+/// speed and time constant of the record. 0: the word holds no unit.
 inline double size_of(std::string_view words, const record_scales& of) {
     double size = 0.01;
     bool divides = false, any = false;
@@ -56,7 +56,8 @@ inline double size_of(const controller_key& key, const controller_kind& kind, co
     return in_units_of_its_own ? size / values["units_per_m"] : size;
 }
 
-/// The numbers of a controller that are searched for the one that differs; the sizes of those that are 0 follow from the record.
+/// The numbers of a controller that are searched for the one that differs; the sizes of those that are 0 follow
+/// from the record.
 inline std::vector<searched_key> searched_keys(const controller_description& c, const record_scales& of = {}) {
     using d = controller_description;
     std::vector<searched_key> out;

@@ -6,8 +6,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// These effects on top of `from`, each time the one that takes most off the force on held-out motion. One that cannot be told
-/// without the others comes after them.
+/// These effects on top of `from`, each time the one that takes most off the force on held-out motion. One that
+/// cannot be told without the others comes after them.
 inline std::vector<candidate> by_share(const axis_case& c, const candidate& from,
                                        std::vector<const effect*> effects) {
     std::vector<candidate> out{from};
@@ -34,8 +34,8 @@ inline std::vector<candidate> by_share(const axis_case& c, const candidate& from
 
 } // namespace detail
 
-/// The rivals of each cause of the best model. A group is headed by its most probable name: where another name of a cause
-/// weighs more, the model with that name takes its place, as many times as there may be causes.
+/// The rivals of each cause of the best model. A group is headed by its most probable name: where another name
+/// of a cause weighs more, the model with that name takes its place, as many times as there may be causes.
 inline std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
     std::vector<std::vector<detail::rival>> out;
     std::size_t left = c.limits.most_causes;
@@ -59,8 +59,9 @@ inline std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
     return out;
 }
 
-/// Puts what apply will write first: the claims, the one that takes most off before the others, fitted without the suspects,
-/// which follow. `causes` and `rivals` come into the same order, and the claims get the values of that fit.
+/// Puts what apply will write first: the claims, the one that takes most off before the others, fitted without
+/// the suspects, which follow. `causes` and `rivals` come into the same order, and the claims get the values of
+/// that fit.
 inline void put_as_applied(axis_case& c, std::vector<cause>& causes,
                            std::vector<std::vector<detail::rival>>& rivals) {
     std::vector<const effect*> claims, suspects;

@@ -27,8 +27,8 @@ public:
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
         };
-        // A velocity drive's controller commands set-points; how far a difference there moves the axis no force tells.
-        // What was measured behind an amplifier is not what the controller asked for.
+        // A velocity drive's controller commands set-points; how far a difference there moves the axis no force
+        // tells. What was measured behind an amplifier is not what the controller asked for.
         if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
             axis.actuator.command_is == command_origin::asked)
             controller = judge_controller(*axis.controller, axis.actuator, log, record,
@@ -63,7 +63,8 @@ public:
     bool controller_unnamed = false; ///< replay differs, and the machine file excludes that as a cause
     bool settled = false;            ///< the last model leaves noise, or nothing that matters to the owner
     bool settled_on_second = true;   ///< the same on the hold-out log
-    /// What is left speaks against no cause: it does not matter to the owner, and what the causes take off does.
+    /// What is left speaks against no cause: it does not matter to the owner, and what the causes take off
+    /// does.
     bool excused = false;
 
     const candidate& best() const { return path.back(); }
@@ -80,11 +81,11 @@ public:
         if (second) settled_on_second = second_log(best()).settled;
     }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
-    /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause can hide
-    /// behind the names.
+    /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause
+    /// can hide behind the names.
     bool at_floor() const { return settled && settled_on_second; }
-    /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the owner's tolerances
-    /// differ by from one another.
+    /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the
+    /// owner's tolerances differ by from one another.
     bool calibrated_within_tolerances() const {
         const candidate& m = path.front();
         if (m.stops_at_a_tolerance()) return false; // it would have left them

@@ -5,9 +5,9 @@
 
 namespace quadrant::diagnosis {
 
-/// The gap by box of the loop. Replay tells the controller from everything behind the command; what lies behind is told
-/// apart by what each cause takes off the residual's energy, and said so in `basis`. The largest share comes first; what
-/// no cause tells stays with an empty block.
+/// The gap by box of the loop. Replay tells the controller from everything behind the command; what lies behind
+/// is told apart by what each cause takes off the residual's energy, and said so in `basis`. The largest share
+/// comes first; what no cause tells stays with an empty block.
 inline std::vector<place> block_places(const axis_case& c) {
     using detail::worded;
     const auto draws = segment_draws(c.record.segments, 200);

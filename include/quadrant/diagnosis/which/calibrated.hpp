@@ -39,8 +39,8 @@ inline constexpr effect described_values{
 
 } // namespace detail
 
-/// What a model of an axis has moved inside the owner's tolerance, as machine keys. A key that a cause gives is that cause's; a value that the
-/// machine file does not describe stays undescribed, but for the give of its
+/// What a model of an axis has moved inside the owner's tolerance, as machine keys. A key that a cause gives is
+/// that cause's; a value that the machine file does not describe stays undescribed, but for the give of its
 /// friction.
 inline std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
                                                   const std::vector<cause>& causes) {

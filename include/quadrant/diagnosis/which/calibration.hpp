@@ -17,8 +17,8 @@ inline parameter start_of_drive(const record_scales& scale) {
             .spread = scale.command};
 }
 
-/// When the position and what was measured behind the drive were read within a row: registers are read one after the other, before or
-/// after the drive takes the row's set-point. Each moment may be off by up to a row.
+/// When the position and what was measured behind the drive were read within a row: registers are read one
+/// after the other, before or after the drive takes the row's set-point. Each moment may be off by up to a row.
 /// They begin where the drive that is given has them.
 inline std::array<parameter, 2> timing_of_readings(const drive_model& d, double period) {
     const auto within_a_row = [&](const char* key, double& (*of)(plant_model&), double start) {
@@ -43,9 +43,10 @@ inline bool is_of_record(const parameter& p) {
 }
 
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
-/// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which also
-/// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis alike.
-/// `give`: of every contact, record_scales::give().
+/// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which
+/// also
+/// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis
+/// alike. `give`: of every contact, record_scales::give().
 inline std::vector<parameter> calibration(const axis_description& axis, double give) {
     const plant_description& d = axis.plant;
     const tolerance_description& tolerance = axis.tolerance;
@@ -97,8 +98,8 @@ inline std::vector<parameter> calibration(const axis_description& axis, double g
             if (key.of && key.tolerance)
                 for (double value : numbers_of(axis, key, *e))
                     within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
-    // Every contact gives way a little before it slips; up to ten times that it is no cause. One that is described as giving
-    // way further, or element by element, stays as described.
+    // Every contact gives way a little before it slips; up to ten times that it is no cause. One that is
+    // described as giving way further, or element by element, stays as described.
     const double most = 10 * give;
     const friction_contact contact = plant_model(d, give).friction.contact;
     if (contact.elements == 1 && contact.length <= most)

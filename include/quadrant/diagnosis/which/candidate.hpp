@@ -14,7 +14,8 @@ struct candidate {
     std::vector<const effect*> effects;
     fit_result fit{};
     std::vector<double> held_out{}; ///< predictive score by motion segment; larger is better
-    /// For flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices; and for what is rare.
+    /// For flexibility: 1/2 ln(blocks) for each parameter that no owner knows, and its choices; and for what is
+    /// rare.
     double penalty = 0;
     double total = 0;                     ///< their sum without the penalty
     std::vector<Eigen::VectorXd> leave{}; ///< parameters without each fold, in fit coordinates
@@ -73,9 +74,9 @@ inline double rarity(const std::vector<const effect*>& effects) {
 
 } // namespace detail
 
-/// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by one
-/// Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each segment
-/// is scored once.
+/// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by
+/// one Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each
+/// segment is scored once.
 inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd& prior_curvature) {
     const auto n = c.fit.x.size();
     std::array<detail::fold_sum, folds> sums;
@@ -129,9 +130,9 @@ inline std::vector<parameter> resumed(const fit_result& f) {
     return ps;
 }
 
-/// A first look at `from` with one more effect: a step or two from every start that the effect offers, the slopes of the
-/// parameters that `from` has taken from there; the best kept, less what its parameters cost. No score yet. An effect that offers
-/// no start leaves an infinite objective.
+/// A first look at `from` with one more effect: a step or two from every start that the effect offers, the
+/// slopes of the parameters that `from` has taken from there; the best kept, less what its parameters cost. No
+/// score yet. An effect that offers no start leaves an infinite objective.
 class first_look {
 public:
     first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,
@@ -173,8 +174,8 @@ private:
     std::vector<fit_course> courses_;
 };
 
-/// Scores a fitted model on motion that was not fitted, and keeps of its rows and blocks only what is asked for later: a
-/// diagnosis remembers hundreds of models.
+/// Scores a fitted model on motion that was not fitted, and keeps of its rows and blocks only what is asked for
+/// later: a diagnosis remembers hundreds of models.
 inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
     Eigen::VectorXd curvature = Eigen::VectorXd::Zero(c.fit.x.size());

@@ -20,13 +20,13 @@ struct rival {
 
 inline double square(double x) { return x * x; }
 
-/// Two that are one model (docs/formats.md) stay one name while their predictions differ by less than this share of what is
-/// left, in energy; or by less than no law is right to.
+/// Two that are one model (docs/formats.md) stay one name while their predictions differ by less than this
+/// share of what is left, in energy; or by less than no law is right to.
 inline constexpr double alike = 0.2;
 
-/// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments (pseudo-BMA
-/// with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A hold-out log counts as it
-/// stands.
+/// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments
+/// (pseudo-BMA with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A
+/// hold-out log counts as it stands.
 inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     const auto draws = segment_draws(c.record.segments);
     std::vector<double> score(rivals.size()), second;
@@ -69,8 +69,9 @@ inline double between(double before, double after) {
 inline double explained_by(const axis_case& c, std::size_t which) {
     return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
 }
-/// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each other
-/// suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no other name for it.
+/// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each
+/// other suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no
+/// other name for it.
 inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
     std::vector<const effect*> others = c.best().effects;
@@ -86,8 +87,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
                 if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
                     out.back().model = std::move(again);
             }
-    // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and beside it the name is no
-    // longer needed. A polynomial in the velocity comes close to Coulomb friction, but the jump is missing in it.
+    // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and
+    // beside it the name is no longer needed. A polynomial in the velocity comes close to Coulomb friction, but
+    // the jump is missing in it.
     if (!c.settled && !c.models.over()) {
         const auto models =
             c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
@@ -103,8 +105,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     double sum = 0;
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
-        // A name that mends nothing is no rival. Two whose difference is smaller than what both leave unexplained are
-        // not told apart by it, nor are two that are one model (gap/FORMAT.md) while their predictions agree.
+        // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
+        // unexplained are not told apart by it, nor are two that are one model (gap/FORMAT.md) while their
+        // predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
@@ -133,8 +136,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 inline double left_beside(const axis_case& c, std::size_t which) {
     return c.excused ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
 }
-/// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some five per
-/// cent of what it explains. What does not matter to the owner counts against a cause that explains even less.
+/// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some
+/// five per cent of what it explains. What does not matter to the owner counts against a cause that explains
+/// even less.
 inline double doubtful_beside(const axis_case& c, double explained) {
     const double left = between(c.models.held_out_force(c.best()), c.floor_force());
     if (c.excused && left < explained) return 0;
@@ -142,9 +146,9 @@ inline double doubtful_beside(const axis_case& c, double explained) {
     return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
 
-/// The probability that the cause is none of the suspects: on the log, beside what the name explains here or there; on the
-/// hold-out log, where a gap stays open there, beside what it explains here and there. A name that makes that one worse was not
-/// the cause there.
+/// The probability that the cause is none of the suspects: on the log, beside what the name explains here or
+/// there; on the hold-out log, where a gap stays open there, beside what it explains here and there. A name
+/// that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
     const std::size_t names = c.models.suspects().size();
     if (!c.second) return by_chance(names, doubtful_beside(c, explained_by(c, which)));
@@ -160,7 +164,8 @@ inline double unknown(const axis_case& c, std::size_t which) {
     return 1 / (1 + (1 - out) / out * std::exp(gain));
 }
 
-/// The probability of the models that have the cause or one of its other names, against the best one tried that has
+/// The probability of the models that have the cause or one of its other names, against the best one tried that
+/// has
 /// none of them: two common effects may do what a rare one does.
 inline double against_others(const axis_case& c, const std::vector<rival>& names) {
     std::vector<const effect*> same;
@@ -169,8 +174,8 @@ inline double against_others(const axis_case& c, const std::vector<rival>& names
     return 1 / (1 + std::exp((c.models.best_without(same) - c.best().total) / score_temperature));
 }
 
-/// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even ones alone repeat
-/// twice as often.
+/// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even
+/// ones alone repeat twice as often.
 inline void in_lowest_terms(std::vector<parameter_estimate>& values) {
     parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
     for (parameter_estimate& p : values) {
@@ -197,9 +202,9 @@ inline void in_lowest_terms(std::vector<parameter_estimate>& values) {
     in_lowest_terms(values);
 }
 
-/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per cent, none
-/// better than what is left beside what its effect explains (a pull as large as the rest, all of it along this value), no length
-/// better than half a count. An angle moves by as much in radian.
+/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per
+/// cent, none better than what is left beside what its effect explains (a pull as large as the rest, all of it
+/// along this value), no length better than half a count. An angle moves by as much in radian.
 inline void add_model_error(std::vector<parameter_estimate>& values, const effect& e, const axis_case& c,
                             double left) {
     in_lowest_terms(values);
@@ -224,8 +229,10 @@ inline void widen(std::vector<parameter_estimate>& mine, const std::vector<param
                 }
 }
 
-/// Whether a number of a drive's loops, found outside the owner's tolerance, has an interval that reaches into it. A replay is so sensitive to
-/// these gains that they are fitted outside a narrow tolerance by what a law is wrong by: such a value is a suspect, no claim.
+/// Whether a number of a drive's loops, found outside the owner's tolerance, has an interval that reaches into
+/// it. A replay is so sensitive to
+/// these gains that they are fitted outside a narrow tolerance by what a law is wrong by: such a value is a
+/// suspect, no claim.
 inline bool may_be_inside_its_tolerance(const axis_case& c, const std::vector<parameter_estimate>& found) {
     if (!c.axis.drive.closes() || found.empty() || !found.front().key.starts_with("drive.")) return false;
     for (const parameter& p : c.path.front().fit.parameters)
@@ -238,8 +245,8 @@ inline bool may_be_inside_its_tolerance(const axis_case& c, const std::vector<pa
 
 } // namespace detail
 
-/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second readings. `rivals`: of
-/// each, the models that it is weighed against (detail::rivals_of).
+/// The causes behind the command wire, in the order of the path, with probabilities, intervals and second
+/// readings. `rivals`: of each, the models that it is weighed against (detail::rivals_of).
 inline std::vector<cause> plant_causes(const axis_case& c,
                                        const std::vector<std::vector<detail::rival>>& rivals) {
     const auto& effects = c.best().effects;
@@ -270,13 +277,15 @@ inline std::vector<cause> plant_causes(const axis_case& c,
                 named.better_form = r.name->name;
             }
         }
-        // Where another cause has a second reading, this one's values under that reading belong to its interval.
+        // Where another cause has a second reading, this one's values under that reading belong to its
+        // interval.
         for (std::size_t j = 0; j < rivals.size(); ++j)
             for (const auto& r : rivals[j])
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
-        // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke for it (docs/trial.md).
+        // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
+        // for it (docs/trial.md).
         constexpr double least = 0.08;
         const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]);
         named.probability = std::max(least, named.probability * known);
@@ -297,8 +306,8 @@ inline double rounding_force(const axis_case& c, double count) {
                                 c.record.bandwidth_Hz);
 }
 
-/// An encoder that counts in coarser steps than described: the positions are multiples of the coarser count, which
-/// needs no dynamics to see.
+/// An encoder that counts in coarser steps than described: the positions are multiples of the coarser count,
+/// which needs no dynamics to see.
 inline std::optional<cause> count_cause(const axis_case& c) {
     if (!c.coarse() || c.count_unnamed) return {};
     cause out;
@@ -329,8 +338,8 @@ inline cause added_cause(const axis_case& c) {
     return out;
 }
 
-/// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to rounding is
-/// the cause; one that does not is a guess.
+/// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to
+/// rounding is the cause; one that does not is a guess.
 inline std::optional<cause> controller_cause(const axis_case& c) {
     if (!c.controller_differs() || c.controller_unnamed) return {};
     if (c.command_is_added()) return added_cause(c);

@@ -5,9 +5,9 @@
 
 namespace quadrant::diagnosis {
 
-/// Covariance of the fitted parameters, in fit coordinates: H^-1 (S + P) H^-1 with H the curvature of the score, S the
-/// scatter of the gradient between motion segments and P the owner's tolerance. Segments, not samples, carry the
-/// scatter, so that correlated residuals and what the model lacks widen it.
+/// Covariance of the fitted parameters, in fit coordinates: H^-1 (S + P) H^-1 with H the curvature of the
+/// score, S the scatter of the gradient between motion segments and P the owner's tolerance. Segments, not
+/// samples, carry the scatter, so that correlated residuals and what the model lacks widen it.
 inline Eigen::MatrixXd covariance(const candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
     Eigen::MatrixXd h = c.curvature, scatter = Eigen::MatrixXd::Zero(n, n);

@@ -5,9 +5,10 @@
 
 namespace quadrant::diagnosis {
 
-/// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle the other
-/// one begins is found again, everything else stays as fitted. Costs some forty passes, when there is a process at all. Of a drive, the force
-/// that its integral holds at the first row is found again, and what happened in the first record did not happen here.
+/// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle
+/// the other one begins is found again, everything else stays as fitted. Costs some forty passes, when there is
+/// a process at all. Of a drive, the force that its integral holds at the first row is found again, and what
+/// happened in the first record did not happen here.
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
     if (plant.drive.has_integral()) {

@@ -71,8 +71,8 @@ public:
         return **c.held_out_force;
     }
 
-    /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end, the
-    /// others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
+    /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end,
+    /// the others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
     std::vector<candidate> with_each(const candidate& from) const { return with_each(from, suspects()); }
     std::vector<candidate> with_each(const candidate& from, const std::vector<const effect*>& among) const {
         std::vector<candidate> out;
@@ -105,7 +105,8 @@ public:
     candidate with(const candidate& from, const effect* added) const {
         return with_these(from, {added}).front();
     }
-    /// `from` with each of these added, the most promising fitted to the end, `most` of those that were not met before.
+    /// `from` with each of these added, the most promising fitted to the end, `most` of those that were not met
+    /// before.
     std::vector<candidate> with_these(const candidate& from, const std::vector<const effect*>& added,
                                       std::size_t most = std::numeric_limits<std::size_t>::max()) const {
         std::vector<candidate> out;
@@ -123,8 +124,8 @@ public:
         }
         return out;
     }
-    /// The described machine with these effects, fitted one after the other. One that cannot be told without the others comes
-    /// after them; one that cannot be told at all adds nothing.
+    /// The described machine with these effects, fitted one after the other. One that cannot be told without
+    /// the others comes after them; one that cannot be told at all adds nothing.
     candidate with(const std::vector<const effect*>& effects) const {
         candidate whole{.effects = effects};
         for (const candidate& known : tried_)
@@ -145,8 +146,8 @@ public:
         return c;
     }
 
-    /// The best model with one of its effects exchanged for another name of the same force; the others keep their numbers
-    /// where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
+    /// The best model with one of its effects exchanged for another name of the same force; the others keep
+    /// their numbers where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
     candidate exchanged(const candidate& best, const candidate& without, const effect* added) const {
         candidate from = without;
         begin_at(from, best.fit.plant);
@@ -156,7 +157,8 @@ public:
         return out.front();
     }
 
-    /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is calibration.
+    /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is
+    /// calibration.
     bool is_calibration(const candidate& c, const effect* e) const {
         plant_model fitted = c.fit.plant;
         const auto values = e->read(fitted);
@@ -183,8 +185,8 @@ public:
         return out;
     }
 
-    /// The suspects to exchange a cause for that was found on top of `before`; with rules.near_rivals those only that gained
-    /// something there, as far as they were tried.
+    /// The suspects to exchange a cause for that was found on top of `before`; with rules.near_rivals those
+    /// only that gained something there, as far as they were tried.
     std::vector<const effect*> relatives(const candidate& before) const {
         std::vector<const effect*> out = suspects();
         if (rules_.near_rivals)
@@ -205,8 +207,8 @@ public:
         return **c.noise;
     }
 
-    /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it sees of noise and
-    /// half a count.
+    /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it
+    /// sees of noise and half a count.
     double structure(const std::vector<double>& ms, const channel& c, double sigma) const {
         const double limit = 4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
         double sum = 0;
@@ -220,12 +222,13 @@ public:
             sum += structure(c.fit.ms[i], record_.score.channels[i], sigma);
         return sum;
     }
-    /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what machines inside
-    /// the owner's tolerances leave there.
+    /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what
+    /// machines inside the owner's tolerances leave there.
     bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const {
         return left_in(ms, c, sigma) < square(rules_.immaterial) * tolerance_cloud()[i];
     }
-    /// Whether no channel holds more above the noise than machines inside the owner's tolerances differ by there.
+    /// Whether no channel holds more above the noise than machines inside the owner's tolerances differ by
+    /// there.
     bool within_tolerances(const std::vector<std::vector<double>>& ms, const scoring& score,
                            double sigma) const {
         for (std::size_t i = 0; i < std::min(ms.size(), tolerance_cloud().size()); ++i)
@@ -238,8 +241,8 @@ public:
             if (!immaterial(c.fit.ms[i], record_.score.channels[i], sigma, i)) return false;
         return true;
     }
-    /// Whether every channel is at the floor: noise, or nothing that would matter. Of a model on this record or, with its
-    /// mean squares there, on another.
+    /// Whether every channel is at the floor: noise, or nothing that would matter. Of a model on this record
+    /// or, with its mean squares there, on another.
     bool settled(const std::vector<std::vector<double>>& ms, const scoring& score, double sigma) const {
         for (std::size_t i = 0; i < ms.size(); ++i)
             if (structure(ms[i], score.channels[i], sigma) >= rules_.structure &&
@@ -257,14 +260,16 @@ public:
 
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const {
-        // The innovations are free of the drift that a drive's integral makes of noise, the residual force is not.
+        // The innovations are free of the drift that a drive's integral makes of noise, the residual force is
+        // not.
         const double most = record_.observer.drift_pole < 1 ? rules_.near_floor : 1.3;
         return structure(c, noise(c)) <= 0 && held_out_force(c) < most * floor_force(c);
     }
 
     bool settled(const candidate& c) const { return settled(c.fit.ms, record_.score, noise(c)); }
 
-    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what causes do.
+    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what
+    /// causes do.
     bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
     /// The same, or what the laws of its friction and of its causes may be wrong by.
     bool near_its_laws(const candidate& c) const {
@@ -273,9 +278,9 @@ public:
         return held_out_force(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
     }
 
-    /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by which a
-    /// machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of 20 differ less
-    /// [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
+    /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by
+    /// which a machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of
+    /// 20 differ less [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
     const std::vector<double>& tolerance_cloud() const {
         if (!cloud_.empty()) return cloud_;
         std::mt19937_64 random(20080901);
@@ -301,8 +306,9 @@ public:
         return cloud_;
     }
 
-    /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; where no single effect
-    /// pays on the calibrated machine and something is left, two at once. Returns the calibrated machine and the models with one cause more each.
+    /// Adds the effect that predicts held-out motion best, a few ways abreast, until nothing pays; where no
+    /// single effect pays on the calibrated machine and something is left, two at once. Returns the calibrated
+    /// machine and the models with one cause more each.
     std::vector<candidate> run() const {
         candidate best = calibrated_;
         std::vector<candidate> beam{calibrated_};
@@ -354,13 +360,14 @@ public:
             beam.assign(1, best);
         }
         cut_ = over();
-        // What does not take the gap of the machine file as it stands down explains nothing, however well it scores.
+        // What does not take the gap of the machine file as it stands down explains nothing, however well it
+        // scores.
         if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
         return path_to(best);
     }
 
-    /// The calibrated machine and the models with one cause of `best` more each, the cause that matters most first. What is
-    /// no longer needed beside the others is left out.
+    /// The calibrated machine and the models with one cause of `best` more each, the cause that matters most
+    /// first. What is no longer needed beside the others is left out.
     std::vector<candidate> path_to(const candidate& best) const {
         std::vector<candidate> path{best};
         while (!path.back().effects.empty()) {
@@ -385,8 +392,8 @@ public:
         return path;
     }
 
-    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them. Forms without a
-    /// name hold too much to count.
+    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them.
+    /// Forms without a name hold too much to count.
     double best_without(const std::vector<const effect*>& names) const {
         const auto has_one = [&](const candidate& c) {
             return std::any_of(names.begin(), names.end(), [&](const effect* e) {
@@ -411,8 +418,9 @@ public:
             return false;
         return shrinks(more, less);
     }
-    /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while that does
-    /// not grow, half of the innovations of one channel. A drag is small beside the peaks of every reversal, but not in its own band.
+    /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while
+    /// that does not grow, half of the innovations of one channel. A drag is small beside the peaks of every
+    /// reversal, but not in its own band.
     bool shrinks(const candidate& more, const candidate& less) const {
         const double floor = square(floor_force(more)), fall = square(1 - rules_.least_shrink);
         const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
@@ -438,8 +446,9 @@ public:
     }
 
 private:
-    /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its path does not depend on them; only a
-    /// replay of the logged motion with another gain differs, by far more than two machines would.
+    /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its
+    /// path does not depend on them; only a replay of the logged motion with another gain differs, by far more
+    /// than two machines would.
     bool is_of_feedback(const parameter& p) const {
         const drive_kind kind = given_.fit.plant.drive.kind;
         return p.key.starts_with("drive.") && kind != drive_kind::position_servo;
@@ -448,7 +457,8 @@ private:
     static double left_in(const std::vector<double>& ms, const channel& c, double sigma) {
         return mean_of(ms) - square(c.noise_gain * sigma);
     }
-    /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted force [N].
+    /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted
+    /// force [N].
     double friction_level(const plant_model& p) const {
         const auto& f = p.friction;
         if (!(f.load > 0)) return f.coulomb + f.excess;
@@ -457,8 +467,8 @@ private:
             transmitted[k] = p.force_constant * record_.command[k] - p.static_force(record_.position[k]);
         return f.coulomb + f.excess + f.load * rms(transmitted);
     }
-    /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command is its own, and
-    /// box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
+    /// Whether a drive with loops of its own leaves this effect a place: what holds, limits or delays a command
+    /// is its own, and box `drive`; only a limit of the motor's voltage or force behind a measured duty is not.
     bool beside_drive(const effect& e) const {
         if (e.name == "force_constant" && is_force(axis_.command_unit)) return false; // the drive's gain
         if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
@@ -473,8 +483,9 @@ private:
         }
         fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
     }
-    /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit of `best` stopped
-    /// short (a play or a contact makes its score rough): it goes on from there. True: it got better.
+    /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit
+    /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
+    /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const {
         if (best.effects.empty()) return false;
         const candidate* better = nullptr;
@@ -516,7 +527,8 @@ private:
         for (double v : x) sum += v;
         return x.empty() ? 0 : sum / static_cast<double>(x.size());
     }
-    /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them make.
+    /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them
+    /// make.
     std::vector<candidate> everyday() const {
         std::vector<const effect*> each;
         for (const effect* e : suspects())
@@ -580,7 +592,8 @@ private:
             }
         });
     }
-    /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by promise.
+    /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by
+    /// promise.
     void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models,
                      when_late how) const {
         std::stable_sort(which.begin(), which.end(),
@@ -597,7 +610,8 @@ private:
         in_groups(std::span(which).subspan(fitted), 1,
                   [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
     }
-    /// use(a few of these), on all cores. The same few whatever the number of cores, so that the result is the same.
+    /// use(a few of these), on all cores. The same few whatever the number of cores, so that the result is the
+    /// same.
     template <class Use>
     void in_groups(std::span<const std::size_t> which, std::size_t size, const Use& use) const {
         on_all_cores((which.size() + size - 1) / size, rules_.threads, [&](std::size_t group) {
