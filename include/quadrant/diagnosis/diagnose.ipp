@@ -75,15 +75,14 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
                          [](const auto& a, const auto& b) { return a.share.value > b.share.value; });
         for (std::size_t i = 0; i < std::min<std::size_t>(3, views.size()); ++i)
             text += worded("; %.0f %% ", 100 * views[i].share.value) + views[i].finding;
+        const auto forms = c.models.forms();
         std::vector<candidate> with_form;
-        if (!c.models.over())
-            with_form = c.models.with_these(c.best(), {unlisted::curves.begin(), unlisted::curves.end()},
-                                            c.limits.forms);
+        if (!c.models.over()) with_form = c.models.with_these(c.best(), forms, c.limits.forms);
         for (std::size_t i = 0; i < with_form.size(); ++i)
             if (const double share = c.takes_off(with_form[i], c.best());
                 share > 0.5 && c.models.pays(with_form[i], c.best()))
                 text += worded("; a force that follows %s and is in no list takes %.0f %% off",
-                               std::string(unlisted::curves[i]->name).c_str(), 100 * share);
+                               std::string(forms[i]->name).c_str(), 100 * share);
         for (const cause& x : causes)
             if (!x.better_form.empty())
                 text += worded("; a force that follows %s and is in no list predicts better than %s",
@@ -277,6 +276,21 @@ inline axis_case& need_blocks(axis_case& c, const std::string& file) {
     return c;
 }
 
+/// What a case leaves of the forces along the motion, over what the calibrated machine leaves there.
+inline double left_along_motion(const axis_case& c) {
+    return c.beside_motion(c.best()) / c.beside_motion(c.path.front());
+}
+/// Whether an axis is looked at again with models led along its motion: structure is left, and what was found leaves
+/// more of the forces along that motion than was there before, whatever it does to the predictions. Beside forces
+/// without a name a corrected model predicts best by standing still. A play hides the motor's motion, and a drive's
+/// loops are replayed with the readings.
+inline bool contradicts_motion(const axis_case& c) {
+    if (c.at_floor() || c.best().effects.empty() || c.models.over() || c.axis.drive.closes() ||
+        c.best().fit.plant.backlash > 0)
+        return false;
+    return left_along_motion(c) > 1 / (1 - c.limits.least_shrink);
+}
+
 /// Effects of the caller's own have names of their own.
 inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
     const auto& own = axis.own_effects;
@@ -352,9 +366,25 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         if (transmission) // the two encoders show these themselves
             excluded.insert(excluded.end(), {"backlash", "structural_resonance"});
         const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
-        axis_case c(rigid, coupled, other ? &*other : nullptr, machine.sample_period_s, excluded,
-                    detail::for_one_of(r, axes_left--), tell);
-        detail::diagnose_axis(out, detail::need_blocks(c, log.file), transmission ? &*transmission : nullptr);
+        const rules limits = detail::for_one_of(r, axes_left--);
+        const auto look = [&](held_by how) {
+            return std::make_unique<axis_case>(rigid, coupled, other ? &*other : nullptr,
+                                               machine.sample_period_s, excluded, limits, tell, how);
+        };
+        auto found = look(held_by::readings);
+        detail::need_blocks(*found, log.file);
+        if (detail::contradicts_motion(*found)) {
+            tell("axis " + axis.name + ": again, along the measured motion");
+            auto led = look(held_by::motion);
+            if (detail::left_along_motion(*led) < 1 - r.least_shrink) {
+                found = std::move(led);
+                out.notes.push_back(fmt::format(
+                    "axis {}: judged by the forces along the measured motion: models corrected by the readings "
+                    "predicted best by standing where the axis moves.",
+                    axis.name));
+            }
+        }
+        detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);
     }
     return out;
 }

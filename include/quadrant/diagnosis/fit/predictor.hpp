@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../log/signals.hpp"
 #include "../model/driven_motion.hpp"
 #include "../model/sample_loss.hpp"
 #include "pass.hpp"
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,6 +19,14 @@ const pass_table& passes();
 #else
 inline const pass_table& passes() { return passes_of<>; }
 #endif
+
+/// A motion that plants are led along instead of being corrected by its readings: what an expert's regression
+/// does.
+struct led_motion {
+    std::vector<double> way;           ///< smoothed without phase at the corner [m]
+    std::vector<unsigned char> counts; ///< of every row: 1 where the axis surely moves
+    double mass, force_constant;       ///< of the machine file: forces are compared in units of the command
+};
 
 /// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what
 /// the correction had to be. One pass, no drift of the double integrator, and a right model leaves only the
@@ -45,6 +55,11 @@ struct predictor {
     std::size_t substeps = 1;                     ///< of a period, see substeps_of()
     const driven_motion* drive =
         nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
+    /// Null: the plant is corrected by the readings. Else it is led along this motion, and the innovations are
+    /// those that the forces which this motion does not need would make of a free mass. An observer lets a model
+    /// stand, or creep behind a stiff damping, where a light machine moves slowly under forces that the model
+    /// does not have: the corrections carry it, and little shows in them. No state of a led plant takes part.
+    std::shared_ptr<const led_motion> led{};
     double drift_pole =
         1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
@@ -81,6 +96,39 @@ struct predictor {
         }
     }
 
+    /// What the forces on each plant leave when it is led along a motion, in units of the command times the
+    /// described force constant [N]; 0 where that motion does not count.
+    void forces_beside(const led_motion& by, std::span<const plant_model> plants, std::span<const double> u,
+                       std::span<std::vector<double>> left) const {
+        constexpr double heavier = 1e4; // so heavy that no force moves it beside the way
+        std::vector<std::vector<double>> unused(plants.size());
+        pass(plants, u, unused, left.data(), {by.way.data(), 1, 1 / period, heavier});
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            const plant_model& p = plants[i];
+            const double base = p.moving_mass() - p.mode.mass,
+                         led_base = heavier * p.moving_mass() - p.mode.mass;
+            for (double& x : left[i]) x *= led_base;
+            left[i] = zero_phase(left[i], corner_Hz, period);
+            const auto at = [&](std::size_t k) { return by.way[k] - p.cyclic.at(by.way[k]); };
+            // Force that one volt more would make: a weak motor, or friction that takes its share, explains
+            // nothing by making all forces small.
+            const auto a_volt = [&](std::size_t k) {
+                const double of_motor = p.force_constant * (1 + p.ripple.at(by.way[k]));
+                const double through = of_motor * u[k] - p.static_force(by.way[k]);
+                const bool against = through * (by.way[k + 1] - by.way[k - 1]) > 0;
+                return of_motor * (1 - (against ? 1 : -1) * p.friction.load);
+            };
+            for (std::size_t k = 0; k < left[i].size(); ++k) {
+                if (k == 0 || k + 1 == left[i].size() || !by.counts[k]) {
+                    left[i][k] = 0;
+                    continue;
+                }
+                const double needed = base * (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
+                left[i][k] = by.force_constant / a_volt(k) * (left[i][k] - needed);
+            }
+        }
+    }
+
     /// Rows of the innovations: those of the position, and behind them, where something was measured behind the
     /// drive, what the drive gives otherwise.
     std::size_t rows() const { return position.size() * (drive && drive->tapped() ? 2 : 1); }
@@ -97,6 +145,34 @@ struct predictor {
     }
 
 private:
+    /// How a pass is corrected: the position that leads it, its gains, and how much heavier the plants are.
+    struct guidance {
+        const double* position;
+        double to_position, to_velocity, heavier;
+    };
+    /// Innovations of a free mass on which these forces act, and the accelerations that say the same.
+    void pass_led(std::span<const plant_model> plants, std::span<const double> u,
+                  std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
+        std::vector<std::vector<double>> left(plants.size());
+        forces_beside(*led, plants, u, left);
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            innovation[i].resize(rows());
+            double x = 0, v = 0;
+            for (std::size_t k = 0; k < left[i].size(); ++k) {
+                innovation[i][k] = x;
+                const double a = -left[i][k] / led->mass;
+                v -= l2() * x;
+                x += period * (v + period / 2 * a) - l1() * x;
+                v += period * a;
+            }
+            if (!acceleration) continue;
+            const auto at = [&](std::size_t k) { return position[k] - plants[i].cyclic.at(position[k]); };
+            acceleration[i].assign(position.size(), 0.0);
+            for (std::size_t k = 1; k + 1 < position.size(); ++k)
+                acceleration[i][k] =
+                    left[i][k] / plants[i].mass + (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
+        }
+    }
     std::size_t whole_periods(double delay) const {
         return static_cast<std::size_t>(std::max(0.0, delay) / period);
     }
@@ -150,10 +226,20 @@ private:
     /// Several plants side by side in the lanes of one number.
     void pass(std::span<const plant_model> plants, std::span<const double> u,
               std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
+        if (led) return pass_led(plants, u, innovation, acceleration);
+        pass(plants, u, innovation, acceleration, {position.data(), l1(), l2(), 1});
+        if (drift_pole < 1)
+            for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);
+    }
+    void pass(std::span<const plant_model> plants, std::span<const double> u,
+              std::span<std::vector<double>> innovation, std::vector<double>* acceleration,
+              const guidance& by) const {
         std::array<double*, abreast> e{}, a{};
         std::array<pass_input::plant, abreast> each;
         for (std::size_t i = 0; i < plants.size(); ++i) {
             each[i] = {axis_parameters(plants[i]), plants[i].delay};
+            each[i].axis.mass *= by.heavier;
+            each[i].axis.coupling /= by.heavier; // a share of the mass
             innovation[i].resize(rows());
             e[i] = innovation[i].data();
             if (!acceleration) continue;
@@ -166,19 +252,17 @@ private:
         pass_all({.period = period,
                   .substeps = substeps,
                   .rows = position.size(),
-                  .position = position.data(),
+                  .position = by.position,
                   .command = u.data(),
                   .command_of = drive ? command_of.data() : nullptr,
                   .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
-                  .to_position = l1(),
-                  .to_velocity = l2(),
+                  .to_position = by.to_position,
+                  .to_velocity = by.to_velocity,
                   .plants = plants.size(),
                   .plant_of = each.data(),
                   .innovation = e.data(),
                   .acceleration = acceleration ? a.data() : nullptr},
                  passes());
-        if (drift_pole < 1)
-            for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);
     }
 };
 

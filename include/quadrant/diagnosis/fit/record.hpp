@@ -176,6 +176,19 @@ inline std::vector<double> residual_of(const axis_record& r, const plant_model& 
     return out;
 }
 
+/// The smoothed motion of a record for plants to be led along. It counts where the axis surely moves, by three
+/// counts within the response of the observer, and where the record says something.
+inline std::shared_ptr<const led_motion> motion_to_lead(const axis_record& r, const plant_model& described) {
+    auto out = std::make_shared<led_motion>();
+    out->way = zero_phase(r.position, r.scale.corner_Hz, r.period);
+    out->mass = described.moving_mass();
+    out->force_constant = described.force_constant;
+    const double surely = 3 * r.resolution / r.scale.response();
+    for (std::size_t k = 0; k < r.velocity.size(); ++k)
+        out->counts.push_back(std::abs(r.velocity[k]) > surely && (r.left_out.empty() || !r.left_out[k]));
+    return out;
+}
+
 /// `scale`: of this log, or of the one that it is compared with.
 inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
     axis_record r{.period = period,
@@ -212,9 +225,13 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     return r;
 }
 
+/// How models are held to a record: corrected by its readings, or led along its motion.
+enum class held_by { readings, motion };
+
 /// The record with its observer stepping as finely as the described machine needs.
-inline axis_record for_machine(axis_record r, const axis_description& a) {
+inline axis_record for_machine(axis_record r, const axis_description& a, held_by how = held_by::readings) {
     const plant_model described(a, r.scale.give());
+    if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
     if (r.observer.drive && !r.observer.drive->tapped()) {
         r.reaction = reaction_to_reading(described, *r.observer.drive);

@@ -17,12 +17,13 @@ namespace quadrant::diagnosis {
 class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
-              const std::vector<std::string>& excluded, const rules& r, const progress& tell)
+              const std::vector<std::string>& excluded, const rules& r, const progress& tell,
+              held_by how = held_by::readings)
         : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
           resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
           record(for_machine(
-              in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions),
-              a)),
+              in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions), a,
+              how)),
           models(record, a, excluded, r, tell) {
         const auto is_excluded = [&](const char* effect) {
             return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
@@ -38,7 +39,7 @@ public:
         if (controller_unnamed) controller->mended = false;
         if (holdout)
             second = for_machine(
-                in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second), axis);
+                in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second), axis, how);
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         follow(models.run());
     }
@@ -99,6 +100,17 @@ public:
     bool claims_suffice() const {
         const candidate& m = applied();
         return claims > 0 && models.settled(m) && models.near_its_laws(m);
+    }
+    /// What a model's forces leave along the measured motion, rms where the axis moves [N]. The same of a model
+    /// that was fitted to the readings and of one that was led.
+    double beside_motion(const candidate& m) const {
+        const plant_model described(axis, record.scale.give());
+        const auto by = motion_to_lead(record, described);
+        std::vector<double> left;
+        record.observer.forces_beside(*by, {&m.fit.plant, 1}, record.command, {&left, 1});
+        const auto rows = std::count(by->counts.begin(), by->counts.end(), 1);
+        return rows > 0 ? rms(left) * std::sqrt(static_cast<double>(left.size()) / static_cast<double>(rows))
+                        : 0;
     }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {

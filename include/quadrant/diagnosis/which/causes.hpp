@@ -91,12 +91,12 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     // beside it the name is no longer needed. A polynomial in the velocity comes close to Coulomb friction, but
     // the jump is missing in it.
     if (!c.settled && !c.models.over()) {
-        const auto models =
-            c.models.with_these(without, {unlisted::curves.begin(), unlisted::curves.end()}, c.limits.forms);
+        const auto forms = c.models.forms();
+        const auto models = c.models.with_these(without, forms, c.limits.forms);
         for (std::size_t i = 0; i < models.size(); ++i)
             if (c.takes_off(models[i], c.best()) > 0.5 &&
                 !c.models.pays(c.models.with(models[i], own), models[i]))
-                out.push_back({.model = models[i], .name = unlisted::curves[i]});
+                out.push_back({.model = models[i], .name = forms[i]});
     }
     weigh(out, c);
 

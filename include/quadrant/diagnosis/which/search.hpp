@@ -185,6 +185,14 @@ public:
         return out;
     }
 
+    /// The forms without a name that compete. Along a motion a force that follows the command takes the command
+    /// itself away, and would explain every record.
+    std::vector<const effect*> forms() const {
+        std::vector<const effect*> out(unlisted::curves.begin(), unlisted::curves.end());
+        if (record_.observer.led) std::erase(out, &unlisted::by_command);
+        return out;
+    }
+
     /// The suspects to exchange a cause for that was found on top of `before`; with rules.near_rivals those
     /// only that gained something there, as far as they were tried.
     std::vector<const effect*> relatives(const candidate& before) const {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSL-1.0
+// A light motor that creeps against a large cogging torque: models that stand still predict its readings well, and
+// contradict its motion.
+#include "claims.hpp"
+
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/which/axis_case.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <sstream>
+#include <string>
+
+using namespace quadrant::diagnosis;
+using workshop::said;
+using workshop::value_of;
+
+namespace {
+
+constexpr double period = 0.002, inertia = 2.5e-4, cogging = 0.8, coulomb = 0.15,
+                 count = 2 * 3.14159265358979 / 8192;
+
+/// A swing, then a creep of 0.75 rad/s by a PID, in fine steps; torque measured.
+std::string creeping() {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> noise(0, 0.004);
+    std::string out = "t_s,q_pos_rad,q_cmd_Nm\n";
+    double q = 0, v = 0, torque = 0, integral = 0, read = 0, before = 0;
+    constexpr int fine = 200;
+    for (int k = 0; k < 4000; ++k) {
+        const double t = k * period;
+        read = std::round(q / count) * count;
+        // 1.5 rad and back, then 0.75 rad/s
+        const double swing = 2 * 3.14159265358979 * std::min(t, 0.4) / 0.4;
+        const double asked = 0.75 * (1 - std::cos(swing)) + 0.75 * std::max(0.0, t - 0.4);
+        const double error = asked - read;
+        integral += 30 * error * period;
+        const double command = 5 * error + 0.05 * (error - before) / period + integral;
+        before = error;
+        double mean = 0;
+        for (int i = 0; i < fine; ++i) {
+            const double h = period / fine;
+            torque += (command - torque) * h / 0.001;
+            mean += torque / fine;
+            const double sign = std::tanh(v / 0.005);
+            const double net = torque - coulomb * sign - 0.002 * v - cogging * std::sin(7 * q + 0.6) -
+                               0.15 * std::sin(14 * q + 1.1);
+            v += h * net / inertia;
+            q += h * v;
+        }
+        char row[80];
+        std::snprintf(row, sizeof row, "%.6f,%.9f,%.6f\n", t, read, mean + noise(random));
+        out += row;
+    }
+    return out;
+}
+
+machine_description motor() {
+    return read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.002, "axes": {"q": {
+        "plant": {"inertia_kg_m2": 2.5e-4}, "tolerance": {"inertia": 0.3},
+        "encoder": {"resolution_rad": 7.67e-4}, "actuator": {"command_is": "measured"}}}})"),
+        "motor.json");
+}
+machine_log record() {
+    std::istringstream file(creeping());
+    return read_log(file, "creep.csv");
+}
+
+} // namespace
+
+TEST_CASE(
+    "along the motion: a friction that would hold the axis shows whole, which hardly shows in the readings") {
+    const auto machine = motor();
+    const auto log = record();
+    axis_description axis = machine.axes.front();
+    std::size_t motions = 0;
+    const auto& l = log.axes.front();
+    const axis_record r = for_machine(
+        in_pieces(prepare(l, period, count, scales_of(axis.plant, l, period, count)), motions), axis);
+    const auto led = motion_to_lead(r, plant_model(axis, r.scale.give()));
+    const auto left = [&](const plant_model& p) {
+        std::vector<double> force;
+        r.observer.forces_beside(*led, {&p, 1}, r.command, {&force, 1});
+        return rms(force);
+    };
+    const auto corrected = [&](const plant_model& p) {
+        std::vector<double> e;
+        r.observer.run(p, e);
+        return rms(std::span(e).subspan(500));
+    };
+    const plant_model given(axis, r.scale.give());
+    plant_model right = given, stands = given;
+    right.friction.coulomb = coulomb;
+    right.friction.viscous_slope = 0.002;
+    right.cogging = harmonics(2 * 3.14159265358979 / 7, std::vector{-cogging, -0.15}, std::vector{0.6, 1.1});
+    stands.friction.coulomb = 2;
+    CHECK(corrected(stands) < 0.2 * corrected(given)); // it predicts, because it does not move
+    CHECK(left(stands) > 2 * left(given));             // and needs two newton metres to be moved
+    CHECK(left(right) < 0.2 * left(given));
+    plant_model weak = given;
+    weak.force_constant *= 0.01; // explains nothing by making all forces small
+    CHECK(left(weak) > 0.9 * left(given));
+}
+
+TEST_CASE("diagnose: a light motor that creeps over its cogging torque") {
+    const auto d = diagnose(motor(), record());
+    CAPTURE(said(d));
+    bool named = false;
+    for (const cause& c : d.causes) {
+        if (c.effect != "cogging" || c.probability < 0.5) continue;
+        named = true;
+        CHECK(std::abs(value_of(c, "cogging_period_rad").value - 2 * 3.14159265358979 / 7) < 0.01);
+    }
+    CHECK(named);
+    for (const cause& c : d.causes)
+        CHECK((c.probability < 0.5 || c.effect == "cogging" || c.effect == "coulomb_friction" ||
+               c.effect == "viscous_friction" || c.effect == "constant_force"));
+}
