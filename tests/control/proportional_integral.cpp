@@ -164,17 +164,17 @@ TEST_CASE("proportional_integral: derivative by limit is one while clamped, that
 TEST_CASE("proportional_integral: refuses what no loop can have") {
     using P = clamped::parameters;
     CHECK_THROWS_WITH_AS((clamped{P{-1.0 * gain, integral_gain, 10_V}, Ts}),
-                         "proportional_integral.gain = -60: must be finite and not below 0", invalid_parameter);
+                         "proportional_integral.gain = -60 V s/m: must be finite and not below 0", invalid_parameter);
     CHECK_THROWS_WITH_AS((clamped{P{gain, -1.0 * integral_gain, 10_V}, Ts}),
-                         "proportional_integral.integral_gain = -450: must be finite and not below 0",
+                         "proportional_integral.integral_gain = -450 V/m: must be finite and not below 0",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS((clamped{P{gain, integral_gain, 0_V}, Ts}),
-                         "proportional_integral.limit = 0: must be above 0 (infinite: no limit)",
+                         "proportional_integral.limit = 0 V: must be above 0 (infinite: no limit)",
                          invalid_parameter);
     CHECK_THROWS_AS((clamped{P{gain, integral_gain, std::nan("") * 1_V}, Ts}), invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (tracked{{gain, integral_gain, 10_V, {100_us}}, Ts}),
-        "proportional_integral.tracking_time = 1e-04: must be finite and not below the period (5e-04)",
+        "proportional_integral.tracking_time = 1e-04 s: must be finite and not below the period (5e-04 s)",
         invalid_parameter);
     CHECK_NOTHROW(clamped{P{gain, integral_gain, forever}, Ts});
 }

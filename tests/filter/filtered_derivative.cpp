@@ -55,5 +55,5 @@ TEST_CASE("filtered_derivative: above the sampling rate over pi it rings but dec
 }
 TEST_CASE("filtered_derivative: refuses a corner that is not above 0") {
     CHECK_THROWS_WITH_AS((speed{{.corner = 0_Hz}, 1_ms}),
-                         "filtered_derivative.corner = 0: must be finite and above 0", invalid_parameter);
+                         "filtered_derivative.corner = 0 Hz: must be finite and above 0", invalid_parameter);
 }

@@ -235,7 +235,7 @@ TEST_CASE("every corner that a constructor takes, reset and settle take too; wha
     CHECK_FALSE(slow.faulted());
     CHECK_THROWS_WITH_AS(
         (butterworth<s::force, float>({1e-4_Hz}, T)),
-        "butterworth.corner = 1e-04: must be at least 3.0356396311167783e-07 of the sampling rate in this "
-        "number type (0.00030356396311167783)",
+        "butterworth.corner = 1e-04 Hz: must be at least 3.0356396311167783e-07 of the sampling rate in this "
+        "number type (0.00030356396311167783 Hz)",
         invalid_parameter);
 }

@@ -265,7 +265,7 @@ TEST_CASE(
     const axis_model<s::voltage> g{x.B, x.A};
     CHECK_THROWS_WITH_AS(
         (observer{{1_kHz, g}, T}),
-        "disturbance_observer.corner = 1000: must lie between 0 and half the sampling rate (1000)",
+        "disturbance_observer.corner = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
         invalid_parameter);
     CHECK_THROWS_AS((observer{{0_Hz, g}, T}), invalid_parameter);
     CHECK_THROWS_AS((observer{{60_Hz, g}, 0_s}), invalid_parameter);

@@ -76,5 +76,5 @@ TEST_CASE("lugre_observer: refuses a correction below 0, and what lugre refuses"
     CHECK(message({friction, -1.0 / 1_s}) == "lugre_observer.correction = -1: must be finite and not below 0");
     auto bare = friction;
     bare.stiffness = {};
-    CHECK(message({bare, 1.0 / 1_s}) == "lugre.stiffness = 0: must be finite and above 0");
+    CHECK(message({bare, 1.0 / 1_s}) == "lugre.stiffness = 0 N/m: must be finite and above 0");
 }

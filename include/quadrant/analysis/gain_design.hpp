@@ -58,7 +58,8 @@ struct too_much {
 };
 inline void require_wanted(const wanted_margins& w) {
     require_positive("design_gains.gain", w.gain);
-    require(w.phase > 0 && w.phase < 180, "design_gains.phase", w.phase, "must lie between 0 and 180");
+    require(w.phase > 0 && w.phase < 180, "design_gains.phase", quadrant::detail::in_unit(w.phase, " degrees"),
+            "must lie between 0 and 180 degrees");
     require(w.modulus > 0 && w.modulus < 1, "design_gains.modulus", w.modulus, "must lie between 0 and 1");
 }
 /// What the open loop breaks; `whole` is 1 + whole = 0 of the closed system, whose stability counts.
@@ -126,7 +127,7 @@ gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, 
     detail::require_wanted(options.velocity);
     detail::require_wanted(options.position);
     require(options.integral_phase >= 0 && options.integral_phase <= 45, "design_gains.integral_phase",
-            options.integral_phase, "must lie between 0 and 45");
+            quadrant::detail::in_unit(options.integral_phase, " degrees"), "must lie between 0 and 45 degrees");
     const double tangent = std::tan(options.integral_phase * std::numbers::pi / 180);
     const auto measured = [&](frequency f) { return complex(plant(f)) * complex(feedback(f)); };
     const auto velocity_of = [&](double kp) -> std::optional<pi_model<Command>> {

@@ -67,7 +67,8 @@ inline void require_span(const span& s, duration period) {
                 s.to.value() <= 0.5 / period.value() * (1 + 1e-12),
             "span.to", s.to,
             "must lie above span.from and not above half the sampling rate (" +
-                quadrant::detail::shortest(0.5 / period.value()) + "), with one line or more");
+                quadrant::detail::shortest(quadrant::detail::in_unit(0.5 / period.value(), " Hz")) +
+                "), with one line or more");
 }
 } // namespace detail
 
@@ -141,7 +142,9 @@ complex memory_response(const std::array<double, Order>& weights, duration cycle
 template <std::size_t Order> std::array<double, Order> repetitive_weights(double amplification_db) {
     const double ratio = std::pow(10.0, amplification_db / 20), most = std::pow(2.0, double(Order));
     require(ratio >= 2 * (1 - 1e-3) && ratio <= most * (1 + 1e-3), "repetitive_weights.amplification_db",
-            amplification_db, "must lie between 6.02 and " + quadrant::detail::shortest(6.02 * double(Order)));
+            quadrant::detail::in_unit(amplification_db, " dB"),
+            "must lie between 6.02 and " +
+                quadrant::detail::shortest(quadrant::detail::in_unit(6.02 * double(Order), " dB")));
     double a = 0;
     if constexpr (Order > 1) a = std::clamp(std::pow(ratio / 2, 1 / double(Order - 1)) - 1, 0.0, 1.0);
     std::array<double, Order + 1> polynomial{1};

@@ -78,7 +78,7 @@ public:
             const duration tracking = p.anti_windup.tracking_time;
             require(detail::is_finite(tracking.value()) && tracking >= period,
                     "proportional_integral.tracking_time", tracking,
-                    "must be finite and not below the period (" + detail::shortest(period.value()) + ")");
+                    "must be finite and not below the period (" + detail::shortest(period) + ")");
             tracking_ = Real(period.value() / tracking.value());
         }
         period_ = period;

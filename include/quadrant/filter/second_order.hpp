@@ -46,7 +46,7 @@ second_order_coefficients<Real> second_order(const detail::field_name& field,
     for (std::size_t i = 0; i < lane_count<Real>; ++i)
         require(detail::plain(lane(corner, i)) * period.value() <= most, field, lane(corner, i),
                 "must be at most " + detail::shortest(most) + " of the sampling rate in this number type (" +
-                    detail::shortest(most / period.value()) + ")");
+                    detail::shortest(detail::in_unit(most / period.value(), " Hz")) + ")");
     const Number t = tan(Number(pi * period.value()) * corner.value());
     return {.g = Real(t),
             .damping = Real(damping),

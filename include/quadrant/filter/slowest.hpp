@@ -23,7 +23,7 @@ void require_held(const detail::field_name& field, const quantity<si::frequency,
         require(detail::plain(lane(corner, i)) * period.value() >= smallest, field, lane(corner, i),
                 "must be at least " + detail::shortest(smallest) +
                     " of the sampling rate in this number type (" +
-                    detail::shortest(smallest / period.value()) + ")");
+                    detail::shortest(detail::in_unit(smallest / period.value(), " Hz")) + ")");
     }
 }
 

@@ -228,9 +228,9 @@ private:
             }
         }
         if (by_force)
-            require(forces <= p.curve.static_level.value(), "maxwell_slip.forces (sum)", forces,
-                    "must not be above static_level (" + detail::shortest(detail::plain(p.curve.static_level)) +
-                        ")");
+            require(forces <= p.curve.static_level.value(), "maxwell_slip.forces (sum)",
+                    decltype(p.curve.static_level)::from_value(forces),
+                    "must not be above static_level (" + detail::shortest(p.curve.static_level) + ")");
         else
             require(std::abs(detail::plain(weights) - 1) <= 1e-9, "maxwell_slip.weights (sum)", weights,
                     "must be 1; shares given as forces go into forces");

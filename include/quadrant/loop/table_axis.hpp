@@ -57,7 +57,7 @@ private:
         if constexpr (requires { p.motor.load.modes.mass; })
             require(p.motor.load.modes.mass == p.motor.mass, "table_axis.motor.load.modes.mass",
                     p.motor.load.modes.mass,
-                    "must be that of the motor (" + detail::shortest(detail::plain(p.motor.mass)) + ")");
+                    "must be that of the motor (" + detail::shortest(p.motor.mass) + ")");
         return p.motor;
     }
 };

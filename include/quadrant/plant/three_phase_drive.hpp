@@ -140,7 +140,8 @@ private:
         const double most = double(p.steps) / period.value() / 12;
         require(p.bandwidth.value() > 0 && p.bandwidth.value() <= most, "three_phase_drive.bandwidth",
                 p.bandwidth,
-                "must be above 0 and at most 1/12 of the current loop's rate (" + detail::shortest(most) + ")");
+                "must be above 0 and at most 1/12 of the current loop's rate (" +
+                    detail::shortest(detail::in_unit(most, " Hz")) + ")");
         require_finite("three_phase_drive.commutation_offset", p.commutation_offset);
         require(detail::is_finite(detail::plain(p.gain_error)) && detail::plain(p.gain_error) > -1,
                 "three_phase_drive.gain_error", p.gain_error, "must be finite and above -1");
