@@ -110,7 +110,7 @@ TEST_CASE("design_gains: margins that no gain keeps are refused by name, bad wis
     const auto feedback = [](quadrant::frequency f) { return qa::laplace(f); };
     const qa::band b{0.5_Hz, 400_Hz, 100};
     // 1/(s + 1) and 200 ms: at the band's begin 72 - 36 degrees behind, margin 72, and less above.
-    const qa::axis_model<> late{1_Hz, 1_mps2 / 1_V, 200_ms};
+    const qa::axis_model<> late{1_per_s, 1_mps2 / 1_V, 200_ms};
     try {
         qa::design_gains(late, feedback, {0.5_Hz, 20_Hz, 100}, {.velocity = {.phase = 80}});
         FAIL("was not refused");

@@ -139,7 +139,7 @@ TEST_CASE("inverse_model: not finite holds the last command, also at settle") {
 TEST_CASE("inverse_model: refuses a gain that is not positive and a negative pole") {
     const auto refusal = [](double b, double a) -> std::string {
         try {
-            inverse_model<signal::voltage>{{b * 1_mps2 / 1_V, a * 1_Hz}, 500_us};
+            inverse_model<signal::voltage>{{b * 1_mps2 / 1_V, a * 1_per_s}, 500_us};
         } catch (const invalid_parameter& e) {
             return e.what();
         }

@@ -21,7 +21,8 @@ using gain = gain_of<s::acceleration, s::voltage>;
 
 struct axis { // [Jamaludin2008] Table 2.1, 2.2
     gain B;
-    frequency A, corner;
+    per_second A;
+    frequency corner;
     double kp, ki;
 };
 const axis x{4.526_mps2 / 1_V, 28.57 / 1_s, 60_Hz, 60, 450}, y{8.916_mps2 / 1_V, 20.0 / 1_s, 90_Hz, 30, 250};

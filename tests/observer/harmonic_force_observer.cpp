@@ -189,20 +189,21 @@ TEST_CASE("harmonic_force_observer: refuses frequencies, poles and plants that l
         "harmonic_force_observer.harmonics = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
         invalid_parameter);
     CHECK_THROWS_WITH_AS((observer<2>{{y, {46_Hz, 46_Hz}, good}, T}),
-                         "harmonic_force_observer.harmonics = 46 Hz: must not be there twice", invalid_parameter);
+                         "harmonic_force_observer.harmonics = 46 Hz: must not be there twice",
+                         invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{y, two, placed<2>::equal(-10.0 / 1_s)}, T}),
-        "harmonic_force_observer.design.poles = 10 rad/s: must be finite and left of the imaginary axis",
+        "harmonic_force_observer.design.poles = 10 1/s: must be finite and left of the imaginary axis",
         invalid_parameter);
     auto single = good;
     single.poles[0] = {-100, 50};
     CHECK_THROWS_WITH_AS((observer<2>{{y, two, single}, T}),
-                         "harmonic_force_observer.design.poles = 50 rad/s: must come in conjugate pairs",
+                         "harmonic_force_observer.design.poles = 50 1/s: must come in conjugate pairs",
                          invalid_parameter);
-    CHECK_THROWS_WITH_AS(
-        (observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
-        "harmonic_force_observer.plant.damping = 0 1/s: must be above 0 for placed poles (or use expected_noise)",
-        invalid_parameter);
+    CHECK_THROWS_WITH_AS((observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
+                         "harmonic_force_observer.plant.damping = 0 1/s: must be above 0 for placed poles (or "
+                         "use expected_noise)",
+                         invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{axis_model<s::voltage>{}, two, good}, T}), invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{y, two, good, -1_ms}, T}), invalid_parameter);
     // 32 equal poles: beyond what double can place; said, not run.

@@ -147,7 +147,7 @@ TEST_CASE("servo_axis: a second mass moves the reading as the mode of flexible_m
     // [docs/derivations].
     const double first = 80, whole = 100;
     flexible_modes<1> mode({.mass = quantity<si::mass>::from_value(whole),
-                            .modes = {{{quantity<si::frequency>::from_value(50 * std::sqrt(whole / first)),
+                            .modes = {{{quantity<hertz_unit>::from_value(50 * std::sqrt(whole / first)),
                                         0.02 * std::sqrt(whole / first), 20 / first}}}},
                            duration::from_value(fine));
     double x = 0, v = 0, worst = 0, most = 0;

@@ -26,7 +26,7 @@ template <signal_tag Command = signal::voltage> struct modes_fit {
         estimate<frequency> centre;
         estimate<double> damping, share; ///< of `flexible_mode`
     };
-    estimate<frequency> pole;
+    estimate<per_second> pole;
     estimate<gain_of<signal::acceleration, Command>> gain;
     estimate<duration> delay; ///< Td, with half a period of hold
     std::vector<mode> modes;  ///< in rising frequency

@@ -16,7 +16,7 @@ struct plant_fit_options {
 
 /// Fitted G(s) = B e^{-s Td}/(s (s + A)) with intervals of 95 %.
 template <signal_tag Command = signal::voltage> struct plant_fit {
-    estimate<frequency> pole;                              ///< A [1/s]
+    estimate<per_second> pole;                             ///< A [1/s]
     estimate<gain_of<signal::acceleration, Command>> gain; ///< B
     estimate<duration> delay;                              ///< Td; of a sampled FRF with the hold's half period
     std::size_t lines;                                     ///< used

@@ -59,7 +59,7 @@ struct span {
     }
 };
 /// All that a sampled loop has. A measured T needs a narrower one; the checks then hold for it only.
-inline span up_to_nyquist(duration period) { return {frequency(), 0.5 / period}; }
+inline span up_to_nyquist(duration period) { return {frequency(), 0.5 * once_per(period)}; }
 namespace detail {
 inline void require_span(const span& s, duration period) {
     require_positive("period", period);
@@ -215,13 +215,13 @@ repetitive_performance performance(const Loop& t, const Learning& l, const Smoot
     constexpr int steps = 100; // either way
     for (std::size_t i = 1; i <= c.harmonics; ++i)
         for (int k = -steps; k <= steps; ++k) {
-            const frequency f = double(i) * (1 + c.uncertainty * k / steps) / c.cycle;
+            const frequency f = double(i) * (1 + c.uncertainty * k / steps) * once_per(c.cycle);
             if (const double now = off(f); now > out.periodic) out.periodic = now, out.worst_harmonic = f;
         }
     double most = 0;
-    const auto lines = std::size_t(std::ceil(200 * (c.bandwidth * c.cycle).value()));
+    const auto lines = std::size_t(std::ceil(200 * c.bandwidth.value() * c.cycle.value()));
     for (std::size_t i = 1; i <= lines; ++i) { // 200 a harmonic: half-way between two of them is one
-        const frequency f = std::min(c.bandwidth, (double(i) / 200) / c.cycle);
+        const frequency f = std::min(c.bandwidth, (double(i) / 200) * once_per(c.cycle));
         if (const double now = off(f); now > most) most = now, out.worst_between = f;
     }
     out.non_periodic_db = decibel(most);

@@ -28,6 +28,7 @@ inline constexpr int unit_powers::*power_of_dimension<boost::units::current_base
 template <>
 inline constexpr int unit_powers::*power_of_dimension<boost::units::plane_angle_base_dimension> =
     &unit_powers::rad;
+template <> inline constexpr int unit_powers::*power_of_dimension<frequency_dimension> = &unit_powers::Hz;
 
 constexpr unit_powers powers_of(boost::units::dimensionless_type) { return {}; }
 template <class Tag, class Power, class Rest>

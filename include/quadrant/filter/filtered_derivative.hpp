@@ -36,7 +36,7 @@ public:
 
     /// The corner of the low-pass.
     struct parameters {
-        quantity<si::frequency, number> corner; ///< > 0
+        quantity<hertz_unit, number> corner; ///< > 0
     };
     /// The last position and rate: what a difference and its filter need.
     struct state {

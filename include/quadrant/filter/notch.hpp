@@ -34,9 +34,8 @@ public:
 
     /// The resonance to take out: where it is, and how wide.
     struct parameters {
-        quadrant::quantity<si::frequency, number>
-            centre;           ///< deepest point; 0 < centre < half the sampling rate
-        number damping = 0.1; ///< of the denominator, twice its damping ratio; > 0
+        quadrant::quantity<hertz_unit, number> centre; ///< deepest point; 0 < centre < half the sampling rate
+        number damping = 0.1;                          ///< of the denominator, twice its damping ratio; > 0
     };
     /// What the slow part lags behind, the band, and the last input.
     struct state {
