@@ -37,7 +37,7 @@ TEST_CASE("proportional_integral: 10 mm/s give 0.60225 V at once and 5.1 V after
     for (int k = 1; k < 2000; ++k) u = pi(10_mmps).value();
     CHECK(u == doctest::Approx(5.1).epsilon(1e-12));
 }
-TEST_CASE("proportional_integral, clamp: bit for bit the bare loop of FORMAT.md") {
+TEST_CASE("proportional_integral, clamp: bit for bit the bare loop of docs/formats.md") {
     clamped pi{{.gain = gain, .integral_gain = integral_gain, .limit = 10_V}, Ts};
     double integral = 0;
     bool same = true, reached = false;

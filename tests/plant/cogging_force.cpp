@@ -18,7 +18,7 @@ using std::numbers::pi;
 const duration T = 500_us;
 const cogging_force<3>::parameters magnets{30_mm, {8_N, -3_N, 1_N}, {0.4, -2.0, 1.0}};
 
-double printed(double x) { // the equation of gap/FORMAT.md, term by term
+double printed(double x) { // the equation of docs/formats.md, term by term
     return 8 * std::sin(2 * pi * x / 0.03 + 0.4) - 3 * std::sin(4 * pi * x / 0.03 - 2.0) +
            std::sin(6 * pi * x / 0.03 + 1.0);
 }

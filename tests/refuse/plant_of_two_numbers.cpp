@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Two bare numbers for a plant: gain and damping, or numerator and denominator?
 // MUST SAY: could not convert | cannot convert | no viable conversion | no matching constructor
-// AT MOST: gcc 700, clang 2400
+// AT MOST: gcc 700, clang 2800
 #include "quadrant/base/literals.hpp"
 #include "quadrant/observer/disturbance_observer.hpp"
 using namespace quadrant::literals;

@@ -25,7 +25,7 @@ using boxes =
     cascade_p_pi_boxes<filtered_derivative<signal::position, signal::velocity>, notch<signal::voltage>>;
 using machine = linear_motor<stribeck<>>;
 
-/// The thesis' x axis ([Jamaludin2008] ch. 2 and 3), notch in the command as in gap/FORMAT.md.
+/// The thesis' x axis ([Jamaludin2008] ch. 2 and 3), notch in the command as in docs/formats.md.
 machine::parameters x_axis() {
     return {.mass = 340_kg,
             .force_constant = 1450_N / 1_V,

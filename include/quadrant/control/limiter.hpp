@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// Clips a wire to what the amplifier can do.
 ///   y = low if x < low, high if x > high, else x
-/// Source: gap/FORMAT.md (limit of cascade_p_pi).
+/// Source: docs/formats.md (limit of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was
 /// clipped. `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.

@@ -25,7 +25,7 @@ namespace quadrant {
 ///   reading       load + cyclic(load)
 /// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints
 /// (`no_joint_laws`: nothing).
-/// Source: the laws are those of the blocks named; how they join is gap/FORMAT.md's table of effects.
+/// Source: the laws are those of the blocks named; how they join is docs/formats.md's table of effects.
 /// Ports: advance(state, command, surroundings) moves the state on by one step h under a command that is held
 /// over it; positive command, force and motion agree. reading(state): what the encoder sees, without its count.
 /// State: a value of its own, so that one law moves many axes, and an observer may correct it by shift().
