@@ -431,5 +431,5 @@ TEST_CASE("designed laws: what no law can be is refused by name") {
     s.velocity_gain = -s.velocity_gain;
     CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.position_gain = "));
     s = place_state_feedback(plant, states, 0_V, T);
-    CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.drift = 0: must be finite and above 0"));
+    CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.drift = 0 V: must be finite and above 0"));
 }

@@ -243,7 +243,7 @@ TEST_CASE("milling_force: refuses what no cutter could do") {
     refuse([](auto& p) { p.feed_per_tooth = -1_mm; },
            "milling_force.feed_per_tooth = -0.001 m: must be finite and above 0");
     refuse([](auto& p) { p.radial = -1.0 * N_per_mm2; },
-           "milling_force.radial = -1e+06: must be finite and not below 0");
+           "milling_force.radial = -1e+06 N/m^2: must be finite and not below 0");
     refuse([](auto& p) { p.runout = -1_um; }, "milling_force.runout = -1e-06 m: must be finite and not below 0");
     refuse([](auto& p) { p.entry = -1_ms; }, "milling_force.entry = -0.001 s: must be finite and not below 0");
     refuse([](auto& p) { p.substeps = 0; }, "milling_force.substeps = 0: must lie between 1 and 1000");
