@@ -447,7 +447,7 @@ TEST_CASE("maxwell_slip: refuses what no contact has, in the name of the box tha
     CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) ==
           "maxwell_slip.curve.coulomb = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.attraction = 0_N / 1_s; }) ==
-          "maxwell_slip.attraction = 0: must be finite and above 0");
+          "maxwell_slip.attraction = 0 N/s: must be finite and above 0");
     CHECK(says([](P& p) { p.forces[1] = 0_N; }) == "maxwell_slip.forces = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.forces[1] = -55_N; }) == "maxwell_slip.forces = -55 N: must be finite and above 0");
     CHECK(says([](P& p) { p.forces[0] = 90_N; }) ==
