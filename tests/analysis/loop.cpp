@@ -155,8 +155,8 @@ TEST_CASE("margins: bad bands and tables are refused") {
     const auto one = [](frequency) { return complex(1); };
     CHECK_THROWS_WITH_AS(margins(one, {0_Hz, 10_Hz}), "band.from = 0 Hz: must be finite and above 0",
                          invalid_parameter);
-    CHECK_THROWS_WITH_AS(margins(one, {20_Hz, 10_Hz}), "band.to = 10 Hz: must be finite and above band.from (20 Hz)",
-                         invalid_parameter);
+    CHECK_THROWS_WITH_AS(margins(one, {20_Hz, 10_Hz}),
+                         "band.to = 10 Hz: must be finite and above band.from (20 Hz)", invalid_parameter);
     const auto broken = [](frequency f) { return complex(f > 5_Hz ? std::nan("") : 1); };
     CHECK_THROWS_AS(margins(broken, {1_Hz, 10_Hz}), invalid_parameter);
     CHECK_THROWS_AS((tabulated_response{{1_Hz, 1_Hz}, {1, 1}}), invalid_parameter);

@@ -96,7 +96,7 @@ TEST_CASE("design_notch: refuses what the response forbids, each by its rule") {
     near.crossover = 90_Hz;
     near.most_phase = 90;
     CHECK(refused(of(slow), near)
-              .find("must lie above the crossover (90): the peak lies in the band of the loop") !=
+              .find("must lie above the crossover (90 Hz): the peak lies in the band of the loop") !=
           std::string::npos);
     auto strict = rule;
     strict.most_phase = 0.5;

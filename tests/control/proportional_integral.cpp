@@ -164,7 +164,8 @@ TEST_CASE("proportional_integral: derivative by limit is one while clamped, that
 TEST_CASE("proportional_integral: refuses what no loop can have") {
     using P = clamped::parameters;
     CHECK_THROWS_WITH_AS((clamped{P{-1.0 * gain, integral_gain, 10_V}, Ts}),
-                         "proportional_integral.gain = -60 V s/m: must be finite and not below 0", invalid_parameter);
+                         "proportional_integral.gain = -60 V s/m: must be finite and not below 0",
+                         invalid_parameter);
     CHECK_THROWS_WITH_AS((clamped{P{gain, -1.0 * integral_gain, 10_V}, Ts}),
                          "proportional_integral.integral_gain = -450 V/m: must be finite and not below 0",
                          invalid_parameter);

@@ -146,6 +146,6 @@ TEST_CASE("inverse_model: refuses a gain that is not positive and a negative pol
         return "";
     };
     CHECK(refusal(0, 1) == "inverse_model.gain = 0 m/(V s^2): must be finite and above 0");
-    CHECK(refusal(4, -1) == "inverse_model.damping = -1 1/s: must be finite and not below 0");
+    CHECK(refusal(4, -1) == "inverse_model.damping = -1 per s: must be finite and not below 0");
     CHECK(refusal(4, 0) == "");
 }

@@ -325,7 +325,8 @@ TEST_CASE("lugre: refuses what no contact has, in the name of the box that minds
     CHECK(says([](P&) {}) == "taken");
     CHECK(says([](P& p) { p.stiffness = per_um(-1); }) ==
           "lugre.stiffness = -1e+06 N/m: must be finite and above 0");
-    CHECK(says([](P& p) { p.damping = -1_N / 1_mps; }) == "lugre.damping = -1 N s/m: must be finite and not below 0");
+    CHECK(says([](P& p) { p.damping = -1_N / 1_mps; }) ==
+          "lugre.damping = -1 N s/m: must be finite and not below 0");
     CHECK(says([](P& p) { p.damping_velocity = -1_mps; }) ==
           "lugre.damping_velocity = -1 m/s: must be finite and not below 0");
     CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) == "lugre.curve.coulomb = 0 N: must be finite and above 0");

@@ -386,10 +386,10 @@ TEST_CASE("milling_axis: refuses a plant without gain, and what its boxes refuse
     CHECK(says([](P&) {}) == "taken");
     CHECK(says([](P& p) { p.plant_gain = {}; }) ==
           "milling_axis_boxes.plant_gain = 0 m/(V s^2): must be finite and above 0");
-    CHECK(says([](P& p) { p.plant_pole = -1_Hz; }) ==
-          "milling_axis_boxes.plant_pole = -1 1/s: must be finite and not below 0");
+    CHECK(says([](P& p) { p.plant_pole = -1_per_s; }) ==
+          "milling_axis_boxes.plant_pole = -1 per s: must be finite and not below 0");
     CHECK(says([](P& p) { p.notch.centre = 1_kHz; }) ==
           "notch.centre = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)");
-    CHECK(says([](P& p) { p.friction.static_level = 0.01_V; }).substr(0, 29) ==
-          "stribeck.static_level = 0.01 N:");
+    CHECK(says([](P& p) { p.friction.static_level = 0.01_V; }).substr(0, 31) ==
+          "stribeck.static_level = 0.01 V:");
 }

@@ -193,17 +193,18 @@ TEST_CASE("harmonic_force_observer: refuses frequencies, poles and plants that l
                          invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{y, two, placed<2>::equal(-10.0 / 1_s)}, T}),
-        "harmonic_force_observer.design.poles = 10 1/s: must be finite and left of the imaginary axis",
+        "harmonic_force_observer.design.poles = 10 per s: must be finite and left of the imaginary axis",
         invalid_parameter);
     auto single = good;
     single.poles[0] = {-100, 50};
     CHECK_THROWS_WITH_AS((observer<2>{{y, two, single}, T}),
-                         "harmonic_force_observer.design.poles = 50 1/s: must come in conjugate pairs",
+                         "harmonic_force_observer.design.poles = 50 per s: must come in conjugate pairs",
                          invalid_parameter);
-    CHECK_THROWS_WITH_AS((observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
-                         "harmonic_force_observer.plant.damping = 0 1/s: must be above 0 for placed poles (or "
-                         "use expected_noise)",
-                         invalid_parameter);
+    CHECK_THROWS_WITH_AS(
+        (observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
+        "harmonic_force_observer.plant.damping = 0 per s: must be above 0 for placed poles (or "
+        "use expected_noise)",
+        invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{axis_model<s::voltage>{}, two, good}, T}), invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{y, two, good, -1_ms}, T}), invalid_parameter);
     // 32 equal poles: beyond what double can place; said, not run.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// 25 Hz where a gain [1/s] belongs: as a bare number it would be 2 pi less than the loop that its user has in mind.
+// 25 Hz where a gain [1/s] belongs: its number would make a loop 2 pi slower than meant.
 // MUST SAY: could not convert | no viable conversion
 // MUST SAY: frequency_dimension
 // AT MOST: gcc 1700, clang 9500

@@ -28,7 +28,7 @@ struct circular_result {
         deviation; ///< from the nominal radius, of every sample of the turn: the polar picture
 };
 
-/// The circle that was asked for, and how a run is held against it.
+/// The circle that was asked for, and how a run is compared with it.
 struct circular_options {
     circle nominal;             ///< as commanded; radius > 0
     bool fitted_centre = false; ///< radial deviation about the least-squares centre instead of the nominal one

@@ -118,7 +118,8 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
                  dt = spread(fit.variance[2]) / scale;
     using gain = gain_of<signal::acceleration, In>;
     const auto at = [](double v) { return gain::from_value(v); };
-    return {{hertz(a), hertz(a - da), hertz(a + da)},
+    const auto pole = [](double v) { return per_second::from_value(v); };
+    return {{pole(a), pole(a - da), pole(a + da)},
             {at(std::exp(log_b)), at(std::exp(log_b - db)), at(std::exp(log_b + db))},
             {duration::from_value(delay), duration::from_value(delay - dt), duration::from_value(delay + dt)},
             n,

@@ -61,8 +61,8 @@ constexpr unit_powers without(unit_powers p, int volt, int newton) {
     return p;
 }
 
-/// Letters that it takes to say so. A kilogram beside seconds is a force in disguise, and no unit that people use
-/// has both newtons and kilograms, or both newtons and amperes where volts would do.
+/// How long a unit becomes when it is written so. Extra for what nobody writes: kilograms beside seconds or
+/// newtons, and newtons beside amperes where volts would do.
 constexpr int effort(const unit_powers& left, int volt, int newton) {
     return 2 * (size_of(volt) + size_of(newton) + size_of(left.m) + size_of(left.kg) + size_of(left.s) +
                 size_of(left.A)) +
@@ -104,7 +104,7 @@ constexpr unit_letters letters_of(const unit_powers& powers) {
     int below = 0;
     for (const part& p : parts) below += p.power < 0;
     if (below == 0) return out;
-    out.add(above ? "/" : " 1/");
+    out.add(above ? "/" : " per ");
     if (below > 1) out.add("(");
     bool first = true;
     for (const part& p : parts)

@@ -24,8 +24,8 @@ concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, co
 
 /// Velocity loop: drives the error to zero and holds against a constant force.
 ///   I[k] = I[k-1] + integral_gain T e[k] (restrained by AntiWindup),   u[k] = gain e[k] + I[k]
-/// Source: docs/formats.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that a
-/// gain change does not jump (control_toolbox #294).
+/// Source: docs/formats.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that
+/// a gain change does not jump (control_toolbox #294).
 /// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is
 /// assumed.
 /// State: the integral and the excess output - applied, both in output units; `reset` leaves zero;

@@ -27,7 +27,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     struct parameters {};
-    /// The last input, which the next one is held against.
+    /// The last input, which is taken from the next one.
     struct state {
         argument x{}; ///< last input
     };

@@ -12,7 +12,7 @@ namespace quadrant {
 ///   H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
 /// Source: docs/formats.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
-///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), so that a constant passes to the last bit
+///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), a constant passes to the last bit
 /// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset`
 /// leaves zero, `settle(x)` the state of a constant x (gain one at standstill). What has died out is zero.
 /// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|.

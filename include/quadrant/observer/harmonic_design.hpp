@@ -86,10 +86,10 @@ template <std::size_t Harmonics> struct harmonic_model {
         for (std::size_t i = 0; i < order; ++i) {
             const complex s = poles[i];
             require(detail::is_finite(s.real()) && s.real() < 0, "harmonic_force_observer.design.poles",
-                    in_unit(s.real(), " 1/s"), "must be finite and left of the imaginary axis");
+                    in_unit(s.real(), " per s"), "must be finite and left of the imaginary axis");
             std::size_t pairs = 0, same = 0;
             for (const complex& other : poles) pairs += other == std::conj(s), same += other == s;
-            require(pairs == same, "harmonic_force_observer.design.poles", in_unit(s.imag(), " 1/s"),
+            require(pairs == same, "harmonic_force_observer.design.poles", in_unit(s.imag(), " per s"),
                     "must come in conjugate pairs");
             pole[i] = std::exp(s * T);
         }
