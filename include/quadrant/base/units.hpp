@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+// First: compilers list candidates in the order of the headers, and those of a quantity say most.
+#include <boost/units/quantity.hpp>
+
 #include <boost/units/base_dimension.hpp>
 #include <boost/units/base_unit.hpp>
 #include <boost/units/make_system.hpp>
-#include <boost/units/quantity.hpp>
 #include <boost/units/systems/si/acceleration.hpp>
 #include <boost/units/systems/si/angular_velocity.hpp>
 #include <boost/units/systems/si/current.hpp>

@@ -31,7 +31,8 @@ concept some_springs = N >
 /// and sticking; `settle(v)` as if v had been applied for ever (relaxed for v = 0).
 /// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the
 /// new Fs: force beyond an element's limit goes to the others. A changed level is then reached as the law says:
-/// at once by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| - Fs' or 0),
+/// at once by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| -
+/// Fs' or 0),
 /// K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
 /// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as
 /// tables print them, divided by their sum, which must not be above Fs. The other stays zero.
