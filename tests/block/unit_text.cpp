@@ -11,7 +11,10 @@ using namespace quadrant;
 using namespace quadrant::literals;
 
 namespace {
-template <class Value> std::string unit(const Value& value) { return detail::unit_of(value); }
+template <class Value> std::string unit(const Value& value) {
+    const char* const letters = detail::unit_of(value);
+    return letters != nullptr ? letters : "";
+}
 } // namespace
 
 TEST_CASE("unit of a value: the SI's own names") {
