@@ -22,5 +22,5 @@ if "$work/jumps" direct >"$work/direct.txt" 2>&1; then
     echo "a constructor that refuses ends well without exceptions"
     exit 1
 fi
-grep -q '^notch.centre = 1200: ' "$work/direct.txt"
+grep -q '^notch.centre = 1200 Hz: ' "$work/direct.txt"
 ! grep -q 'is in use' "$work/direct.txt"
