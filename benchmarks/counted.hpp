@@ -136,8 +136,7 @@ struct four_notches {
 struct notches_in_lanes {
     using number = lanes<4>;
     notch<s::force, number> all{
-        {quantity<si::frequency, number>::from_value(number(std::array{330.0, 340.0, 350.0, 360.0})),
-         number(0.1)},
+        {quantity<hertz_unit, number>::from_value(number(std::array{330.0, 340.0, 350.0, 360.0})), number(0.1)},
         T};
     double operator()(double x) {
         const std::array y = all(quantity_of<s::force, number>::from_value(number(x))).value().each();

@@ -6,7 +6,7 @@
 //                    +------------------------------------ encoder, 0.25 um ------------------------------------------+
 //
 // Source: x axis of [Jamaludin2008] (340 kg, 1450 N/V, 2 kHz), friction of chapter 3; controller of
-// gap/FORMAT.md.
+// docs/formats.md.
 // You should see: below 2 um of error in motion, and twice that where the axis reverses (942.5 ms): friction
 // turns round there, and the feedforward knows one Coulomb level while the machine's level falls with speed.
 // The last line

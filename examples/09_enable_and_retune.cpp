@@ -39,7 +39,7 @@ const boxes::parameters soft{.position_gain = 80.0 / 1_s,
                              .viscous_feedforward = 950_N / 1_mps / (1450_N / 1_V),
                              .notch = {.centre = 330_Hz, .damping = 0.06},
                              .limit = 10_V};
-boxes::parameters with(quantity<si::frequency> kv, boxes::parameters p) {
+boxes::parameters with(per_second kv, boxes::parameters p) {
     p.position_gain = kv;
     return p;
 }

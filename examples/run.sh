@@ -18,12 +18,14 @@ build_it() {
         cmake --build "$build" --target quadrant-gap --parallel "$(nproc 2>/dev/null || echo 2)"
 }
 program=$build/examples/quadrant-gap
-echo "building quadrant-gap (the first time a minute or two; what the compiler says: $log)"
+echo "building quadrant-gap (once; some minutes of processor time; what the compiler says: $log)"
+began=$(date +%s)
 build_it >"$log" 2>&1 || {
     tail -n 30 "$log" >&2
     echo "The build failed; the whole of it: $log" >&2
     exit 1
 }
+echo "built in $(($(date +%s) - began)) s"
 
 set -- diagnose --machine "$data/machine.json" --log "$data/log.csv" --holdout "$data/holdout.csv" \
     --json "$build/diagnosis.json" --report "$build/report.html"

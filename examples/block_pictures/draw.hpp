@@ -79,7 +79,7 @@ inline std::vector<double> frequencies_around(double centre, double from, double
     std::sort(all.begin(), all.end());
     return all;
 }
-inline quantity<si::frequency> hertz(double f) { return f * 1_Hz; }
+inline frequency hertz(double f) { return f * 1_Hz; }
 
 template <class Response> line gain(std::string name, const std::vector<double>& at, Response&& response) {
     curve c(std::move(name));
@@ -109,7 +109,7 @@ inline panel gains_alone(std::vector<line> lines, std::string label = "gain [dB]
 }
 /// The response of a linear block.
 template <class Block> auto response_of(const Block& b) {
-    return [&b](quantity<si::frequency> f) { return std::complex<double>(b.response(f)); };
+    return [&b](frequency f) { return std::complex<double>(b.response(f)); };
 }
 
 } // namespace block_pictures

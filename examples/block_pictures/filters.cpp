@@ -116,7 +116,7 @@ picture draw_discretize() {
         const filter b{filter::parameters::in_si(d), T};
         return gain(name, at, response_of(b));
     };
-    line truth = gain("in s", at, [&](quantity<si::frequency> f) {
+    line truth = gain("in s", at, [&](frequency f) {
         const std::complex<double> p(0, 2 * std::numbers::pi * f.value());
         return w * w / (p * p + 2 * zeta * w * p + w * w);
     });

@@ -18,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 picture draw_ferraris_force_estimator() {
     const auto& a = thesis::y;
     const auto mass = a.kf / a.B;
-    const auto with = [&](const char* name, quantity<si::frequency> corner) {
+    const auto with = [&](const char* name, frequency corner) {
         ferraris_force_estimator<s::voltage> b{{.mass = mass, .force_constant = a.kf, .corner = corner}, T};
         linear_motor<> plant{{.mass = mass, .force_constant = a.kf}, T}; // free: no friction to tell
         curve c(name);

@@ -207,7 +207,7 @@ template <class Boxes> typename Boxes::parameters axis_in_circle(double heavier)
                                  .estimator_corner = 150_Hz,
                                  .notch = {330_Hz, 0.06},
                                  .plant_gain = 4.526_mps2 / 1_V / heavier,
-                                 .plant_pole = 2.5_Hz,
+                                 .plant_pole = 2.5_per_s,
                                  .friction = {},
                                  .limit = 10_V};
     if constexpr (requires { p.friction.curve; }) {
@@ -215,7 +215,7 @@ template <class Boxes> typename Boxes::parameters axis_in_circle(double heavier)
         p.friction.forces = {0.045_V, 0.038_V, 0.018_V, 0.0045_V};
         p.friction.stiffness = {42621_V / 1_m, 6794_V / 1_m, 3096_V / 1_m, 224_V / 1_m};
         p.friction.attraction = 0.31_V / 1_s;
-        p.disturbance = {60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V / heavier, 2.5_Hz}};
+        p.disturbance = {60_Hz, axis_model<signal::voltage>{4.526_mps2 / 1_V / heavier, 2.5_per_s}};
     }
     return p;
 }

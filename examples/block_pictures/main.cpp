@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: block_pictures FOLDER [NAME]     writes FOLDER/NAME.svg, the picture of docs/blocks/NAME.md; of every block without NAME
+// usage: block_pictures FOLDER [NAME]
+// Writes FOLDER/NAME.svg, the picture of docs/blocks/NAME.md; of every block without NAME.
 //
 // A new block: one function that runs it, and one line at the end of the file of its family.
 #include "families.hpp"

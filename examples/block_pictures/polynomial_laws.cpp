@@ -70,7 +70,7 @@ picture draw_lead_lag() {
     const auto plant = pulse_transfer(G, T);
     const auto p = design_lead_lag(G, {.crossover = 40_Hz, .phase_margin = 50}, T);
     const lead_lag<> law(p, T);
-    const auto open = [&](quantity<si::frequency> f) {
+    const auto open = [&](frequency f) {
         const std::complex<double> back = std::polar(1.0, -2 * pi * f.value() * T.value());
         const auto value = [&](const auto& polynomial) {
             std::complex<double> sum = 0;

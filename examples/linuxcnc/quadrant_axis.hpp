@@ -143,7 +143,7 @@ private:
                           "must lie between 0 and 1");
         auto& box = p.box;
         quadrant::require(box.dac_step <= box.limit, "quadrant_axis.dac_step", box.dac_step,
-                          "must not be above limit (" + quadrant::detail::shortest(box.limit.value()) + ")");
+                          "must not be above limit (" + quadrant::detail::shortest(box.limit) + ")");
         // How far the limit moves the axis in a period, beside the range: below a rounding of it the axis is no
         // axis.
         const double range = p.range.value(), push = box.limit.value() * period.value() * period.value(),

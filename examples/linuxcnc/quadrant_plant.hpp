@@ -78,8 +78,7 @@ public:
         quadrant::require_positive("quadrant_plant.scale", p.scale);
         quadrant::require(!(p.motor.limit.value() > 0) || p.motor.dac_step <= p.motor.limit,
                           "quadrant_plant.dac_step", p.motor.dac_step,
-                          "must not be above limit (" + quadrant::detail::shortest(p.motor.limit.value()) +
-                              ")");
+                          "must not be above limit (" + quadrant::detail::shortest(p.motor.limit) + ")");
     }
 
     static constexpr auto taps() {

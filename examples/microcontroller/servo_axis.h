@@ -31,7 +31,7 @@ struct servo_motion {
 
 /* 1: the axis is ready, at rest at zero. 0: refused, and servo_axis_why says why. From one thread, never from a step. */
 int servo_axis_init(int axis, const struct servo_tuning* tuning, double period_s);
-/* "notch.centre = 1200: must lie between ..."; returns its length. Brings number formatting into the image: leave it out
+/* "notch.centre = 1200 Hz: must lie between ..."; returns its length. Brings number formatting into the image: leave it out
    where flash is short. */
 size_t servo_axis_why(int axis, char* text, size_t size);
 

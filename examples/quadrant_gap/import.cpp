@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// quadrant-gap import: another program's log in the columns and units of FORMAT.md.
+// quadrant-gap import: another program's log in the columns and units of docs/formats.md.
 #include "commands.hpp"
 
 #include <quadrant/diagnosis/check_physics.hpp>

@@ -19,12 +19,12 @@ inline constexpr std::size_t frf_window = 2048;
 /// The linear axis of eq. (2.2).
 struct linear_plant {
     using friction = coulomb_viscous<>;
-    static friction::parameters of(const axis& a, frequency pole) { return {.viscous = pole * (a.kf / a.B)}; }
+    static friction::parameters of(const axis& a, per_second pole) { return {.viscous = pole * (a.kf / a.B)}; }
 };
 /// Eq. (2.2) with another pole, and GMS friction beside it: Fig. 4.2.
 struct gms_beside {
     using friction = maxwell_slip<4>;
-    static friction::parameters of(const axis& a, frequency pole) {
+    static friction::parameters of(const axis& a, per_second pole) {
         auto p = gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0));
         p.curve.viscous += pole * (a.kf / a.B);
         return p;
@@ -34,7 +34,7 @@ struct gms_beside {
 /// The frequency response of a simulated axis under white noise of so many volts rms. The hold is half a period
 /// of Td.
 template <class Plant>
-analysis::measured_frf measured_response(const axis& a, frequency pole, double rms,
+analysis::measured_frf measured_response(const axis& a, per_second pole, double rms,
                                          double minutes = frf_minutes) {
     linear_motor<typename Plant::friction> motor({.mass = a.kf / a.B,
                                                   .force_constant = a.kf,
@@ -65,7 +65,7 @@ inline analysis::plant_fit<> fitted(const analysis::measured_frf& frf) {
 /// original. By the secant from A and from zero; friction makes the response depend on how large the noise is.
 inline double pole_beside_gms(const axis& a, double rms, double minutes = 1) {
     const auto excess = [&](double pole) {
-        return fitted(measured_response<gms_beside>(a, pole * 1_Hz, rms, minutes)).pole.value.value() -
+        return fitted(measured_response<gms_beside>(a, pole * 1_per_s, rms, minutes)).pole.value.value() -
                a.A.value();
     };
     double before = 0, off_before = excess(0), now = -off_before, off = 0;

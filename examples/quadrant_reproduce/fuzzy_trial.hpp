@@ -69,7 +69,8 @@ private:
         const auto delayed = [&](frequency f) {
             return loop.open(f) * std::polar(1.0, -std::numbers::pi * f.value() * period.value());
         };
-        const auto m = analysis::margins(delayed, {analysis::hertz(1), 0.499 / period}).smallest_phase();
+        const auto m =
+            analysis::margins(delayed, {analysis::hertz(1), 0.499 * once_per(period)}).smallest_phase();
         return m && m->value > 0 ? m->value : std::numeric_limits<double>::quiet_NaN();
     }
 };

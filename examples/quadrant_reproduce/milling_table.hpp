@@ -28,7 +28,8 @@ namespace thesis {
 
 using order_2 = std::array<double, 2>;
 inline constexpr order_2 flattest{2, -1}, first_order{1, 0};
-inline const double exact_cycle = 1 / (milling_harmonics::fundamental * period); ///< in periods, 85.859
+inline const double exact_cycle =
+    quadrant::period_of(milling_harmonics::fundamental) / period; ///< in periods, 85.859
 
 /// A cut: the thesis' own unless said otherwise. Controllers are always those of the tables.
 struct cut {

@@ -22,9 +22,9 @@ using namespace quadrant::literals;
 struct axis {
     const char* name;
     gain_of<signal::acceleration, signal::voltage> B;
-    frequency A;     ///< of eq. (2.2), friction in it
-    frequency A_gms; ///< A' of Table 4.1: what is linear beside GMS
-    duration delay;  ///< Td of eq. (2.2)
+    per_second A;     ///< of eq. (2.2), friction in it
+    per_second A_gms; ///< A' of Table 4.1: what is linear beside GMS
+    duration delay;   ///< Td of eq. (2.2)
     gain_of<signal::force, signal::voltage> kf;
     gain_of<signal::voltage, signal::velocity> kp;
     gain_rate_of<signal::voltage, signal::velocity> ki;
@@ -40,8 +40,8 @@ inline gain_rate_of<signal::force, signal::velocity> newtons_per_um(double k) { 
 inline const axis x{
     .name = "x",
     .B = 4.526_mps2 / 1_V,
-    .A = 28.57_Hz,
-    .A_gms = 2.5_Hz,
+    .A = 28.57_per_s,
+    .A_gms = 2.5_per_s,
     .delay = 0.65_ms,
     .kf = 1450_N / 1_V,
     .kp = 60_V / 1_mps,
@@ -56,8 +56,8 @@ inline const axis x{
 inline const axis y{
     .name = "y",
     .B = 8.916_mps2 / 1_V,
-    .A = 20_Hz,
-    .A_gms = 0.095_Hz,
+    .A = 20_per_s,
+    .A_gms = 0.095_per_s,
     .delay = 0.65_ms,
     .kf = 1470_N / 1_V,
     .kp = 30_V / 1_mps,
@@ -78,7 +78,7 @@ inline const axis y_adjusted = [] {
 }();
 
 inline const duration period = 500_us;
-inline const frequency position_gain = 150.0 / 1_s; ///< kv
+inline const per_second position_gain = 150.0 / 1_s; ///< kv
 constexpr double pi_ = std::numbers::pi;
 inline const frequency estimator_corner = 942.5 / (2 * pi_) * 1_Hz; ///< of Vest
 

@@ -211,7 +211,7 @@ TEST_CASE("identify_cogging: refuses one direction, half a pitch, gaps, and says
     CHECK(refusal({f, b, standing}).find("identify_cogging.direction = 2") == 0);
     auto bad = f;
     bad.command[7] = std::numeric_limits<double>::quiet_NaN() * 1_N;
-    CHECK(refusal({bad, b}) == "identify_cogging.command = nan: must be finite");
+    CHECK(refusal({bad, b}) == "identify_cogging.command = nan N: must be finite");
     bad = f, bad.command.pop_back();
     CHECK(refusal({bad, b}).find("identify_cogging.position = 801") == 0);
     auto options = wanted;

@@ -134,7 +134,7 @@ TEST_CASE("fit_lugre: refuses too few runs, a start of 0, and what makes no diff
     auto bare = truth;
     bare.damping = {};
     CHECK(refused([&] { fit_lugre<signal::voltage>(std::vector(3, commands(10)), silent, bare); }) ==
-          "fit_lugre.start.damping = 0: must be finite and above 0");
+          "fit_lugre.start.damping = 0 N s/m: must be finite and above 0");
     CHECK(refused([&] {
               fit_lugre<signal::voltage>(std::vector(3, commands(10)), silent, truth);
           }).find("have to make a difference to the command") != std::string::npos);

@@ -118,7 +118,7 @@ TEST_CASE("fit_modes: too few modes are told by the surprise, too few lines are 
 TEST_CASE("modes: a base under a slide has its anti-resonance where its share puts it, both masses counted") {
     // Slide M = 340 kg on base Mb = 2000 kg on springs: m x'' = F, Mb xb'' = -F - k xb; encoder reads x - xb.
     const double M = 340, Mb = 2000, w = 2 * std::numbers::pi * 47, k = Mb * w * w;
-    const qa::flexible_axis_model<> g{{0_Hz, 1.0 / M * 1_mps2 / 1_V, 0_s}, {{47_Hz, 1e-9, M / Mb}}};
+    const qa::flexible_axis_model<> g{{0_per_s, 1.0 / M * 1_mps2 / 1_V, 0_s}, {{47_Hz, 1e-9, M / Mb}}};
     for (const double f : {1.0, 43.0, 46.0, 100.0}) {
         const qa::complex s = qa::laplace(hertz(f));
         const qa::complex both = 1.0 / (M * s * s) + 1.0 / (Mb * s * s + k);

@@ -129,7 +129,7 @@ TEST_CASE("fuzzy tuning: each change is the product of the sum of actions; what 
         }
         return false;
     };
-    CHECK(refused(0, {}, "tune.gain = 0: must be finite and above 0"));
+    CHECK(refused(0, {}, "tune.gain = 0 V s/m: must be finite and above 0"));
     CHECK(refused(1, {1, 40, std::nan("") * 1_m}, "tune.trial.tracking_error"));
 }
 TEST_CASE("fuzzy tuning: trials end at their number when the actions go round in a circle") {

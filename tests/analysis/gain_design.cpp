@@ -29,7 +29,7 @@ qa::flexible_axis_model<> machine(unsigned seed) {
     const double gain = between(2, 12), pole = between(5, 40), delay = between(0.2, 0.8);
     const double base = between(30, 60), heavy = between(0.03, 0.3), soft = between(0.02, 0.15);
     const double structure = between(200, 400), twist = between(-0.15, 0.2), zeta = between(0.01, 0.04);
-    return {{hertz(pole), gain * 1_mps2 / 1_V, delay * 1_ms},
+    return {{quadrant::per_second::from_value(pole), gain * 1_mps2 / 1_V, delay * 1_ms},
             {{hertz(base), soft, heavy}, {hertz(structure), zeta, twist}}};
 }
 /// The cascade in time, kicked once: largest speed of the fourth second over that of the second; 0 when all has
@@ -110,7 +110,7 @@ TEST_CASE("design_gains: margins that no gain keeps are refused by name, bad wis
     const auto feedback = [](quadrant::frequency f) { return qa::laplace(f); };
     const qa::band b{0.5_Hz, 400_Hz, 100};
     // 1/(s + 1) and 200 ms: at the band's begin 72 - 36 degrees behind, margin 72, and less above.
-    const qa::axis_model<> late{1_Hz, 1_mps2 / 1_V, 200_ms};
+    const qa::axis_model<> late{1_per_s, 1_mps2 / 1_V, 200_ms};
     try {
         qa::design_gains(late, feedback, {0.5_Hz, 20_Hz, 100}, {.velocity = {.phase = 80}});
         FAIL("was not refused");
@@ -119,7 +119,7 @@ TEST_CASE("design_gains: margins that no gain keeps are refused by name, bad wis
         CHECK(what.find("design_gains.velocity_gain = ") == 0);
         CHECK(what.find("no gain keeps all margins; the lowest tried still breaks: ") != std::string::npos);
     }
-    const qa::axis_model<> g{10_Hz, 1_mps2 / 1_V, 1_ms};
+    const qa::axis_model<> g{10_per_s, 1_mps2 / 1_V, 1_ms};
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.velocity = {.gain = 0}}), invalid_parameter);
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.position = {.phase = 180}}), invalid_parameter);
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.position = {.modulus = 1}}), invalid_parameter);

@@ -75,7 +75,7 @@ TEST_CASE(
           doctest::Approx(330).epsilon(0.01));
     auto low = rule;
     low.above = 340_Hz;
-    CHECK(refused(of(g), low).find("design_notch.above = 340: no peak above it stands out by 3 dB") == 0);
+    CHECK(refused(of(g), low).find("design_notch.above = 340 Hz: no peak above it stands out by 3 dB") == 0);
 }
 TEST_CASE("design_notch: drift widens it") {
     const qa::flexible_axis_model<> g{rigid, {{330_Hz, 0.01, 0.3}}};
@@ -91,12 +91,12 @@ TEST_CASE("design_notch: refuses what the response forbids, each by its rule") {
     CHECK(refused(of(none), rule).find("no peak above it") != std::string::npos);
     auto much = rule;
     much.attenuation_db = 30;
-    CHECK(refused(of(fast), much).find("must lie below half the sampling rate (1000)") != std::string::npos);
+    CHECK(refused(of(fast), much).find("must lie below half the sampling rate (1000 Hz)") != std::string::npos);
     auto near = rule;
     near.crossover = 90_Hz;
     near.most_phase = 90;
     CHECK(refused(of(slow), near)
-              .find("must lie above the crossover (90): the peak lies in the band of the loop") !=
+              .find("must lie above the crossover (90 Hz): the peak lies in the band of the loop") !=
           std::string::npos);
     auto strict = rule;
     strict.most_phase = 0.5;
@@ -106,7 +106,7 @@ TEST_CASE("design_notch: refuses what the response forbids, each by its rule") {
     CHECK(refused(of(good), bad) == "design_notch.drift = 0.6: must lie between 0 and 0.5");
     bad = rule;
     bad.crossover = 0_Hz;
-    CHECK(refused(of(good), bad).find("design_notch.crossover = 0") == 0);
+    CHECK(refused(of(good), bad).find("design_notch.crossover = 0 Hz") == 0);
 }
 TEST_CASE("design_notch: a line without coherence is no peak") {
     auto frf = of({rigid, {{330_Hz, 0.01, 0.3}}});

@@ -21,7 +21,7 @@ const p_pi_loop x{axis_model<>{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, pi_model
 const auto closed = [](frequency f) { return x.tracking(f); };
 template <std::size_t Order> auto ideal(const std::array<double, Order>& w, std::size_t harmonics) {
     return performance(one, one, one, w,
-                       {.cycle = 1.0 / spindle, .harmonics = harmonics, .bandwidth = 10.0 * spindle});
+                       {.cycle = period_of(spindle), .harmonics = harmonics, .bandwidth = 10.0 * spindle});
 }
 } // namespace
 
@@ -80,7 +80,7 @@ TEST_CASE("repetitive_design: 90 taps, 30 ahead, invert the thesis' x loop to 0.
     CHECK(stability(closed, l, q, second, up_to_nyquist(T)).value == doctest::Approx(3 * worst.value));
     // with real filters the indices stay those of the closed form where Q is one
     const auto p =
-        performance(closed, l, q, std::array<double, 1>{1}, {.cycle = 1.0 / spindle, .bandwidth = 100_Hz});
+        performance(closed, l, q, std::array<double, 1>{1}, {.cycle = period_of(spindle), .bandwidth = 100_Hz});
     CHECK(p.periodic == doctest::Approx(0.0628).epsilon(0.05).scale(0));
     CHECK(p.non_periodic_db == doctest::Approx(6.02).epsilon(0.02));
 }
@@ -105,7 +105,7 @@ TEST_CASE("repetitive_design: the designed block in a sampled loop takes a repea
     const auto q = smoothing_filter<61>(200_Hz, T);
     const auto l = learning_filter<90>(t, q, 30, T);
     using block = repetitive<signal::position, 100, 2>;
-    const duration cycle = 1.0 / spindle; // 85.86 periods
+    const duration cycle = period_of(spindle); // 85.86 periods
     block memory(repetitive_parameters<block>(t, std::array<double, 2>{2, -1}, l, q, cycle, up_to_nyquist(T)),
                  T);
     double y = 0, added = 0, first = 0, end = 0;

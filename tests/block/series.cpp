@@ -63,7 +63,7 @@ TEST_CASE("series: of one block is that block, and its parameters come back") {
 }
 TEST_CASE("series: throws what its blocks throw") {
     CHECK_THROWS_WITH_AS((series<one, other>{{resonance, {.corner = 1200_Hz}}, 500_us}),
-                         "lowpass.corner = 1200: must lie between 0 and half the sampling rate (1000)",
+                         "lowpass.corner = 1200 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
 }
 TEST_CASE("absent: gives zero; through: gives its input") {

@@ -35,7 +35,14 @@ by_pkg_config() { # PREFIX
 
 case $way in
 by_subdirectory) by_cmake ;;
-by_fetchcontent) by_cmake -DFETCHCONTENT_SOURCE_DIR_QUADRANT="$root" -DFETCHCONTENT_FULLY_DISCONNECTED=ON ;;
+by_fetchcontent)
+    by_cmake -DFETCHCONTENT_SOURCE_DIR_QUADRANT="$root" -DFETCHCONTENT_FULLY_DISCONNECTED=ON
+    if commit=$(git -C "$root" rev-parse HEAD 2>/dev/null); then # as docs/use_in_a_project.md writes it, from this clone
+        rm -rf "$work/build"
+        mkdir "$work/build"
+        by_cmake -DQUADRANT_REPOSITORY="file://$root" -DQUADRANT_TAG="$commit"
+    fi
+    ;;
 by_package)
     installed dev
     by_cmake -DCMAKE_PREFIX_PATH="$work/prefix"

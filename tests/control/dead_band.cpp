@@ -29,5 +29,5 @@ TEST_CASE("dead_band: of width 0 it passes everything") {
 }
 TEST_CASE("dead_band: refuses a negative width") {
     CHECK_THROWS_WITH_AS((dead_zone{{.half_width = -1_V}, 1_ms}),
-                         "dead_band.half_width = -1: must be finite and not below 0", invalid_parameter);
+                         "dead_band.half_width = -1 V: must be finite and not below 0", invalid_parameter);
 }

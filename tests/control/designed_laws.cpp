@@ -426,10 +426,11 @@ TEST_CASE("designed laws: what no law can be is refused by name") {
     p = place_rst(plant, poles, T);
     p.recovery = {1, -1.1, 0};
     CHECK(says([&] { pole_placement<>{p, T}; }, "rst.recovery = 1.1"));
-    CHECK(says([] { place_rst(plant, {.natural = 600_Hz, .observer = 10_Hz}, T); }, "place_rst.natural = 600"));
+    CHECK(says([] { place_rst(plant, {.natural = 600_Hz, .observer = 10_Hz}, T); },
+               "place_rst.natural = 600 Hz"));
     auto s = place_state_feedback(plant, states, 10_V, T);
     s.velocity_gain = -s.velocity_gain;
     CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.position_gain = "));
     s = place_state_feedback(plant, states, 0_V, T);
-    CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.drift = 0: must be finite and above 0"));
+    CHECK(says([&] { state_feedback<>{s, T}; }, "state_feedback.drift = 0 V: must be finite and above 0"));
 }

@@ -168,14 +168,14 @@ TEST_CASE("feed laws: what no law can be is refused by name") {
             p.plant.gain = {};
             sliding_mode<>{p, 1_ms};
         },
-        "sliding_mode.plant.gain = 0: must be finite and above 0"));
+        "sliding_mode.plant.gain = 0 m/(V s^2): must be finite and above 0"));
     CHECK(says(
         [] {
             auto p = pid_gains();
             p.derivative_corner = 0_Hz;
             pid<>{p, 1_ms};
         },
-        "pid.derivative_corner = 0: must be above 0 (infinite: no filter)"));
+        "pid.derivative_corner = 0 Hz: must be above 0 (infinite: no filter)"));
 }
 
 TEST_CASE("sampled_axis: encoder and tachometer of the drive, from a sine of current") {

@@ -71,9 +71,9 @@ TEST_CASE("limiter: what comes out is finite, whatever the bounds and the input,
 }
 TEST_CASE("limiter: a bound that is infinite the wrong way is refused, 1e300 in float, too") {
     CHECK_THROWS_WITH_AS((amplifier{{.low = forever, .high = forever}, 1_ms}),
-                         "limiter.low = inf: must leave a finite number above it", invalid_parameter);
+                         "limiter.low = inf V: must leave a finite number above it", invalid_parameter);
     CHECK_THROWS_WITH_AS((amplifier{{.low = -forever, .high = -forever}, 1_ms}),
-                         "limiter.high = -inf: must leave a finite number below it", invalid_parameter);
+                         "limiter.high = -inf V: must leave a finite number below it", invalid_parameter);
     CHECK_THROWS_AS((limiter<signal::voltage, float>{{.low = 1e300 * 1_V, .high = forever}, 1_ms}),
                     invalid_parameter);
     CHECK_NOTHROW(amplifier{{.low = -forever, .high = forever}, 1_ms});
@@ -87,9 +87,9 @@ TEST_CASE("limiter: settle tells of clipping as a step does") {
 }
 TEST_CASE("limiter: refuses bounds in the wrong order, and no numbers") {
     CHECK_THROWS_WITH_AS((amplifier{{.low = 10_V, .high = -10_V}, 1_ms}),
-                         "limiter.high = -10: must not lie below low (10)", invalid_parameter);
+                         "limiter.high = -10 V: must not lie below low (10 V)", invalid_parameter);
     CHECK_THROWS_WITH_AS((amplifier{{.low = std::nan("") * 1_V, .high = 1_V}, 1_ms}),
-                         "limiter.low = nan: must be a number", invalid_parameter);
+                         "limiter.low = nan V: must be a number", invalid_parameter);
     CHECK_THROWS_AS((amplifier{{.low = 1_V, .high = std::nan("") * 1_V}, 1_ms}), invalid_parameter);
     CHECK_NOTHROW(amplifier{{.low = 1_V, .high = 1_V}, 1_ms});
 }

@@ -99,5 +99,5 @@ TEST_CASE("linuxcnc_pid: a NaN holds the output and is seen; a limit below 0 is 
     CHECK(block(law::position(in_si(std::nan(""))), 0_mm) == before);
     CHECK(block.faulted());
     CHECK_THROWS_WITH_AS(law({.maxoutput = -1_V}, 1_ms),
-                         "linuxcnc_pid.maxoutput = -1: must be finite and not below 0", invalid_parameter);
+                         "linuxcnc_pid.maxoutput = -1 V: must be finite and not below 0", invalid_parameter);
 }

@@ -221,8 +221,8 @@ TEST_CASE("predictive: refuses what cannot be planned, by name and rule") {
     CHECK(says(with([](auto& p) { p.horizon = 11; }),
                "predictive.horizon = 11: must lie between 1 and the preview (10 periods)"));
     CHECK(says(with([](auto& p) { p.horizon = 0; }), "predictive.horizon = 0: must lie between"));
-    CHECK(says(with([](auto& p) { p.plant.gain = {}; }),
-               "predictive.plant.gain = 0: must be finite and above 0: the command has to control the axis"));
+    CHECK(says(with([](auto& p) { p.plant.gain = {}; }), "predictive.plant.gain = 0 m/(V s^2): must be finite "
+                                                         "and above 0: the command has to control the axis"));
     CHECK(says(with([](auto& p) { p.weights.error[1][1] = -1; }), "predictive.weights.error (determinant) = "));
     CHECK(says(with([](auto& p) { p.weights.error[0][1] = p.weights.error[1][0] = 1e9; }),
                "predictive.weights.error (determinant) = "));
@@ -230,7 +230,7 @@ TEST_CASE("predictive: refuses what cannot be planned, by name and rule") {
     CHECK(
         says(with([](auto& p) { p.weights.error[0][0] = 0; }), "predictive.weights.error[0][0] = 0: must be"));
     CHECK(says(with([](auto& p) { p.weights.increment = 0; }), "predictive.weights.increment = 0: must be"));
-    CHECK(says(with([](auto& p) { p.limit = 0_V; }), "predictive.limit = 0: must be above 0"));
-    CHECK(says(with([](auto& p) { p.rate_limit = {}; }), "predictive.rate_limit = 0: must be above 0"));
+    CHECK(says(with([](auto& p) { p.limit = 0_V; }), "predictive.limit = 0 V: must be above 0"));
+    CHECK(says(with([](auto& p) { p.rate_limit = {}; }), "predictive.rate_limit = 0 V/s: must be above 0"));
     CHECK(says(with([](auto& p) { p.horizon = 1; }), "predictive.horizon = 1: must be longer, or"));
 }

@@ -27,8 +27,8 @@ TEST_CASE("proportional: an infinite input is a fault even at gain zero") {
 }
 TEST_CASE("proportional: refuses a gain that is not finite, and a period that is not above 0") {
     const auto infinite = std::numeric_limits<double>::infinity() / 1_s;
-    CHECK_THROWS_WITH_AS((position_loop{{.gain = infinite}, 1_ms}), "proportional.gain = inf: must be finite",
-                         invalid_parameter);
+    CHECK_THROWS_WITH_AS((position_loop{{.gain = infinite}, 1_ms}),
+                         "proportional.gain = inf per s: must be finite", invalid_parameter);
     CHECK_THROWS_WITH_AS((position_loop{{.gain = 1.0 / 1_s}, 0_ms}),
-                         "proportional.period = 0: must be finite and above 0", invalid_parameter);
+                         "proportional.period = 0 s: must be finite and above 0", invalid_parameter);
 }

@@ -37,7 +37,7 @@ TEST_CASE("proportional_integral: 10 mm/s give 0.60225 V at once and 5.1 V after
     for (int k = 1; k < 2000; ++k) u = pi(10_mmps).value();
     CHECK(u == doctest::Approx(5.1).epsilon(1e-12));
 }
-TEST_CASE("proportional_integral, clamp: bit for bit the bare loop of FORMAT.md") {
+TEST_CASE("proportional_integral, clamp: bit for bit the bare loop of docs/formats.md") {
     clamped pi{{.gain = gain, .integral_gain = integral_gain, .limit = 10_V}, Ts};
     double integral = 0;
     bool same = true, reached = false;
@@ -164,17 +164,18 @@ TEST_CASE("proportional_integral: derivative by limit is one while clamped, that
 TEST_CASE("proportional_integral: refuses what no loop can have") {
     using P = clamped::parameters;
     CHECK_THROWS_WITH_AS((clamped{P{-1.0 * gain, integral_gain, 10_V}, Ts}),
-                         "proportional_integral.gain = -60: must be finite and not below 0", invalid_parameter);
+                         "proportional_integral.gain = -60 V s/m: must be finite and not below 0",
+                         invalid_parameter);
     CHECK_THROWS_WITH_AS((clamped{P{gain, -1.0 * integral_gain, 10_V}, Ts}),
-                         "proportional_integral.integral_gain = -450: must be finite and not below 0",
+                         "proportional_integral.integral_gain = -450 V/m: must be finite and not below 0",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS((clamped{P{gain, integral_gain, 0_V}, Ts}),
-                         "proportional_integral.limit = 0: must be above 0 (infinite: no limit)",
+                         "proportional_integral.limit = 0 V: must be above 0 (infinite: no limit)",
                          invalid_parameter);
     CHECK_THROWS_AS((clamped{P{gain, integral_gain, std::nan("") * 1_V}, Ts}), invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (tracked{{gain, integral_gain, 10_V, {100_us}}, Ts}),
-        "proportional_integral.tracking_time = 1e-04: must be finite and not below the period (5e-04)",
+        "proportional_integral.tracking_time = 1e-04 s: must be finite and not below the period (5e-04 s)",
         invalid_parameter);
     CHECK_NOTHROW(clamped{P{gain, integral_gain, forever}, Ts});
 }

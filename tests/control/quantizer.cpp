@@ -44,6 +44,6 @@ TEST_CASE("quantizer: a derivative passes as if the steps were seen from afar") 
     CHECK(y.partial[0] == 1);
 }
 TEST_CASE("quantizer: refuses a negative step") {
-    CHECK_THROWS_WITH_AS((dac{{.step = -1_V}, 1_ms}), "quantizer.step = -1: must be finite and not below 0",
+    CHECK_THROWS_WITH_AS((dac{{.step = -1_V}, 1_ms}), "quantizer.step = -1 V: must be finite and not below 0",
                          invalid_parameter);
 }

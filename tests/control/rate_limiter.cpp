@@ -48,6 +48,6 @@ TEST_CASE("rate_limiter: settle jumps, an infinite rate is no bound") {
 }
 TEST_CASE("rate_limiter: refuses a rate that never arrives") {
     CHECK_THROWS_WITH_AS((ramp{{.rate = 0_V / 1_s}, 1_ms}),
-                         "rate_limiter.rate = 0: must be above 0 (infinite: no bound)", invalid_parameter);
+                         "rate_limiter.rate = 0 V/s: must be above 0 (infinite: no bound)", invalid_parameter);
     CHECK_THROWS_AS((ramp{{.rate = std::nan("") * (1_V / 1_s)}, 1_ms}), invalid_parameter);
 }

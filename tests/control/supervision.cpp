@@ -146,7 +146,7 @@ TEST_CASE("axis_enable, following_error: refuse what no machine has") {
     without([](auto& p) { p.emergency_deceleration = -1_mps2; });
     without([](auto& p) { p.brake_time = -1_ms; });
     CHECK_THROWS_WITH_AS((following_error<>{{.window = 0_m, .per_speed = 0_s}, T}),
-                         "following_error.window = 0: must be finite and above 0", invalid_parameter);
+                         "following_error.window = 0 m: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_AS((following_error<>{{.window = 1_mm, .per_speed = 0_s, .warning = 2}, T}),
                     invalid_parameter);
 }

@@ -343,7 +343,7 @@ TEST_CASE("read_diagnosis: what is wrong is told by its key") {
     CHECK(read_back_refusal(gremlins).find("\"gremlins\" is not an effect") != std::string::npos);
     gremlins["own_effects"] = {"gremlins"};
     CHECK(read_back_refusal(gremlins) == "accepted");
-    auto bare = to_json(full()); // FORMAT.md's keys alone
+    auto bare = to_json(full()); // docs/formats.md's keys alone
     for (const char* key :
          {"described", "readings", "gap_before_command_rms_V", "gap_after_command_rms_V", "exciting_motion"})
         bare["causes"][0].erase(key);

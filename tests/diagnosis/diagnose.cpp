@@ -61,7 +61,7 @@ TEST_CASE("diagnose: a constant force, and its second reading") {
     real.constant_force = 25;
     const auto d = diagnosed(file, real);
     named(d, "constant_force", "constant_force_N", 25, 0.03);
-    // Coulomb friction that differs by direction is the same model (gap/FORMAT.md), and is said to be.
+    // Coulomb friction that differs by direction is the same model (docs/formats.md), and is said to be.
     CHECK(d.causes.front().confusable_with == std::vector<std::string>{"asymmetric_friction"});
     // No motion is proposed for one model under two names.
     CHECK(d.next.motion == "none: no motion of this axis tells constant_force and asymmetric_friction apart");

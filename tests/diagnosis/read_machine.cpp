@@ -14,7 +14,7 @@ using namespace quadrant::diagnosis;
 
 namespace {
 
-/// FORMAT.md's example.
+/// docs/formats.md's example.
 const char* const example = R"({
   "schema": "quadrant.machine/1",
   "sample_period_s": 0.0005,

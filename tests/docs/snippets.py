@@ -11,7 +11,8 @@ comment that a reader does not see:
     extern force raw;
     -->
 
-Errors name the page and its line. position, velocity, acceleration, force, voltage, current are quantities of double.
+Errors name the page and its line. What the pages use everywhere: quadrant, its literals and its
+quantities (position, velocity, force, voltage, ...), as docs/use_in_a_project.md says.
 """
 import re
 import subprocess
@@ -27,12 +28,7 @@ given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
 prelude = """#include <quadrant/quadrant.hpp>
 using namespace quadrant;
 using namespace quadrant::literals;
-using position = quantity<si::length>;
-using velocity = quantity<si::velocity>;
-using acceleration = quantity<si::acceleration>;
-using force = quantity<si::force>;
-using voltage = quantity<si::electric_potential>;
-using current = quantity<si::current>;
+using namespace quadrant::quantities;
 """
 
 

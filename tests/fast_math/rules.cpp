@@ -79,7 +79,7 @@ TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative 
         CHECK_FALSE(finite(bad));
         CHECK_FALSE(finite(float(bad)));
         CHECK_FALSE(finite(1.0, bad, 2.0));
-        notch<s::force, D> n({quantity<si::frequency, D>::from_value(330), 0.1}, T);
+        notch<s::force, D> n({quantity<hertz_unit, D>::from_value(330), 0.1}, T);
         n(quantity_of<s::force, D>::from_value(x));
         CHECK(n.faulted());
     }

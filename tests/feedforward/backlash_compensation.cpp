@@ -144,9 +144,9 @@ TEST_CASE("backlash_compensation: turned back in the middle of the crossing it g
 TEST_CASE("backlash_compensation: names the field that it refuses") {
     auto p = screw;
     p.rate = {};
-    CHECK(refusal(p) == "backlash_compensation.rate = 0: must be finite and above 0");
+    CHECK(refusal(p) == "backlash_compensation.rate = 0 m/s: must be finite and above 0");
     p = screw, p.play = -1_um;
-    CHECK(refusal(p) == "backlash_compensation.play = -1e-06: must be finite and not below 0");
+    CHECK(refusal(p) == "backlash_compensation.play = -1e-06 m: must be finite and not below 0");
     p = screw, p.hysteresis = std::numeric_limits<double>::quiet_NaN() * 1_m;
     CHECK(refusal(p).find("backlash_compensation.hysteresis") == 0);
     CHECK(refusal(screw) == "");

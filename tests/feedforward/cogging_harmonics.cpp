@@ -69,7 +69,7 @@ TEST_CASE("cogging_harmonics: in amperes over an angle, as a rotary axis has it"
 TEST_CASE("cogging_harmonics: names the field that it refuses") {
     auto p = motor;
     p.pitch = {};
-    CHECK(refusal(p) == "cogging_harmonics.pitch = 0: must be finite and above 0");
+    CHECK(refusal(p) == "cogging_harmonics.pitch = 0 m: must be finite and above 0");
     p = motor, p.harmonics[1].order = 0;
     CHECK(refusal(p) == "cogging_harmonics.order = 0: must be 1 or more");
     p = motor, p.harmonics[1].phase = std::numeric_limits<double>::infinity();

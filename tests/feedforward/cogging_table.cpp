@@ -82,7 +82,7 @@ TEST_CASE("cogging_table: names the field that it refuses") {
         }
         return "";
     };
-    CHECK(refusal({}) == "cogging_table.pitch = 0: must be finite and above 0");
+    CHECK(refusal({}) == "cogging_table.pitch = 0 m: must be finite and above 0");
     CHECK(
         refusal({24_mm, {0_N, std::numeric_limits<double>::quiet_NaN() * 1_N}}).find("cogging_table.points") ==
         0);

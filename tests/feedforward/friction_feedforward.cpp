@@ -52,7 +52,7 @@ template <class Friction> double glitch(const typename Friction::parameters& p, 
                           .estimator_corner = 942.5 / (2 * pi) * 1_Hz,
                           .notch = {330_Hz, 0.0606},
                           .plant_gain = 4.526_mps2 / 1_V,
-                          .plant_pole = 2.5_Hz,
+                          .plant_pole = 2.5_per_s,
                           .friction = p,
                           .disturbance = {},
                           .memory = {},
@@ -172,9 +172,9 @@ TEST_CASE("friction_feedforward: scale takes a share, and a law in volts needs n
 TEST_CASE("friction_feedforward: names the field that it refuses; the law refuses in its own name") {
     auto p = x_axis();
     p.force_constant = {};
-    CHECK(refusal(p) == "friction_feedforward.force_constant = 0: must be finite and above 0");
+    CHECK(refusal(p) == "friction_feedforward.force_constant = 0 N/V: must be finite and above 0");
     p = x_axis(), p.width = 0_mps;
-    CHECK(refusal(p) == "friction_feedforward.width = 0: must be finite and above 0");
+    CHECK(refusal(p) == "friction_feedforward.width = 0 m/s: must be finite and above 0");
     p = x_axis(), p.scale = -1;
     CHECK(refusal(p) == "friction_feedforward.scale = -1: must be finite and not below 0");
     p = x_axis(), p.law.static_level = 100_N;

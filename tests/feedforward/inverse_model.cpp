@@ -139,13 +139,13 @@ TEST_CASE("inverse_model: not finite holds the last command, also at settle") {
 TEST_CASE("inverse_model: refuses a gain that is not positive and a negative pole") {
     const auto refusal = [](double b, double a) -> std::string {
         try {
-            inverse_model<signal::voltage>{{b * 1_mps2 / 1_V, a * 1_Hz}, 500_us};
+            inverse_model<signal::voltage>{{b * 1_mps2 / 1_V, a * 1_per_s}, 500_us};
         } catch (const invalid_parameter& e) {
             return e.what();
         }
         return "";
     };
-    CHECK(refusal(0, 1) == "inverse_model.gain = 0: must be finite and above 0");
-    CHECK(refusal(4, -1) == "inverse_model.damping = -1: must be finite and not below 0");
+    CHECK(refusal(0, 1) == "inverse_model.gain = 0 m/(V s^2): must be finite and above 0");
+    CHECK(refusal(4, -1) == "inverse_model.damping = -1 per s: must be finite and not below 0");
     CHECK(refusal(4, 0) == "");
 }

@@ -174,8 +174,10 @@ TEST_CASE("preview: a dual lead carries its derivative: d ahead / d lead is the 
     CHECK(y.velocity.value().partial[0] == doctest::Approx(then.acceleration.value()).epsilon(1e-9));
 }
 TEST_CASE("preview: refuses a lead beyond its capacity and below zero") {
-    CHECK(refusal<preview<2>>({1.1_ms}) == "preview.lead = 0.0011: must lie between 0 and 0.001 (capacity)");
-    CHECK(refusal<preview<2>>({-0.1_ms}) == "preview.lead = -1e-04: must lie between 0 and 0.001 (capacity)");
+    CHECK(refusal<preview<2>>({1.1_ms}) ==
+          "preview.lead = 0.0011 s: must lie between 0 and 0.001 s (capacity)");
+    CHECK(refusal<preview<2>>({-0.1_ms}) ==
+          "preview.lead = -1e-04 s: must lie between 0 and 0.001 s (capacity)");
     CHECK(refusal<preview<2>>({std::numeric_limits<double>::infinity() * 1_s}) != "");
     CHECK(refusal<preview<2>>({1_ms}) == "");
 }

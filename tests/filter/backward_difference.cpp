@@ -29,7 +29,7 @@ TEST_CASE("backward_difference: after reset a first sample reads as a jump from 
     v.settle(1_mm);
     CHECK(v(1_mm).value() == 0);
 }
-TEST_CASE("backward_difference: of a difference is an acceleration, as FORMAT.md takes a_ref") {
+TEST_CASE("backward_difference: of a difference is an acceleration, as docs/formats.md takes a_ref") {
     speed v{{}, 500_us};
     backward_difference<signal::velocity, signal::acceleration> a{{}, 500_us};
     double r1 = 0, v1 = 0;

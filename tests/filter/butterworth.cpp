@@ -56,6 +56,6 @@ TEST_CASE("butterworth: a constant arrives as it is, in float at a corner of 1 H
 }
 TEST_CASE("butterworth: refuses a corner of 0") {
     CHECK_THROWS_WITH_AS((smooth{{.corner = 0_Hz}, 500_us}),
-                         "butterworth.corner = 0: must lie between 0 and half the sampling rate (1000)",
+                         "butterworth.corner = 0 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
 }

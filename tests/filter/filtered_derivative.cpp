@@ -28,7 +28,7 @@ TEST_CASE("filtered_derivative: has the coefficients of scipy") {
         x1 = x, v1 = expected;
     }
 }
-TEST_CASE("filtered_derivative: the formula of FORMAT.md, bit for bit up to two roundings a step") {
+TEST_CASE("filtered_derivative: the formula of docs/formats.md, bit for bit up to two roundings a step") {
     const double wc = 2 * std::numbers::pi * 227.731, T = 500e-6;
     speed v{{.corner = 227.731 * 1_Hz}, 500_us};
     double y1 = 0, v1 = 0;
@@ -55,5 +55,5 @@ TEST_CASE("filtered_derivative: above the sampling rate over pi it rings but dec
 }
 TEST_CASE("filtered_derivative: refuses a corner that is not above 0") {
     CHECK_THROWS_WITH_AS((speed{{.corner = 0_Hz}, 1_ms}),
-                         "filtered_derivative.corner = 0: must be finite and above 0", invalid_parameter);
+                         "filtered_derivative.corner = 0 Hz: must be finite and above 0", invalid_parameter);
 }

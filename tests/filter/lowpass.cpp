@@ -44,6 +44,6 @@ TEST_CASE("lowpass: a constant arrives as it is, in float at a corner of 0.1 Hz 
 }
 TEST_CASE("lowpass: refuses a corner at half the sampling rate") {
     CHECK_THROWS_WITH_AS((smooth{{.corner = 1000_Hz}, 500_us}),
-                         "lowpass.corner = 1000: must lie between 0 and half the sampling rate (1000)",
+                         "lowpass.corner = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
 }

@@ -56,7 +56,7 @@ TEST_CASE("notch: in float too the gain at standstill is one, however low the ce
 }
 TEST_CASE("notch: refuses a centre at or above half the sampling rate, and a damping of 0") {
     CHECK_THROWS_WITH_AS((resonance{{.centre = 1200_Hz}, 500_us}),
-                         "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)",
+                         "notch.centre = 1200 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS((resonance{{.centre = 330_Hz, .damping = 0}, 500_us}),
                          "notch.damping = 0: must be finite and above 0", invalid_parameter);

@@ -40,7 +40,7 @@ template <class Make> struct entry {
     Make make; ///< (Real(), corner, period)
 };
 template <class Make> entry(const char*, Make) -> entry<Make>;
-template <class R> using hertz = quantity<si::frequency, parameter_real<R>>;
+template <class R> using hertz = quantity<hertz_unit, parameter_real<R>>;
 template <class R, class Unit> auto all(quantity<Unit> q) {
     return quantity<Unit, parameter_real<R>>::from_value(parameter_real<R>(q.value()));
 }
@@ -134,8 +134,8 @@ TEST_CASE(
                 const duration T = 1_ms / kHz;
                 const auto x = signal_of(kind, ratio);
                 const auto check = [&](const auto& e) {
-                    auto exact = e.make(double(), ratio / T, T);
-                    auto rough = e.make(float(), ratio / T, T);
+                    auto exact = e.make(double(), ratio * once_per(T), T);
+                    auto rough = e.make(float(), ratio * once_per(T), T);
                     double off = 0, most = 0;
                     for (const float one : x) {
                         const double y = give(exact, double(one));
@@ -162,8 +162,8 @@ TEST_CASE("every filter and observer that runs in lanes: a lane is a double, at 
         const duration T = 50_us;
         const auto x = signal_of(2, ratio);
         const auto check = [&](const auto& e) {
-            auto single = e.make(double(), ratio / T, T);
-            auto wide = e.make(four(), hertz<four>::from_value(four((ratio / T).value())), T);
+            auto single = e.make(double(), ratio * once_per(T), T);
+            auto wide = e.make(four(), hertz<four>::from_value(four((ratio * once_per(T)).value())), T);
             using in = typename decltype(wide)::argument;
             double off = 0, most = 0;
             for (std::size_t k = 0; k < std::min<std::size_t>(x.size(), 20'000); ++k) {
@@ -197,10 +197,10 @@ TEST_CASE_TEMPLATE(
             for (int k = 0; k < rest; ++k) y = block(in::from_value(held)).value();
             CHECK(y == held);
         };
-        check(notch<s::force, Real>({ratio / T, 1}, T));
-        check(butterworth<s::force, Real>({ratio / T}, T));
+        check(notch<s::force, Real>({ratio * once_per(T), 1}, T));
+        check(butterworth<s::force, Real>({ratio * once_per(T)}, T));
         if constexpr (std::same_as<Real, float>) // in double it is one number: 1e-16 / ratio is left
-            check(lowpass<s::force, Real>({ratio / T}, T));
+            check(lowpass<s::force, Real>({ratio * once_per(T)}, T));
     }
 }
 
@@ -212,8 +212,8 @@ TEST_CASE("every corner that a constructor takes, reset and settle take too; wha
     int made = 0, refused = 0;
     const auto check = [&]<class Real>(Real, double ratio) {
         try {
-            notch<s::force, Real> n({ratio / T, 0.1}, T);
-            butterworth<s::force, Real> b({ratio / T}, T);
+            notch<s::force, Real> n({ratio * once_per(T), 0.1}, T);
+            butterworth<s::force, Real> b({ratio * once_per(T)}, T);
             n.reset(), b.reset();
             const auto x = quantity_of<s::force, Real>::from_value(Real(3));
             n.settle(x), b.settle(x);
@@ -230,12 +230,12 @@ TEST_CASE("every corner that a constructor takes, reset and settle take too; wha
     }
     CHECK(made > 10'000);
     CHECK(refused > 1000);
-    notch<s::force> slow({1e-10 / T, 0.1}, T);
+    notch<s::force> slow({1e-10 * once_per(T), 0.1}, T);
     slow.reset();
     CHECK_FALSE(slow.faulted());
     CHECK_THROWS_WITH_AS(
         (butterworth<s::force, float>({1e-4_Hz}, T)),
-        "butterworth.corner = 1e-04: must be at least 3.0356396311167783e-07 of the sampling rate in this "
-        "number type (0.00030356396311167783)",
+        "butterworth.corner = 1e-04 Hz: must be at least 3.0356396311167783e-07 of the sampling rate in this "
+        "number type (0.00030356396311167783 Hz)",
         invalid_parameter);
 }

@@ -63,8 +63,9 @@ TEST_CASE("second_order: notch and butterworth are their difference equations, f
             }
             CHECK(off <= bound * most);
         };
-        check(notch<s::force>({ratio / T, 0.1}, T), direct_form::of(1, 1, ratio, 0.1));
-        check(butterworth<s::force>({ratio / T}, T), direct_form::of(0, 1, ratio, std::numbers::sqrt2));
+        check(notch<s::force>({ratio * once_per(T), 0.1}, T), direct_form::of(1, 1, ratio, 0.1));
+        check(butterworth<s::force>({ratio * once_per(T)}, T),
+              direct_form::of(0, 1, ratio, std::numbers::sqrt2));
     }
 }
 TEST_CASE("second_order: a sample that overflows the section is refused as a whole") {
@@ -98,13 +99,13 @@ TEST_CASE("transfer_function: by differences of z it is the same filter, and kee
     }
     CHECK(off < 1e-8);                        // [N] of 100; 1e-16 over (w T)^3, of the coefficients in z
     for (const double ratio : {1e-6, 1e-4}) { // gain at a tenth and at the corner, from the continuous filter
-        const auto slow = filter(2 * pi * ratio / T.value());
+        const auto slow = filter(2 * pi * ratio * once_per(T).value());
         const block f = block::of(bilinear_differences(slow, T), T);
         CHECK_FALSE(f.integrates());
         for (const double of : {0.1, 1.0}) {
             const std::complex<double> j(0, of);
             const auto expected = (1.0 + j / 3.0 + j * j) / (1.0 + 2.0 * j + 2.0 * j * j + j * j * j);
-            CHECK(std::abs(f.response(of * ratio / T) - expected) < 1e-6);
+            CHECK(std::abs(f.response(of * ratio * once_per(T)) - expected) < 1e-6);
         }
     }
 }

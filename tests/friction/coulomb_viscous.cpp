@@ -99,11 +99,12 @@ TEST_CASE("coulomb_viscous: in float it is the double law to a part in ten milli
 TEST_CASE("coulomb_viscous: refuses what no axis has") {
     using P = coulomb_viscous<>::parameters;
     CHECK_THROWS_WITH_AS((coulomb_viscous<>{P{-1_N, {}}, Ts}),
-                         "coulomb_viscous.coulomb = -1: must be finite and not below 0", invalid_parameter);
+                         "coulomb_viscous.coulomb = -1 N: must be finite and not below 0", invalid_parameter);
     CHECK_THROWS_WITH_AS((coulomb_viscous<>{P{1_N, -2_N / 1_mps}, Ts}),
-                         "coulomb_viscous.viscous = -2: must be finite and not below 0", invalid_parameter);
+                         "coulomb_viscous.viscous = -2 N s/m: must be finite and not below 0",
+                         invalid_parameter);
     CHECK_THROWS_WITH_AS((coulomb_viscous<>{P{}, 0_s}),
-                         "coulomb_viscous.period = 0: must be finite and above 0", invalid_parameter);
+                         "coulomb_viscous.period = 0 s: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_AS((coulomb_viscous<>{P{bad_number * 1_N, {}}, Ts}), invalid_parameter);
     CHECK_THROWS_AS((coulomb_viscous<>{P{infinite * 1_N, {}}, Ts}), invalid_parameter);
 }

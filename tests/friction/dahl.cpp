@@ -250,12 +250,13 @@ TEST_CASE("dahl: refuses what no contact has") {
         return refusal<dahl<>>(contact(), change, period);
     };
     CHECK(says([](P&) {}) == "taken");
-    CHECK(says([](P& p) { p.coulomb = 0_N; }) == "dahl.coulomb = 0: must be finite and above 0");
+    CHECK(says([](P& p) { p.coulomb = 0_N; }) == "dahl.coulomb = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.stiffness = per_um(-1); }) ==
-          "dahl.stiffness = -1e+06: must be finite and above 0");
+          "dahl.stiffness = -1e+06 N/m: must be finite and above 0");
     CHECK(says([](P& p) { p.shape = -0.1; }) == "dahl.shape = -0.1: must lie between 0 and 4");
     CHECK(says([](P& p) { p.shape = 4.1; }) == "dahl.shape = 4.1: must lie between 0 and 4");
     CHECK(says([](P& p) { p.shape = bad_number; }) == "dahl.shape = nan: must lie between 0 and 4");
-    CHECK(says([](P& p) { p.viscous = -2_N / 1_mps; }) == "dahl.viscous = -2: must be finite and not below 0");
-    CHECK(says([](P&) {}, 0_s) == "dahl.period = 0: must be finite and above 0");
+    CHECK(says([](P& p) { p.viscous = -2_N / 1_mps; }) ==
+          "dahl.viscous = -2 N s/m: must be finite and not below 0");
+    CHECK(says([](P&) {}, 0_s) == "dahl.period = 0 s: must be finite and above 0");
 }

@@ -324,13 +324,14 @@ TEST_CASE("lugre: refuses what no contact has, in the name of the box that minds
     };
     CHECK(says([](P&) {}) == "taken");
     CHECK(says([](P& p) { p.stiffness = per_um(-1); }) ==
-          "lugre.stiffness = -1e+06: must be finite and above 0");
-    CHECK(says([](P& p) { p.damping = -1_N / 1_mps; }) == "lugre.damping = -1: must be finite and not below 0");
+          "lugre.stiffness = -1e+06 N/m: must be finite and above 0");
+    CHECK(says([](P& p) { p.damping = -1_N / 1_mps; }) ==
+          "lugre.damping = -1 N s/m: must be finite and not below 0");
     CHECK(says([](P& p) { p.damping_velocity = -1_mps; }) ==
-          "lugre.damping_velocity = -1: must be finite and not below 0");
-    CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) == "lugre.curve.coulomb = 0: must be finite and above 0");
+          "lugre.damping_velocity = -1 m/s: must be finite and not below 0");
+    CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) == "lugre.curve.coulomb = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.curve.static_level = 7_N; }) ==
-          "stribeck.static_level = 7: must not be below coulomb (8)");
+          "stribeck.static_level = 7 N: must not be below coulomb (8 N)");
     CHECK(says([](P& p) { p.curve.shape = 5; }) == "stribeck.shape = 5: must lie between 0.25 and 4");
-    CHECK(says([](P&) {}, 0_s) == "stribeck.period = 0: must be finite and above 0");
+    CHECK(says([](P&) {}, 0_s) == "stribeck.period = 0 s: must be finite and above 0");
 }

@@ -439,20 +439,20 @@ TEST_CASE("maxwell_slip: refuses what no contact has, in the name of the box tha
     const auto says = [](auto change, duration period = Ts) { return refusal<gms>(x_axis(), change, period); };
     CHECK(says([](P&) {}) == "taken");
     CHECK(says([](P& p) { p.stiffness[2] = per_um(-1); }) ==
-          "maxwell_slip.stiffness = -1e+06: must be finite and above 0");
+          "maxwell_slip.stiffness = -1e+06 N/m: must be finite and above 0");
     CHECK(says([](P& p) { p.stiffness[3] = per_um(0); }) ==
-          "maxwell_slip.stiffness = 0: must be finite and above 0");
+          "maxwell_slip.stiffness = 0 N/m: must be finite and above 0");
     CHECK(says([](P& p) { p.curve.static_level = 121_N; }) ==
-          "stribeck.static_level = 121: must not be below coulomb (122)");
+          "stribeck.static_level = 121 N: must not be below coulomb (122 N)");
     CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) ==
-          "maxwell_slip.curve.coulomb = 0: must be finite and above 0");
+          "maxwell_slip.curve.coulomb = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.attraction = 0_N / 1_s; }) ==
-          "maxwell_slip.attraction = 0: must be finite and above 0");
-    CHECK(says([](P& p) { p.forces[1] = 0_N; }) == "maxwell_slip.forces = 0: must be finite and above 0");
-    CHECK(says([](P& p) { p.forces[1] = -55_N; }) == "maxwell_slip.forces = -55: must be finite and above 0");
+          "maxwell_slip.attraction = 0 N/s: must be finite and above 0");
+    CHECK(says([](P& p) { p.forces[1] = 0_N; }) == "maxwell_slip.forces = 0 N: must be finite and above 0");
+    CHECK(says([](P& p) { p.forces[1] = -55_N; }) == "maxwell_slip.forces = -55 N: must be finite and above 0");
     CHECK(says([](P& p) { p.forces[0] = 90_N; }) ==
-          "maxwell_slip.forces (sum) = 177.5: must not be above static_level (177)");
-    CHECK(says([](P& p) { p.forces = {}; }) == "maxwell_slip.forces = 0: must be finite and above 0");
+          "maxwell_slip.forces (sum) = 177.5 N: must not be above static_level (177 N)");
+    CHECK(says([](P& p) { p.forces = {}; }) == "maxwell_slip.forces = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.forces = {}, p.weights = {0.4, 0.3, 0.2, 0.1}; }) == "taken");
     CHECK(says([](P& p) {
               p.forces = {}, p.weights = {0.4, 0.3, 0.2, 0.2};
@@ -472,12 +472,12 @@ TEST_CASE("maxwell_slip: refuses what no contact has, in the name of the box tha
           }) == "maxwell_slip.weights = -1: must be finite and above 0");
     CHECK(says([](P& p) {
               p.weights = {0.4, 0.3, 0.2, 0.1};
-          }) == "maxwell_slip.forces = 65: must be zero where weights are given");
+          }) == "maxwell_slip.forces = 65 N: must be zero where weights are given");
     CHECK(says([](P& p) {
               p.forces = {}, p.weights = {0.4, 0.6, 0, 0};
           }) == "maxwell_slip.weights = 0: must be finite and above 0");
     CHECK(says([](P& p) {
               p.weights = {bad_number, 0, 0, 0};
           }) == "maxwell_slip.weights = nan: must be finite and above 0");
-    CHECK(says([](P&) {}, 0_s) == "stribeck.period = 0: must be finite and above 0");
+    CHECK(says([](P&) {}, 0_s) == "stribeck.period = 0 s: must be finite and above 0");
 }

@@ -188,7 +188,7 @@ TEST_CASE("slip_contact: what no guide has is refused by name") {
     p = thesis_y();
     p.stiffness[2] = -p.stiffness[2];
     CHECK_THROWS_WITH(contact<>(p, mass, step),
-                      "slip_contact.stiffness = -2e+06: must be finite and not below 0");
+                      "slip_contact.stiffness = -2e+06 N/m: must be finite and not below 0");
 }
 
 TEST_CASE("slip_contact: each direction breaks away at its own static level and falls with its own Stribeck "

@@ -161,19 +161,19 @@ TEST_CASE("stribeck: refuses what no axis has") {
         return std::string("taken");
     };
     using P = stribeck<>::parameters;
-    CHECK(message([](P& p) { p.coulomb = -1_N; }) == "stribeck.coulomb = -1: must be finite and not below 0");
+    CHECK(message([](P& p) { p.coulomb = -1_N; }) == "stribeck.coulomb = -1 N: must be finite and not below 0");
     CHECK(message([](P& p) { p.static_level = 121_N; }) ==
-          "stribeck.static_level = 121: must not be below coulomb (122)");
+          "stribeck.static_level = 121 N: must not be below coulomb (122 N)");
     CHECK(message([](P& p) { p.static_level = infinite * 1_N; }) ==
-          "stribeck.static_level = inf: must be finite");
+          "stribeck.static_level = inf N: must be finite");
     CHECK(message([](P& p) { p.stribeck_velocity = 0_mps; }) ==
-          "stribeck.stribeck_velocity = 0: must be finite and above 0");
+          "stribeck.stribeck_velocity = 0 m/s: must be finite and above 0");
     CHECK(message([](P& p) { p.viscous = -2_N / 1_mps; }) ==
-          "stribeck.viscous = -2: must be finite and not below 0");
+          "stribeck.viscous = -2 N s/m: must be finite and not below 0");
     CHECK(message([](P& p) { p.shape = 0.2; }) == "stribeck.shape = 0.2: must lie between 0.25 and 4");
     CHECK(message([](P& p) { p.shape = 4.5; }) == "stribeck.shape = 4.5: must lie between 0.25 and 4");
     CHECK(message([](P& p) { p.shape = bad_number; }) == "stribeck.shape = nan: must lie between 0.25 and 4");
     CHECK(message([](P& p) { p.static_level = p.coulomb; }) == "taken");
-    CHECK_THROWS_WITH_AS((stribeck<>{x_axis, -1_s}), "stribeck.period = -1: must be finite and above 0",
+    CHECK_THROWS_WITH_AS((stribeck<>{x_axis, -1_s}), "stribeck.period = -1 s: must be finite and above 0",
                          invalid_parameter);
 }

@@ -24,7 +24,7 @@ template <class Unit> quantity<Unit, four> each_of(quantity<Unit>, const std::ar
 TEST_CASE("lanes: a constructor refuses the lane that breaks the rule, and names its value") {
     const four damping(0.1);
     CHECK_THROWS_WITH_AS((notch<signal::force, four>({each_of(1_Hz, {100, 200, 1200, 300}), damping}, 500_us)),
-                         "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)",
+                         "notch.centre = 1200 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (notch<signal::force, four>(
@@ -32,7 +32,7 @@ TEST_CASE("lanes: a constructor refuses the lane that breaks the rule, and names
         "notch.damping = -2: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (limiter<signal::force, four>({each_of(1_N, {0, 0, 0, 5}), each_of(1_N, {1, 1, 1, 4})}, 500_us)),
-        "limiter.high = 4: must not lie below low (5)", invalid_parameter);
+        "limiter.high = 4 N: must not lie below low (5 N)", invalid_parameter);
     CHECK_THROWS_WITH_AS((delay_line<signal::force, 7, four>({{0, 7, 8, 1}}, 500_us)),
                          "delay_line.length = 8: must not exceed the capacity (7)", invalid_parameter);
 }

@@ -184,7 +184,8 @@ int main() {
     sine(250);
     real("quadrant-axis.0.feedback") = nan; // one reading lost at 63 mm/s, the planner goes on
     sine(1);
-    // Two periods of way taken for one would be 63 m/s^2, which is 15 V; what is left is one period of the sine's 0.4 m/s^2.
+    // The path of two periods taken for that of one would be 63 m/s^2, which is 15 V; what is left is one
+    // period of the sine's 0.4 m/s^2.
     claim(largest_step_of(10) < 0.4, "after a lost reading the command goes on without a kick");
     const double x = real("quadrant-plant.0.position");
     real("quadrant-plant.0.external") = nan;

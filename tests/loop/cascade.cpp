@@ -40,7 +40,7 @@ template <class Boxes = boxes<double>> typename Boxes::parameters machine() {
 }
 const auto Ts = 1_ms;
 
-/// The controller of FORMAT.md in bare doubles, written from its text.
+/// The controller of docs/formats.md in bare doubles, written from its text.
 struct bare {
     double T = 1e-3, r1 = 0, v_ref1 = 0, y1 = 0, v = 0, integral = 0, n1 = 0, n2 = 0, feedback = 0, wanted = 0;
     double operator()(double r, double y) {
@@ -71,7 +71,7 @@ quantity<si::length> metres(double x) { return quantity<si::length>::from_value(
 const auto bad = metres(std::numeric_limits<double>::quiet_NaN());
 } // namespace
 
-TEST_CASE("cascade: the controller of FORMAT.md in bare doubles, before the DAC to 1e-9 V") {
+TEST_CASE("cascade: the controller of docs/formats.md in bare doubles, before the DAC to 1e-9 V") {
     auto p = machine();
     p.dac_step = 0_V;
     axis typed{.box = {p, Ts}};

@@ -29,7 +29,7 @@ template <class Observer> double shaken() {
                                            .estimator_corner = 150_Hz,
                                            .notch = {294_Hz, 0.17},
                                            .plant_gain = 8.916_mps2 / 1_V,
-                                           .plant_pole = 20_Hz,
+                                           .plant_pole = 20_per_s,
                                            .limit = 10_V};
     if constexpr (std::is_same_v<Observer, harmonics>)
         p.disturbance = {

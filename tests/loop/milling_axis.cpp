@@ -39,7 +39,7 @@ template <class Boxes = boxes<>> typename Boxes::parameters x_axis() {
                                  .estimator_corner = 942.5 / (2 * pi) * 1_Hz,
                                  .notch = {330_Hz, 0.0606},
                                  .plant_gain = 4.526_mps2 / 1_V,
-                                 .plant_pole = 28.57_Hz,
+                                 .plant_pole = 28.57_per_s,
                                  .friction = {},
                                  .disturbance = {},
                                  .memory = {},
@@ -385,11 +385,11 @@ TEST_CASE("milling_axis: refuses a plant without gain, and what its boxes refuse
     using P = boxes<>::parameters;
     CHECK(says([](P&) {}) == "taken");
     CHECK(says([](P& p) { p.plant_gain = {}; }) ==
-          "milling_axis_boxes.plant_gain = 0: must be finite and above 0");
-    CHECK(says([](P& p) { p.plant_pole = -1_Hz; }) ==
-          "milling_axis_boxes.plant_pole = -1: must be finite and not below 0");
+          "milling_axis_boxes.plant_gain = 0 m/(V s^2): must be finite and above 0");
+    CHECK(says([](P& p) { p.plant_pole = -1_per_s; }) ==
+          "milling_axis_boxes.plant_pole = -1 per s: must be finite and not below 0");
     CHECK(says([](P& p) { p.notch.centre = 1_kHz; }) ==
-          "notch.centre = 1000: must lie between 0 and half the sampling rate (1000)");
-    CHECK(says([](P& p) { p.friction.static_level = 0.01_V; }).substr(0, 29) ==
-          "stribeck.static_level = 0.01:");
+          "notch.centre = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)");
+    CHECK(says([](P& p) { p.friction.static_level = 0.01_V; }).substr(0, 31) ==
+          "stribeck.static_level = 0.01 V:");
 }

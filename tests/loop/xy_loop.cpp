@@ -38,9 +38,9 @@ boxes::parameters axis_of(double heavier, double gain = 1) {
                         .estimator_corner = 150_Hz,
                         .notch = {330_Hz * heavier, 0.06},
                         .plant_gain = 4.526_mps2 / 1_V / heavier,
-                        .plant_pole = 2.5_Hz,
+                        .plant_pole = 2.5_per_s,
                         .friction = {},
-                        .disturbance = {60_Hz, axis_model<s::voltage>{4.526_mps2 / 1_V / heavier, 2.5_Hz}},
+                        .disturbance = {60_Hz, axis_model<s::voltage>{4.526_mps2 / 1_V / heavier, 2.5_per_s}},
                         .memory = {.cycle = 85.859 * T, .weights = {2, -1}, .ahead = 7},
                         .limit = 10_V,
                         .dac_step = {}};

@@ -270,7 +270,7 @@ TEST_CASE("xy_table: refuses a coupling of one, an encoder in the motor, and mod
     refuse([](auto& p) { p.coupling.into_y = std::nan(""); },
            "xy_table.coupling.into_y = nan: must lie between -1 and 1");
     refuse([](auto& p) { p.x.motor.encoder_step = 1_um; },
-           "table_axis.motor.encoder_step = 1e-06: must be 0 (the encoder is a box of its own)");
+           "table_axis.motor.encoder_step = 1e-06 m: must be 0 (the encoder is a box of its own)");
     refuse([](auto& p) { p.y.motor.load.modes.mass = 340_kg; },
-           "table_axis.motor.load.modes.mass = 340: must be that of the motor (170)");
+           "table_axis.motor.load.modes.mass = 340 kg: must be that of the motor (170 kg)");
 }

@@ -100,10 +100,10 @@ TEST_CASE("fractional_delay: a delay outside its range saturates, and it says so
 }
 TEST_CASE("fractional_delay: refuses a delay outside its range") {
     CHECK_THROWS_WITH_AS((line{{.delay = 6_ms}, 1_ms}),
-                         "fractional_delay.delay = 0.006: must lie between 0 and 0.005 (capacity)",
+                         "fractional_delay.delay = 0.006 s: must lie between 0 s and 0.005 s (capacity)",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS((cubic{{.delay = 0.5_ms}, 1_ms}),
-                         "fractional_delay.delay = 5e-04: must lie between 0.001 and 0.005 (capacity)",
+                         "fractional_delay.delay = 5e-04 s: must lie between 0.001 s and 0.005 s (capacity)",
                          invalid_parameter);
     CHECK_THROWS_AS((line{{.delay = std::numeric_limits<double>::quiet_NaN() * 1_ms}, 1_ms}),
                     invalid_parameter);

@@ -241,8 +241,8 @@ TEST_CASE(
 TEST_CASE("repetitive: refuses what cannot be") {
     CHECK_THROWS_WITH_AS(
         (full{{.cycle = 4_ms, .ahead = 2}, 1_ms}),
-        "repetitive.cycle = 0.004: must lie between 0.005 (look-ahead of learning and smoothing, "
-        "and two periods) and 0.2 (capacity)",
+        "repetitive.cycle = 0.004 s: must lie between 0.005 s (look-ahead of learning and smoothing, "
+        "and two periods) and 0.2 s (capacity)",
         invalid_parameter);
     CHECK_THROWS_AS((full{{.cycle = 201_ms}, 1_ms}), invalid_parameter);
     CHECK_THROWS_AS((full{{.cycle = std::nan("") * 1_ms}, 1_ms}), invalid_parameter);

@@ -21,7 +21,8 @@ using gain = gain_of<s::acceleration, s::voltage>;
 
 struct axis { // [Jamaludin2008] Table 2.1, 2.2
     gain B;
-    frequency A, corner;
+    per_second A;
+    frequency corner;
     double kp, ki;
 };
 const axis x{4.526_mps2 / 1_V, 28.57 / 1_s, 60_Hz, 60, 450}, y{8.916_mps2 / 1_V, 20.0 / 1_s, 90_Hz, 30, 250};
@@ -265,7 +266,7 @@ TEST_CASE(
     const axis_model<s::voltage> g{x.B, x.A};
     CHECK_THROWS_WITH_AS(
         (observer{{1_kHz, g}, T}),
-        "disturbance_observer.corner = 1000: must lie between 0 and half the sampling rate (1000)",
+        "disturbance_observer.corner = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
         invalid_parameter);
     CHECK_THROWS_AS((observer{{0_Hz, g}, T}), invalid_parameter);
     CHECK_THROWS_AS((observer{{60_Hz, g}, 0_s}), invalid_parameter);

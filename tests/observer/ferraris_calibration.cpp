@@ -109,6 +109,6 @@ TEST_CASE("ferraris_calibration: refuses records that do not match, are too shor
         invalid_parameter);
     r = run(0, 0);
     r.sensor[17] = std::nan("") * 1_V;
-    CHECK_THROWS_WITH_AS(r.fit(), "calibrate_ferraris.sensor = nan: must be finite", invalid_parameter);
+    CHECK_THROWS_WITH_AS(r.fit(), "calibrate_ferraris.sensor = nan V: must be finite", invalid_parameter);
     CHECK_THROWS_AS(record{}.fit(), invalid_parameter);
 }

@@ -97,7 +97,7 @@ TEST_CASE("ferraris_force_estimator: refuses a mass and a motor that are none, a
         return estimator(p, T);
     };
     CHECK_THROWS_WITH_AS(with([](auto& p) { p.mass = 0_kg; }),
-                         "ferraris_force_estimator.mass = 0: must be finite and above 0", invalid_parameter);
+                         "ferraris_force_estimator.mass = 0 kg: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.force_constant = 0_N / 1_V; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.corner = 1000_Hz; }), invalid_parameter);
     CHECK_THROWS_AS(estimator(y, 0_s), invalid_parameter);

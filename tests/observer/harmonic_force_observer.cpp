@@ -186,22 +186,24 @@ TEST_CASE("harmonic_force_observer: refuses frequencies, poles and plants that l
     const auto good = placed<2>::equal(200.0 / 1_s);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{y, {46_Hz, 1000_Hz}, good}, T}),
-        "harmonic_force_observer.harmonics = 1000: must lie between 0 and half the sampling rate (1000)",
+        "harmonic_force_observer.harmonics = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
         invalid_parameter);
     CHECK_THROWS_WITH_AS((observer<2>{{y, {46_Hz, 46_Hz}, good}, T}),
-                         "harmonic_force_observer.harmonics = 46: must not be there twice", invalid_parameter);
+                         "harmonic_force_observer.harmonics = 46 Hz: must not be there twice",
+                         invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{y, two, placed<2>::equal(-10.0 / 1_s)}, T}),
-        "harmonic_force_observer.design.poles = 10: must be finite and left of the imaginary axis",
+        "harmonic_force_observer.design.poles = 10 per s: must be finite and left of the imaginary axis",
         invalid_parameter);
     auto single = good;
     single.poles[0] = {-100, 50};
     CHECK_THROWS_WITH_AS((observer<2>{{y, two, single}, T}),
-                         "harmonic_force_observer.design.poles = 50: must come in conjugate pairs",
+                         "harmonic_force_observer.design.poles = 50 per s: must come in conjugate pairs",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
-        "harmonic_force_observer.plant.damping = 0: must be above 0 for placed poles (or use expected_noise)",
+        "harmonic_force_observer.plant.damping = 0 per s: must be above 0 for placed poles (or "
+        "use expected_noise)",
         invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{axis_model<s::voltage>{}, two, good}, T}), invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{y, two, good, -1_ms}, T}), invalid_parameter);

@@ -218,11 +218,11 @@ TEST_CASE("kalman: refuses noise that is none, and a mass that is none") {
         return filter(p, T);
     };
     CHECK_THROWS_WITH_AS(with([](auto& p) { p.encoder_noise = 0_m; }),
-                         "kalman.encoder_noise = 0: must be finite and above 0", invalid_parameter);
-    CHECK_THROWS_WITH_AS(with([](auto& p) { p.drift = -1_N; }), "kalman.drift = -1: must be finite and above 0",
-                         invalid_parameter);
+                         "kalman.encoder_noise = 0 m: must be finite and above 0", invalid_parameter);
+    CHECK_THROWS_WITH_AS(with([](auto& p) { p.drift = -1_N; }),
+                         "kalman.drift = -1 N: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS(with([](auto& p) { p.half_step = -1_um; }),
-                         "kalman.half_step = -1e-06: must be finite and not below 0", invalid_parameter);
+                         "kalman.half_step = -1e-06 m: must be finite and not below 0", invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.mass = 0_kg; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.force_constant = 0_N / 1_V; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.viscous = -1_N / 1_mps; }), invalid_parameter);

@@ -73,8 +73,9 @@ TEST_CASE("lugre_observer: refuses a correction below 0, and what lugre refuses"
         }
         return {};
     };
-    CHECK(message({friction, -1.0 / 1_s}) == "lugre_observer.correction = -1: must be finite and not below 0");
+    CHECK(message({friction, -1.0 / 1_s}) ==
+          "lugre_observer.correction = -1 per s: must be finite and not below 0");
     auto bare = friction;
     bare.stiffness = {};
-    CHECK(message({bare, 1.0 / 1_s}) == "lugre.stiffness = 0: must be finite and above 0");
+    CHECK(message({bare, 1.0 / 1_s}) == "lugre.stiffness = 0 N/m: must be finite and above 0");
 }

@@ -111,7 +111,7 @@ TEST_CASE("reduced_order_observer: refuses what no axis has") {
     };
     CHECK_THROWS_WITH_AS(
         with([](auto& p) { p.corner = 1_kHz; }),
-        "reduced_order_observer.corner = 1000: must lie between 0 and half the sampling rate (1000)",
+        "reduced_order_observer.corner = 1000 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
         invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.mass = 0_kg; }), invalid_parameter);
     CHECK_THROWS_AS(with([](auto& p) { p.force_constant = -1_N / 1_V; }), invalid_parameter);

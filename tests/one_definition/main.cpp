@@ -26,7 +26,7 @@ bool agrees(const char* set, const result& it, const result& baseline) {
 int main() {
     const result baseline = run_baseline();
     std::printf("baseline: %s\n", words(baseline).c_str());
-    bool good = words(baseline).starts_with("notch.centre = 4000");
+    bool good = words(baseline).starts_with("notch.centre = 4000 Hz");
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
         good = agrees("AVX2", run_avx2(), baseline) && good;
     else

@@ -20,7 +20,7 @@ result run() {
     machines number;
     for (std::size_t i = 0; i < 8; ++i) number.set(i, 1 + 0.1 * double(i));
     const duration T = 500_us;
-    using hertz = quantity<si::frequency, machines>;
+    using hertz = quantity<hertz_unit, machines>;
     notch<signal::voltage, machines> resonance({hertz::from_value(300 * number), 0.2 * number}, T);
     butterworth<signal::voltage, machines> smooth({hertz::from_value(200 * number)}, T);
     proportional_integral<signal::voltage, signal::voltage, integral_clamp, machines> loop(

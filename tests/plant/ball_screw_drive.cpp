@@ -197,16 +197,16 @@ TEST_CASE("ball_screw_drive: refuses what no drive has, by name") {
     };
     auto p = with(printed_friction());
     p.inertia = 0_kgm2;
-    CHECK(says(p, "ball_screw_drive.inertia = 0: must be finite and above 0"));
+    CHECK(says(p, "ball_screw_drive.inertia = 0 kg m^2: must be finite and above 0"));
     p = with(printed_friction());
     p.substeps = 0;
     CHECK(says(p, "ball_screw_drive.substeps = 0: must lie between 1 and 1000"));
     p = with(printed_friction());
     p.friction.backward.rise = 0_radps;
-    CHECK(says(p, "asymmetric_stribeck.backward.rise = 0: must be finite and above 0"));
+    CHECK(says(p, "asymmetric_stribeck.backward.rise = 0 rad/s: must be finite and above 0"));
     p = with(printed_friction());
     p.pitch = -10_mm;
-    CHECK(says(p, "ball_screw_drive.pitch = -0.01: must be finite and above 0"));
+    CHECK(says(p, "ball_screw_drive.pitch = -0.01 m: must be finite and above 0"));
 }
 
 TEST_CASE("viscous_step: is the closed form, to 1e-14 on either side of where its series ends, and a parabola "

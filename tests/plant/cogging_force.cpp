@@ -18,7 +18,7 @@ using std::numbers::pi;
 const duration T = 500_us;
 const cogging_force<3>::parameters magnets{30_mm, {8_N, -3_N, 1_N}, {0.4, -2.0, 1.0}};
 
-double printed(double x) { // the equation of gap/FORMAT.md, term by term
+double printed(double x) { // the equation of docs/formats.md, term by term
     return 8 * std::sin(2 * pi * x / 0.03 + 0.4) - 3 * std::sin(4 * pi * x / 0.03 - 2.0) +
            std::sin(6 * pi * x / 0.03 + 1.0);
 }
@@ -69,12 +69,12 @@ TEST_CASE("cogging_force, force_ripple: refuse a period of zero, a ripple of the
         [] {
             cogging_force<1>{{0_mm, {1_N}, {0.0}}, T};
         },
-        "cogging_force.period = 0: must be finite and above 0");
+        "cogging_force.period = 0 m: must be finite and above 0");
     words(
         [] {
             cogging_force<1>{{30_mm, {std::nan("") * 1_N}, {0.0}}, T};
         },
-        "cogging_force.size = nan: must be finite");
+        "cogging_force.size = nan N: must be finite");
     words(
         [] {
             cogging_force<1>{{30_mm, {1_N}, {std::nan("")}}, T};
@@ -84,7 +84,7 @@ TEST_CASE("cogging_force, force_ripple: refuse a period of zero, a ripple of the
         [] {
             cogging_force<1>{{30_mm, {1_N}, {0.0}}, 0_s};
         },
-        "cogging_force.sample_period = 0: must be finite and above 0");
+        "cogging_force.sample_period = 0 s: must be finite and above 0");
     words(
         [] {
             force_ripple<signal::force, 2>{{30_mm, {0.5, -0.5}, {}}, T};
@@ -94,7 +94,7 @@ TEST_CASE("cogging_force, force_ripple: refuse a period of zero, a ripple of the
         [] {
             force_ripple<>{{-30_mm, {0.1}, {}}, T};
         },
-        "force_ripple.period = -0.03: must be finite and above 0");
+        "force_ripple.period = -0.03 m: must be finite and above 0");
 }
 
 TEST_CASE("force_ripple: 5 % of ripple give 105 N of 100 N at its crest and 95 N half a period on") {

@@ -144,14 +144,14 @@ TEST_CASE("flexible_modes: refuses what is no mode") {
     const auto refuse = [](machine_mode<> m, const char* words) {
         CHECK_THROWS_WITH_AS((flexible_modes<1>{{340_kg, {{m}}}, T}), words, invalid_parameter);
     };
-    refuse({0_Hz, 0.1, 1}, "flexible_modes.centre = 0: must be finite and above 0");
+    refuse({0_Hz, 0.1, 1}, "flexible_modes.centre = 0 Hz: must be finite and above 0");
     refuse({47_Hz, -0.1, 1}, "flexible_modes.damping = -0.1: must not be below 0 and must be below 1");
     refuse({47_Hz, 1, 1}, "flexible_modes.damping = 1: must not be below 0 and must be below 1");
     refuse({47_Hz, 0.1, std::nan("")}, "flexible_modes.share = nan: must be finite");
     CHECK_THROWS_WITH_AS((flexible_modes<1>{{0_kg, {{{47_Hz, 0.1, 1}}}}, T}),
-                         "flexible_modes.mass = 0: must be finite and above 0", invalid_parameter);
+                         "flexible_modes.mass = 0 kg: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS((flexible_modes<1>{{1_kg, {{{47_Hz, 0.1, 1}}}}, 0_s}),
-                         "flexible_modes.period = 0: must be finite and above 0", invalid_parameter);
+                         "flexible_modes.period = 0 s: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS((base_mode(machine_base<>{340_kg, 0_kg, 47_Hz, 0.03})),
-                         "machine_base.base = 0: must be finite and above 0", invalid_parameter);
+                         "machine_base.base = 0 kg: must be finite and above 0", invalid_parameter);
 }

@@ -415,24 +415,24 @@ TEST_CASE("linear_motor: refuses what no machine has, in the name of the box tha
     };
     using P = motor::parameters;
     const auto nothing = [](P&) {};
-    CHECK(message([](P& p) { p.mass = 0_kg; }) == "linear_motor.mass = 0: must be finite and above 0");
+    CHECK(message([](P& p) { p.mass = 0_kg; }) == "linear_motor.mass = 0 kg: must be finite and above 0");
     CHECK(message([](P& p) { p.force_constant = -1.0 * kf; }) ==
-          "linear_motor.force_constant = -1450: must be finite and above 0");
+          "linear_motor.force_constant = -1450 N/V: must be finite and above 0");
     CHECK(message([](P& p) { p.friction.coulomb = -1_N; }) ==
-          "coulomb_viscous.coulomb = -1: must be finite and not below 0");
-    CHECK(message([](P& p) { p.delay = -1_s; }) == "linear_motor.delay = -1: must be finite and not below 0");
+          "coulomb_viscous.coulomb = -1 N: must be finite and not below 0");
+    CHECK(message([](P& p) { p.delay = -1_s; }) == "linear_motor.delay = -1 s: must be finite and not below 0");
     CHECK(message([](P& p) { p.delay = 16_ms; }) ==
-          "linear_motor.delay = 0.016: must not be beyond the capacity (31 periods)");
+          "linear_motor.delay = 0.016 s: must not be beyond the capacity (31 periods)");
     CHECK(message([](P& p) { p.delay = 15.5_ms; }) == "taken");
-    CHECK(message([](P& p) { p.limit = -1_V; }) == "linear_motor.limit = -1: must be finite and not below 0");
+    CHECK(message([](P& p) { p.limit = -1_V; }) == "linear_motor.limit = -1 V: must be finite and not below 0");
     CHECK(message([](P& p) { p.dac_step = -1_V; }) ==
-          "linear_motor.dac_step = -1: must be finite and not below 0");
+          "linear_motor.dac_step = -1 V: must be finite and not below 0");
     CHECK(message([](P& p) { p.encoder_step = -1_m; }) ==
-          "linear_motor.encoder_step = -1: must be finite and not below 0");
+          "linear_motor.encoder_step = -1 m: must be finite and not below 0");
     CHECK(message([](P& p) { p.substeps = 0; }) == "linear_motor.substeps = 0: must lie between 1 and 1000");
     CHECK(message([](P& p) { p.substeps = 1001; }) ==
           "linear_motor.substeps = 1001: must lie between 1 and 1000");
     CHECK(message([](P& p) { p.mass = bad_number * 1_kg; }) ==
-          "linear_motor.mass = nan: must be finite and above 0");
-    CHECK(message(nothing, 0_s) == "linear_motor.period = 0: must be finite and above 0");
+          "linear_motor.mass = nan kg: must be finite and above 0");
+    CHECK(message(nothing, 0_s) == "linear_motor.period = 0 s: must be finite and above 0");
 }

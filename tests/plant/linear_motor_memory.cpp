@@ -246,6 +246,6 @@ TEST_CASE("linear_motor: on maxwell_slip with duals the end moves with mass, lev
 TEST_CASE("linear_motor: refuses in the name of the friction box") {
     auto p = x_axis();
     p.friction.stiffness[0] = per_um(-1);
-    CHECK_THROWS_WITH_AS((table{p, Ts}), "maxwell_slip.stiffness = -1e+06: must be finite and above 0",
+    CHECK_THROWS_WITH_AS((table{p, Ts}), "maxwell_slip.stiffness = -1e+06 N/m: must be finite and above 0",
                          invalid_parameter);
 }

@@ -147,7 +147,7 @@ TEST_CASE("servo_axis: a second mass moves the reading as the mode of flexible_m
     // [docs/derivations].
     const double first = 80, whole = 100;
     flexible_modes<1> mode({.mass = quantity<si::mass>::from_value(whole),
-                            .modes = {{{quantity<si::frequency>::from_value(50 * std::sqrt(whole / first)),
+                            .modes = {{{quantity<hertz_unit>::from_value(50 * std::sqrt(whole / first)),
                                         0.02 * std::sqrt(whole / first), 20 / first}}}},
                            duration::from_value(fine));
     double x = 0, v = 0, worst = 0, most = 0;
@@ -231,7 +231,7 @@ TEST_CASE("servo_axis: what no axis has is refused by name") {
     p = full_axis();
     p.second.mass = quantity<si::mass>::from_value(200);
     CHECK_THROWS_WITH(axis(p, step),
-                      "servo_axis.second.mass = 200: must lie below the mass, of which it is a part");
+                      "servo_axis.second.mass = 200 kg: must lie below the mass, of which it is a part");
     p = full_axis();
     p.play = -1e-6;
     CHECK_THROWS_WITH(axis(p, step), "servo_axis.play = -1e-06: must be finite and not below 0");

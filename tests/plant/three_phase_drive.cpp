@@ -137,11 +137,11 @@ TEST_CASE("three_phase_drive: refuses what no drive has, by name") {
         return {};
     };
     CHECK(message([](auto& p) { p.resistance = {}; }) ==
-          "three_phase_drive.resistance = 0: must be finite and above 0");
-    CHECK(message([](auto& p) { p.bus = {}; }).find("three_phase_drive.bus = 0") == 0);
+          "three_phase_drive.resistance = 0 V/A: must be finite and above 0");
+    CHECK(message([](auto& p) { p.bus = {}; }).find("three_phase_drive.bus = 0 V") == 0);
     CHECK(message([](auto& p) { p.bandwidth = 900_Hz; }) ==
-          "three_phase_drive.bandwidth = 900: must be above 0 and at most 1/12 of the current loop's rate "
-          "(833.3333333333334)");
+          "three_phase_drive.bandwidth = 900 Hz: must be above 0 and at most 1/12 of the current loop's rate "
+          "(833.3333333333334 Hz)");
     CHECK(message([](auto& p) { p.gain_error = -1; }).find("three_phase_drive.gain_error = -1") == 0);
     CHECK(message([](auto& p) { p.steps = 0; }).find("three_phase_drive.steps = 0") == 0);
 }

@@ -135,23 +135,23 @@ TEST_CASE("cutting_force: refuses a harmonic above half the sampling rate, and w
     };
     refuse(
         whole_x, [](auto& p) { p.fundamental = 70_Hz; },
-        "cutting_force.fundamental = 70: must lie between 0 and half the sampling rate by the number of "
+        "cutting_force.fundamental = 70 Hz: must lie between 0 and half the sampling rate by the number of "
         "harmonics "
-        "(66.66666666666667)");
+        "(66.66666666666667 Hz)");
     refuse(
         whole_x, [](auto& p) { p.fundamental = 0_Hz; },
-        "cutting_force.fundamental = 0: must lie between 0 and half the sampling rate by the number of "
+        "cutting_force.fundamental = 0 Hz: must lie between 0 and half the sampling rate by the number of "
         "harmonics "
-        "(66.66666666666667)");
+        "(66.66666666666667 Hz)");
     refuse(
         whole_x, [](auto& p) { p.scale = std::numeric_limits<double>::infinity() * 1_N; },
-        "cutting_force.scale = inf: must be finite");
+        "cutting_force.scale = inf N: must be finite");
     refuse(
         whole_x, [](auto& p) { p.harmonics.imaginary[7] = std::nan(""); },
-        "cutting_force.harmonics.imaginary = nan: must be finite");
+        "cutting_force.harmonics.imaginary = nan N: must be finite");
     refuse(
         whole_x, [](auto& p) { p.entry = -1_ms; },
-        "cutting_force.entry = -0.001: must be finite and not below 0");
-    CHECK_THROWS_WITH_AS((c{whole_x, 0_s}), "cutting_force.period = 0: must be finite and above 0",
+        "cutting_force.entry = -0.001 s: must be finite and not below 0");
+    CHECK_THROWS_WITH_AS((c{whole_x, 0_s}), "cutting_force.period = 0 s: must be finite and above 0",
                          invalid_parameter);
 }

@@ -236,15 +236,18 @@ TEST_CASE("milling_force: refuses what no cutter could do") {
         CHECK_THROWS_WITH_AS((four{p, T}), words, invalid_parameter);
     };
     refuse([](auto& p) { p.radial_depth = 17_mm; },
-           "milling_force.radial_depth = 0.017: must not be beyond the diameter (0.016)");
-    refuse([](auto& p) { p.spindle = 250_Hz; }, "milling_force.spindle = 250: must lie between 0 and half the "
-                                                "sampling rate by the number of edges (250)");
-    refuse([](auto& p) { p.axial_depth = 0_mm; }, "milling_force.axial_depth = 0: must be finite and above 0");
+           "milling_force.radial_depth = 0.017 m: must not be beyond the diameter (0.016 m)");
+    refuse([](auto& p) { p.spindle = 250_Hz; },
+           "milling_force.spindle = 250 Hz: must lie between 0 and half the "
+           "sampling rate by the number of edges (250 Hz)");
+    refuse([](auto& p) { p.axial_depth = 0_mm; },
+           "milling_force.axial_depth = 0 m: must be finite and above 0");
     refuse([](auto& p) { p.feed_per_tooth = -1_mm; },
-           "milling_force.feed_per_tooth = -0.001: must be finite and above 0");
+           "milling_force.feed_per_tooth = -0.001 m: must be finite and above 0");
     refuse([](auto& p) { p.radial = -1.0 * N_per_mm2; },
-           "milling_force.radial = -1e+06: must be finite and not below 0");
-    refuse([](auto& p) { p.runout = -1_um; }, "milling_force.runout = -1e-06: must be finite and not below 0");
-    refuse([](auto& p) { p.entry = -1_ms; }, "milling_force.entry = -0.001: must be finite and not below 0");
+           "milling_force.radial = -1e+06 N/m^2: must be finite and not below 0");
+    refuse([](auto& p) { p.runout = -1_um; },
+           "milling_force.runout = -1e-06 m: must be finite and not below 0");
+    refuse([](auto& p) { p.entry = -1_ms; }, "milling_force.entry = -0.001 s: must be finite and not below 0");
     refuse([](auto& p) { p.substeps = 0; }, "milling_force.substeps = 0: must lie between 1 and 1000");
 }

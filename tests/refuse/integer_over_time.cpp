@@ -7,7 +7,7 @@
 using namespace quadrant::literals;
 
 #ifdef MEND
-const quadrant::frequency gain = 60.0 / 1_s;
+const quadrant::per_second gain = 60.0 / 1_s;
 #else
-const quadrant::frequency gain = 60 / 1_s;
+const quadrant::per_second gain = 60 / 1_s;
 #endif

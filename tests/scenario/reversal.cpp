@@ -25,7 +25,7 @@ using boxes =
     cascade_p_pi_boxes<filtered_derivative<signal::position, signal::velocity>, notch<signal::voltage>>;
 using machine = linear_motor<stribeck<>>;
 
-/// The thesis' x axis ([Jamaludin2008] ch. 2 and 3), notch in the command as in gap/FORMAT.md.
+/// The thesis' x axis ([Jamaludin2008] ch. 2 and 3), notch in the command as in docs/formats.md.
 machine::parameters x_axis() {
     return {.mass = 340_kg,
             .force_constant = 1450_N / 1_V,
@@ -114,8 +114,8 @@ TEST_CASE("reversal: from 0 to 120 N the glitch falls with every step of the fee
 }
 TEST_CASE("reversal: a feedforward twice too large is worse than none; one of the wrong sign is refused") {
     CHECK(sinusoid(300, 100).near > sinusoid(0, 100).near);
-    CHECK_THROWS_WITH_AS(sinusoid(-145, 100), "coulomb_viscous.coulomb = -0.1: must be finite and not below 0",
-                         invalid_parameter);
+    CHECK_THROWS_WITH_AS(sinusoid(-145, 100),
+                         "coulomb_viscous.coulomb = -0.1 N: must be finite and not below 0", invalid_parameter);
 }
 TEST_CASE("reversal: it is the friction: without it nothing stands out after a reversal") {
     auto smooth = x_axis();

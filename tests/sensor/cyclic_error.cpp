@@ -52,10 +52,10 @@ TEST_CASE("cyclic_error: as steep as it may be, the reading never runs backwards
     CHECK(rises);
     CHECK_THROWS_WITH_AS(
         (cyclic_error<>{{4_um, {0.64_um}, {}}, T}),
-        "cyclic_error.size = 6.4e-07: must not let the reading run backwards (2 pi sum i size_i <= period)",
+        "cyclic_error.size = 6.4e-07 m: must not let the reading run backwards (2 pi sum i size_i <= period)",
         invalid_parameter);
     CHECK_THROWS_WITH_AS((cyclic_error<>{{0_um, {0_um}, {}}, T}),
-                         "cyclic_error.period = 0: must be finite and above 0", invalid_parameter);
+                         "cyclic_error.period = 0 m: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS((cyclic_error<>{{4_um, {0_um}, {}}, -1_s}),
-                         "cyclic_error.sample_period = -1: must be finite and above 0", invalid_parameter);
+                         "cyclic_error.sample_period = -1 s: must be finite and above 0", invalid_parameter);
 }

@@ -75,6 +75,6 @@ TEST_CASE("white_noise: without a deviation it is silent; a negative one is refu
         noise bad{{-1_mps}, 1_ms};
         FAIL("taken");
     } catch (const invalid_parameter& e) {
-        CHECK(std::string(e.what()) == "white_noise.deviation = -1: must be finite and not below 0");
+        CHECK(std::string(e.what()) == "white_noise.deviation = -1 m/s: must be finite and not below 0");
     }
 }

@@ -29,7 +29,9 @@ static_assert(rate_of<s::acceleration, s::velocity>);
 static_assert(!rate_of<s::acceleration, s::position>);
 
 // Units that a parameter must have
-static_assert(std::same_as<gain_of<s::velocity, s::position>, frequency>);
+static_assert(std::same_as<gain_of<s::velocity, s::position>, per_second>);
+static_assert(!std::is_convertible_v<frequency, per_second> && !std::is_convertible_v<per_second, frequency>);
+static_assert(!std::is_convertible_v<frequency, quantity<si::angular_velocity>>);
 static_assert(std::same_as<gain_of<s::force, s::force>, quantity<si::dimensionless>>);
 static_assert(!std::same_as<gain_of<s::force, s::velocity>, gain_rate_of<s::force, s::velocity>>);
 static_assert(std::same_as<gain_rate_of<s::force, s::velocity>, gain_of<s::force, s::position>>);

@@ -426,7 +426,7 @@ TEST_CASE("interpolator: limits that a profile cannot keep are refused, without 
     machine_limits free{{at_most(0.3), at_most(0.3), at_most(0.3)}, at_most(0.2, 2)};
     using drive = interpolator<8>;
     CHECK_THROWS_WITH_AS((drive({machine, profile_kind::constant_acceleration}, 1_ms)),
-                         "interpolator.path.jerk = 50: must be infinite: only trapezoidal and cubic "
+                         "interpolator.path.jerk = 50 m/s^3: must be infinite: only trapezoidal and cubic "
                          "acceleration keep such a limit",
                          invalid_parameter);
     CHECK_THROWS_AS((drive({free, profile_kind::constant_velocity}, 1_ms)), invalid_parameter);

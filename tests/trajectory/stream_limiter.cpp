@@ -174,9 +174,10 @@ TEST_CASE("stream_limiter: shift moves the frame and nothing else") {
 }
 
 TEST_CASE("stream_limiter: refuses a jerk that needs a longer mean than it has") {
-    CHECK_THROWS_WITH_AS((limiter_400{limits(1, 10, 10), Ts}),
-                         "stream_limiter.jerk = 10: needs a mean of 2000 samples, and the capacity is 400",
-                         invalid_parameter);
+    CHECK_THROWS_WITH_AS(
+        (limiter_400{limits(1, 10, 10), Ts}),
+        "stream_limiter.jerk = 10 m/s^3: needs a mean of 2000 samples, and the capacity is 400",
+        invalid_parameter);
     CHECK_THROWS_AS((limiter_400{limits(0, 1, 100), Ts}), invalid_parameter);
     CHECK_THROWS_AS((limiter_400{limits(1, no_bound, 100), Ts}), invalid_parameter);
 }

@@ -104,7 +104,7 @@ TEST_CASE("judge: with poor excitation a group of three may hold it") {
             .right);
 }
 
-TEST_CASE("judge: the first box, with what FORMAT.md lets pass") {
+TEST_CASE("judge: the first box, with what docs/formats.md lets pass") {
     CHECK(*judge(truth("single", {effect("sample_loss")}), said("explained", {}, "actuator")).box);
     CHECK_FALSE(*judge(truth("single", {effect("sample_loss")}), said("explained", {}, "mechanics")).box);
     CHECK(*judge(truth("single", {effect("cogging")}), said("explained", {}, "actuator")).box);

@@ -149,7 +149,7 @@ TEST_CASE("trial's actuator: a command acts after the delay, to a fraction of a 
     CHECK(near(area, 0.004 - 0.0005 - 0.00123456, 1e-6));
 }
 
-TEST_CASE("trial's actuator: lag, dead zone, drive limit and ripple as FORMAT.md has them") {
+TEST_CASE("trial's actuator: lag, dead zone, drive limit and ripple as docs/formats.md has them") {
     actuator_truth a;
     a.lag = 0.002;
     actuator slow(a, 0.0005, dice(1));

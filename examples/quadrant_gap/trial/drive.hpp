@@ -3,7 +3,7 @@
 #include "machine.hpp"
 #include "random.hpp"
 
-/// Drives of the trial's machines: written from the equations of gap/FORMAT.md, without the library's blocks.
+/// Drives of the trial's machines: written from the equations of docs/formats.md, without the library's blocks.
 namespace quadrant_gap::trial {
 
 class inner_loops {

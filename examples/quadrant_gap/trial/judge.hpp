@@ -38,7 +38,7 @@ struct judgement {
     std::string first; ///< what a confusion matrix enters: the first claim, or the verdict
 };
 
-/// Names that are one model on most records (FORMAT.md, known equivalences).
+/// Names that are one model on most records (docs/formats.md, known equivalences).
 inline bool same_model(const std::string& said, const std::string& true_name) {
     if (said == true_name) return true;
     const auto pair = [&](const char* a, const char* b) {

@@ -8,7 +8,7 @@
 /// Controller, encoder and the closed loop of the trial's machines.
 namespace quadrant_gap::trial {
 
-/// Kind cascade_p_pi of FORMAT.md.
+/// Kind cascade_p_pi of docs/formats.md.
 class cascade {
 public:
     cascade(const controller_truth& c, double period) : c_(c), T_(period) {

@@ -66,8 +66,8 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
     return a == b;
 }
 
-/// Names that are one model on any motion (gap/FORMAT.md): with one of them out of the candidates the other is
-/// no lie.
+/// Names that are one model on any motion (docs/formats.md): with one of them out of the candidates the other
+/// is no lie.
 inline bool has_a_twin(std::string_view effect) {
     return effect == "mass" || effect == "force_constant" || effect == "constant_force" ||
            effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain";

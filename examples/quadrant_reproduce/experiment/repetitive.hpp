@@ -19,7 +19,7 @@ inline outcome repetitive_case() {
     const auto q = qa::smoothing_filter<61>(200_Hz, thesis::period);
     const auto l = qa::learning_filter<90>(closed, q, 30, thesis::period);
     const quadrant::frequency spindle = qa::hertz(23.294);
-    const quadrant::duration cycle = 1.0 / spindle;
+    const quadrant::duration cycle = quadrant::period_of(spindle);
     const auto indices = [&](const auto& weights) {
         return qa::performance(closed, l, q, weights, {.cycle = cycle, .bandwidth = 100_Hz});
     };

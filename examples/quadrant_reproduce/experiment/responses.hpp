@@ -94,7 +94,7 @@ inline outcome a_prime_case(const thesis::axis& a, const std::string& id) {
                  {},
                  {},
                  "rms of the noise at which the printed A' gives back the printed A"}};
-    const auto response = [&](quadrant::frequency pole) {
+    const auto response = [&](quadrant::per_second pole) {
         return thesis::measured_response<thesis::gms_beside>(a, pole, 1, 1);
     };
     out.pictures = {response_picture(fmt::format("Axis {}: the pole beside GMS friction", a.name),

@@ -16,7 +16,7 @@ outcome vcnc_margins_case(const std::string& id, const std::string& name, const 
     const quadrant::analysis::law_loop loop{Law(law, vcnc::period),
                                             quadrant::analysis::sampled_axis<>{vcnc::model(a), vcnc::period}};
     const auto open = [&](frequency f) { return loop.open(f); };
-    const frequency nyquist = 0.5 / vcnc::period;
+    const frequency nyquist = 0.5 * quadrant::once_per(vcnc::period);
     const band searched{quadrant::analysis::hertz(1), 0.999 * nyquist};
     const auto found = quadrant::analysis::margins(open, searched);
     // By how much the gain may rise. At half the sampling rate the response is real: the last place where it

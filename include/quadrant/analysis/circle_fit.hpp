@@ -84,14 +84,16 @@ inline full_turn one_turn(const circular_path& path, const circle& nominal) {
     for (std::size_t i = 0; i < path.x.size(); ++i) {
         const double dx = (path.x[i] - nominal.x).value(), dy = (path.y[i] - nominal.y).value();
         const double off = std::hypot(dx, dy) - nominal.radius.value();
-        require(std::isfinite(off) && std::abs(off) < 0.2 * nominal.radius.value(), "circular_path", off,
+        require(std::isfinite(off) && std::abs(off) < 0.2 * nominal.radius.value(), "circular_path",
+                quadrant::detail::in_unit(off, " m"),
                 "must stay within a fifth of the nominal radius of the nominal circle (sample " +
                     quadrant::detail::shortest(double(i)) + ")");
         const double now = turn_degrees(dy, dx);
         double step = i == 0 ? 0 : now - last;
         if (step > 180) step -= 360;
         if (step < -180) step += 360;
-        require(std::abs(step) < 20, "circular_path.step", step, "must turn less than 20 degrees a sample");
+        require(std::abs(step) < 20, "circular_path.step", quadrant::detail::in_unit(step, " degrees"),
+                "must turn less than 20 degrees a sample");
         sum += step, last = now;
         angle.push_back(i == 0 ? now : angle.back() + step);
     }
@@ -99,8 +101,10 @@ inline full_turn one_turn(const circular_path& path, const circle& nominal) {
     for (std::size_t i = 1; i < angle.size(); ++i)
         back = std::max(back, forward ? angle[i - 1] - angle[i] : angle[i] - angle[i - 1]);
     require(std::abs(sum) >= 360 - 1e-6 - 2 * std::abs(sum) / double(angle.size()), "circular_path, turned",
-            sum, "must be a full turn (360 degrees) or more, run in and run out included");
-    require(back < 2, "circular_path, turned back", back, "must go one way round");
+            quadrant::detail::in_unit(sum, " degrees"),
+            "must be a full turn (360 degrees) or more, run in and run out included");
+    require(back < 2, "circular_path, turned back", quadrant::detail::in_unit(back, " degrees"),
+            "must go one way round");
     const double cut = std::max(0.0, 0.5 * (std::abs(sum) - 360));
     full_turn out{{}, {}, {}, forward};
     for (std::size_t i = 0; i < angle.size(); ++i) {

@@ -28,7 +28,7 @@ struct circular_result {
         deviation; ///< from the nominal radius, of every sample of the turn: the polar picture
 };
 
-/// The circle that was asked for, and how a run is held against it.
+/// The circle that was asked for, and how a run is compared with it.
 struct circular_options {
     circle nominal;             ///< as commanded; radius > 0
     bool fitted_centre = false; ///< radial deviation about the least-squares centre instead of the nominal one
@@ -42,8 +42,8 @@ struct circular_options {
 ///   spike: deviation at a reversal minus its smooth part, harmonics 0 to 2 of the turn fitted away from reversals
 /// Throws when the run is no full turn, leaves the circle by a fifth of the radius, or turns back.
 inline circular_result circular_test(const circular_path& path, const circular_options& options) {
-    require(options.search >= 1 && options.search <= 40, "circular_options.search", options.search,
-            "must lie between 1 and 40 degrees");
+    require(options.search >= 1 && options.search <= 40, "circular_options.search",
+            quadrant::detail::in_unit(options.search, " degrees"), "must lie between 1 and 40 degrees");
     const auto turn = detail::one_turn(path, options.nominal);
     const std::size_t n = turn.x.size();
     const circle& nominal = options.nominal;

@@ -52,7 +52,7 @@ public:
 private:
     value at(duration t) const noexcept {
         const double u = t / given_.length, ratio = given_.to / given_.from, turn = 2 * std::numbers::pi;
-        const double cycles = given_.from * given_.length; // at the first frequency
+        const double cycles = given_.from.value() * given_.length.value(); // at the first frequency
         const double phase = given_.logarithmic && ratio != 1
                                  ? turn * cycles * (std::pow(ratio, u) - 1) / std::log(ratio)
                                  : turn * cycles * (u + 0.5 * (ratio - 1) * u * u);

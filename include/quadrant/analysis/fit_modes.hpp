@@ -26,7 +26,7 @@ template <signal_tag Command = signal::voltage> struct modes_fit {
         estimate<frequency> centre;
         estimate<double> damping, share; ///< of `flexible_mode`
     };
-    estimate<frequency> pole;
+    estimate<per_second> pole;
     estimate<gain_of<signal::acceleration, Command>> gain;
     estimate<duration> delay; ///< Td, with half a period of hold
     std::vector<mode> modes;  ///< in rising frequency
@@ -95,7 +95,7 @@ modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& option
         return estimate<Quantity>{Quantity::from_value(v[0]), Quantity::from_value(v[1]),
                                   Quantity::from_value(v[2])};
     };
-    modes_fit<In> out{in(linear(0, fastest), frequency()),
+    modes_fit<In> out{in(linear(0, fastest), per_second()),
                       in(ratio(1, 1), gain_of<signal::acceleration, In>()),
                       in(linear(2, 1 / fastest), duration()),
                       {},

@@ -16,7 +16,7 @@ struct plant_fit_options {
 
 /// Fitted G(s) = B e^{-s Td}/(s (s + A)) with intervals of 95 %.
 template <signal_tag Command = signal::voltage> struct plant_fit {
-    estimate<frequency> pole;                              ///< A [1/s]
+    estimate<per_second> pole;                             ///< A [1/s]
     estimate<gain_of<signal::acceleration, Command>> gain; ///< B
     estimate<duration> delay;                              ///< Td; of a sampled FRF with the hold's half period
     std::size_t lines;                                     ///< used
@@ -118,7 +118,8 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
                  dt = spread(fit.variance[2]) / scale;
     using gain = gain_of<signal::acceleration, In>;
     const auto at = [](double v) { return gain::from_value(v); };
-    return {{hertz(a), hertz(a - da), hertz(a + da)},
+    const auto pole = [](double v) { return per_second::from_value(v); };
+    return {{pole(a), pole(a - da), pole(a + da)},
             {at(std::exp(log_b)), at(std::exp(log_b - db)), at(std::exp(log_b + db))},
             {duration::from_value(delay), duration::from_value(delay - dt), duration::from_value(delay + dt)},
             n,

@@ -105,7 +105,7 @@ steady_run read_run(const axis_log<Command>& run, duration period, double uneven
 /// What it measures is the friction after so long a way at one speed: with elements that slip slowly
 /// (`maxwell_slip`) the force nears s(v) + viscous v with s(v)/attraction, 0.1 to 0.4 s on the milling table,
 /// after a run in of some ten micrometres.
-/// So slow that the encoder counts slower than the loop answers, the axis creeps from count to count and the
+/// At less than one encoder count per response time of the loop the axis creeps from count to count and the
 /// mean falls short (1 % at 0.01 mm/s and 0.25 um on the milling table): the fit's `surprise` tells.
 /// Source: [Jamaludin2008] eq. (3.5).
 /// A run that is not steady, or has no counterpart, is left out, and `unused` says why. Throws for runs shorter

@@ -141,7 +141,7 @@ tuning_result<Command> tune(const typename sliding_mode<double, Command>::parame
         require(limits.oscillation[i] < limits.oscillation[i - 1], "tune.limits.oscillation",
                 limits.oscillation[i], "must fall");
         require(limits.phase_margin[i] > limits.phase_margin[i - 1], "tune.limits.phase_margin",
-                limits.phase_margin[i], "must rise");
+                quadrant::detail::in_unit(limits.phase_margin[i], " degrees"), "must rise");
         require(limits.tracking_error[i] < limits.tracking_error[i - 1], "tune.limits.tracking_error",
                 limits.tracking_error[i], "must fall");
     }

@@ -46,7 +46,7 @@ struct designed_loop {
 /// Gains of a cascade P/PI, and what each of its loops has left with them.
 template <signal_tag Command = signal::voltage> struct gain_design {
     pi_model<Command> velocity;
-    frequency position_gain; ///< kv [1/s]
+    per_second position_gain; ///< kv [1/s]
     designed_loop velocity_loop, position_loop;
 };
 
@@ -58,7 +58,8 @@ struct too_much {
 };
 inline void require_wanted(const wanted_margins& w) {
     require_positive("design_gains.gain", w.gain);
-    require(w.phase > 0 && w.phase < 180, "design_gains.phase", w.phase, "must lie between 0 and 180");
+    require(w.phase > 0 && w.phase < 180, "design_gains.phase", quadrant::detail::in_unit(w.phase, " degrees"),
+            "must lie between 0 and 180 degrees");
     require(w.modulus > 0 && w.modulus < 1, "design_gains.modulus", w.modulus, "must lie between 0 and 1");
 }
 /// What the open loop breaks; `whole` is 1 + whole = 0 of the closed system, whose stability counts.
@@ -126,7 +127,7 @@ gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, 
     detail::require_wanted(options.velocity);
     detail::require_wanted(options.position);
     require(options.integral_phase >= 0 && options.integral_phase <= 45, "design_gains.integral_phase",
-            options.integral_phase, "must lie between 0 and 45");
+            quadrant::detail::in_unit(options.integral_phase, " degrees"), "must lie between 0 and 45 degrees");
     const double tangent = std::tan(options.integral_phase * std::numbers::pi / 180);
     const auto measured = [&](frequency f) { return complex(plant(f)) * complex(feedback(f)); };
     const auto velocity_of = [&](double kp) -> std::optional<pi_model<Command>> {
@@ -154,7 +155,7 @@ gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, 
         1 / strongest, 1 / weakest);
     const pi_model<Command> velocity = *velocity_of(found.value);
     p_pi_loop loop{[&](frequency f) { return complex(plant(f)); }, velocity,
-                   [&](frequency f) { return complex(feedback(f)); }, hertz(1)};
+                   [&](frequency f) { return complex(feedback(f)); }, per_second::from_value(1)};
     const auto open_position = [&](frequency f) { return loop.open_position(f); };
     const auto whole = [&](frequency f) { return 1.0 / loop.sensitivity(f) - 1.0; };
     double most = 0;
@@ -162,12 +163,12 @@ gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, 
     const auto outer = detail::highest(
         "design_gains.position_gain",
         [&](double kv) {
-            loop.position_gain = hertz(kv);
+            loop.position_gain = per_second::from_value(kv);
             return detail::broken(open_position, whole, options.integrators + (tangent > 0 ? 1 : 0),
                                   options.position, b);
         },
         1 / most, 1 / std::abs(open_position(b.to)));
-    loop.position_gain = hertz(outer.value);
+    loop.position_gain = per_second::from_value(outer.value);
     return {velocity,
             loop.position_gain,
             {margins([&](frequency f) { return loop.open_velocity(f); }, b), found.next.what, found.next.at},

@@ -25,7 +25,7 @@ struct law_figures {
 template <class Law>
 law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
                      const step_options<typename Law::output>& steps = {}) {
-    const frequency nyquist = 0.5 / loop.axis.period;
+    const frequency nyquist = 0.5 * once_per(loop.axis.period);
     const band searched{from, 0.999 * nyquist};
     const auto open = [&](frequency f) { return loop.open(f); };
     law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};

@@ -11,7 +11,7 @@ namespace quadrant::analysis {
 
 /// A linear axis from command to position: G(s) = B e^{-s Td} / (s (s + A)), [Jamaludin2008] eq. (2.2).
 template <signal_tag Command = signal::voltage> struct axis_model {
-    frequency pole;                              ///< A [1/s], in rad/s; >= 0
+    per_second pole;                             ///< A: viscous force over mass; >= 0
     gain_of<signal::acceleration, Command> gain; ///< B, acceleration per command
     duration delay;                              ///< Td
 
@@ -77,7 +77,7 @@ struct p_pi_loop {
     Plant plant;
     Velocity velocity;
     Feedback feedback;
-    frequency position_gain; ///< kv [1/s]
+    per_second position_gain; ///< kv
 
     complex open_velocity(frequency f) const { return at(f).velocity; }
     complex open_position(frequency f) const {
@@ -117,7 +117,7 @@ private:
         return 1.0 + p.velocity + p.position;
     }
 };
-template <class P, class V, class F> p_pi_loop(P, V, F, frequency) -> p_pi_loop<P, V, F>;
+template <class P, class V, class F> p_pi_loop(P, V, F, per_second) -> p_pi_loop<P, V, F>;
 
 /// What pole placement on B/s^2 promises: [Jamaludin2008] eqs. (2.38) to (2.40); no delay, no notch.
 struct ideal_corners {
@@ -127,7 +127,7 @@ struct ideal_corners {
 };
 template <signal_tag Command>
 ideal_corners corners(const axis_model<Command>& plant, const pi_model<Command>& velocity,
-                      frequency position_gain) {
+                      per_second position_gain) {
     require_positive("corners.position_gain", position_gain);
     const double ws = std::abs(velocity.gain.value() * plant.gain.value()), kv = position_gain.value();
     return {ws, std::sqrt(kv * ws), 0.5 * std::sqrt(ws / kv)};

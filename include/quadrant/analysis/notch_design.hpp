@@ -107,7 +107,8 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
                     high = std::max(peak->high, (1 + rule.drift) * peak->at);
     const double nyquist = 0.5 / period.value();
     require(high.value() < nyquist, "design_notch: upper end of the peak", high,
-            "must lie below half the sampling rate (" + quadrant::detail::shortest(nyquist) + ")");
+            "must lie below half the sampling rate (" +
+                quadrant::detail::shortest(quadrant::detail::in_unit(nyquist, " Hz")) + ")");
     const auto warped = [&](frequency at) { return std::tan(std::numbers::pi * at.value() * period.value()); };
     const double gain = std::pow(10.0, -rule.attenuation_db / 20);
     double damping = 0;
@@ -117,17 +118,19 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
     }
     const double half_width = 0.5 * damping * peak->at.value();
     require(peak->at.value() + half_width < nyquist, "design_notch: centre plus half its width",
-            peak->at.value() + half_width,
-            "must lie below half the sampling rate (" + quadrant::detail::shortest(nyquist) +
+            quadrant::detail::in_unit(peak->at.value() + half_width, " Hz"),
+            "must lie below half the sampling rate (" +
+                quadrant::detail::shortest(quadrant::detail::in_unit(nyquist, " Hz")) +
                 "): ask for less attenuation or drift");
     require(peak->at.value() - half_width > rule.crossover.value(), "design_notch: centre minus half its width",
-            peak->at.value() - half_width,
-            "must lie above the crossover (" + quadrant::detail::shortest(rule.crossover.value()) +
+            quadrant::detail::in_unit(peak->at.value() - half_width, " Hz"),
+            "must lie above the crossover (" + quadrant::detail::shortest(rule.crossover) +
                 "): the peak lies in the band of the loop; lower the gain instead");
     const typename notch<Signal>::parameters parameters{peak->at, damping};
     const double phase =
         -std::arg(notch<Signal>(parameters, period).response(rule.crossover)) * 180 / std::numbers::pi;
-    require(phase <= rule.most_phase, "design_notch: phase at the crossover", phase,
+    require(phase <= rule.most_phase, "design_notch: phase at the crossover",
+            quadrant::detail::in_unit(phase, " degrees"),
             "must not be above " + quadrant::detail::shortest(rule.most_phase) +
                 " degrees: ask for less attenuation or drift");
     return {

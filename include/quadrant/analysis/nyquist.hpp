@@ -27,12 +27,15 @@ template <frequency_response Loop> int unstable_poles(const Loop& loop, const ba
     const double from = -90.0 * integrators;
     double angle = detail::degrees(std::arg(all.front().value));
     angle += 360 * std::round((from - angle) / 360);
-    require(std::abs(angle - from) < 150, "unstable_poles, phase of 1 + L at band.from", angle,
-            "must lie near that of the integrators (" + quadrant::detail::shortest(from) +
+    require(std::abs(angle - from) < 150, "unstable_poles, phase of 1 + L at band.from",
+            quadrant::detail::in_unit(angle, " degrees"),
+            "must lie near that of the integrators (" +
+                quadrant::detail::shortest(quadrant::detail::in_unit(from, " degrees")) +
                 "): turn the sign or begin lower");
     for (std::size_t i = 1; i < all.size(); ++i) {
         const double turn = detail::degrees(std::arg(all[i].value * std::conj(all[i - 1].value)));
-        require(std::abs(turn) < 90, "unstable_poles, turn of 1 + L", turn,
+        require(std::abs(turn) < 90, "unstable_poles, turn of 1 + L",
+                quadrant::detail::in_unit(turn, " degrees"),
                 "must be below 90 degrees from line to line (at " +
                     quadrant::detail::shortest(all[i].f.value()) + " Hz)");
         angle += turn;

@@ -36,7 +36,7 @@ inline std::vector<glitch> quadrant_glitches(const std::vector<quantity_of<signa
             "must hold as many samples as position (" + quadrant::detail::shortest(double(position.size())) +
                 ")");
     require(options.window >= period, "quadrant_glitches.window", options.window,
-            "must not be below the period (" + quadrant::detail::shortest(period.value()) + ")");
+            "must not be below the period (" + quadrant::detail::shortest(period) + ")");
     require_not_negative("quadrant_glitches.settle", options.settle);
     std::vector<std::size_t> turns;
     std::vector<int> directions;

@@ -59,7 +59,7 @@ struct span {
     }
 };
 /// All that a sampled loop has. A measured T needs a narrower one; the checks then hold for it only.
-inline span up_to_nyquist(duration period) { return {frequency(), 0.5 / period}; }
+inline span up_to_nyquist(duration period) { return {frequency(), 0.5 * once_per(period)}; }
 namespace detail {
 inline void require_span(const span& s, duration period) {
     require_positive("period", period);
@@ -67,7 +67,8 @@ inline void require_span(const span& s, duration period) {
                 s.to.value() <= 0.5 / period.value() * (1 + 1e-12),
             "span.to", s.to,
             "must lie above span.from and not above half the sampling rate (" +
-                quadrant::detail::shortest(0.5 / period.value()) + "), with one line or more");
+                quadrant::detail::shortest(quadrant::detail::in_unit(0.5 / period.value(), " Hz")) +
+                "), with one line or more");
 }
 } // namespace detail
 
@@ -141,7 +142,9 @@ complex memory_response(const std::array<double, Order>& weights, duration cycle
 template <std::size_t Order> std::array<double, Order> repetitive_weights(double amplification_db) {
     const double ratio = std::pow(10.0, amplification_db / 20), most = std::pow(2.0, double(Order));
     require(ratio >= 2 * (1 - 1e-3) && ratio <= most * (1 + 1e-3), "repetitive_weights.amplification_db",
-            amplification_db, "must lie between 6.02 and " + quadrant::detail::shortest(6.02 * double(Order)));
+            quadrant::detail::in_unit(amplification_db, " dB"),
+            "must lie between 6.02 and " +
+                quadrant::detail::shortest(quadrant::detail::in_unit(6.02 * double(Order), " dB")));
     double a = 0;
     if constexpr (Order > 1) a = std::clamp(std::pow(ratio / 2, 1 / double(Order - 1)) - 1, 0.0, 1.0);
     std::array<double, Order + 1> polynomial{1};
@@ -212,13 +215,13 @@ repetitive_performance performance(const Loop& t, const Learning& l, const Smoot
     constexpr int steps = 100; // either way
     for (std::size_t i = 1; i <= c.harmonics; ++i)
         for (int k = -steps; k <= steps; ++k) {
-            const frequency f = double(i) * (1 + c.uncertainty * k / steps) / c.cycle;
+            const frequency f = double(i) * (1 + c.uncertainty * k / steps) * once_per(c.cycle);
             if (const double now = off(f); now > out.periodic) out.periodic = now, out.worst_harmonic = f;
         }
     double most = 0;
-    const auto lines = std::size_t(std::ceil(200 * (c.bandwidth * c.cycle).value()));
+    const auto lines = std::size_t(std::ceil(200 * c.bandwidth.value() * c.cycle.value()));
     for (std::size_t i = 1; i <= lines; ++i) { // 200 a harmonic: half-way between two of them is one
-        const frequency f = std::min(c.bandwidth, (double(i) / 200) / c.cycle);
+        const frequency f = std::min(c.bandwidth, (double(i) / 200) * once_per(c.cycle));
         if (const double now = off(f); now > most) most = now, out.worst_between = f;
     }
     out.non_periodic_db = decibel(most);

@@ -43,7 +43,7 @@ struct band {
 inline std::vector<frequency> grid(const band& b) {
     require_positive("band.from", b.from);
     require(std::isfinite(b.to.value()) && b.to > b.from, "band.to", b.to,
-            "must be finite and above band.from (" + quadrant::detail::shortest(b.from.value()) + ")");
+            "must be finite and above band.from (" + quadrant::detail::shortest(b.from) + ")");
     require(b.per_decade > 0 && b.per_decade <= 1'000'000, "band.per_decade", double(b.per_decade),
             "must lie between 1 and 1000000");
     const double decades = std::log10(b.to.value() / b.from.value());

@@ -4,6 +4,7 @@
 #include "finite_bits.hpp"
 #include "select.hpp"
 #include "signal.hpp"
+#include "unit_text.hpp"
 
 #include <array>
 #include <cmath>
@@ -51,16 +52,19 @@ template <class Isa = isa::here, class Written> std::string written(const Writte
 class rule {
 public:
     constexpr rule() = default;
-    constexpr rule(const char* words) : pieces_{{{words, 0}}}, count_(1) {}
-    constexpr explicit rule(double number) : pieces_{{{nullptr, number}}}, count_(1) {}
+    constexpr rule(const char* words) : pieces_{{{words, 0, false}}}, count_(1) {}
+    constexpr explicit rule(double number, const char* unit = nullptr)
+        : pieces_{{{unit, number, true}}}, count_(1) {}
     constexpr friend rule operator+(rule left, const rule& right) {
         for (std::size_t i = 0; i < right.count_ && left.count_ < left.pieces_.size(); ++i)
             left.pieces_[left.count_++] = right.pieces_[i];
         return left;
     }
     template <class Isa = isa::here> void write(text_buffer& text) const {
-        for (std::size_t i = 0; i < count_; ++i)
-            pieces_[i].words != nullptr ? text.add(pieces_[i].words) : text.add(pieces_[i].number);
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (pieces_[i].counts) text.add(pieces_[i].number);
+            if (pieces_[i].words != nullptr) text.add(pieces_[i].words);
+        }
     }
 #ifdef __cpp_exceptions
     operator std::string() const { return written(*this); }
@@ -68,14 +72,14 @@ public:
 
 private:
     struct piece {
-        const char* words; // null: the number
+        const char* words; // null: none; behind a number its unit
         double number;
+        bool counts; // whether there is a number
     };
     std::array<piece, 9> pieces_{};
     std::size_t count_ = 0;
 };
 constexpr rule shortest(double value) { return rule(value); }
-
 /// "notch.centre", or a block's name and ".period" where several blocks share the check.
 struct field_name {
     constexpr field_name() = default;
@@ -92,6 +96,30 @@ template <carries_partials Dual> constexpr double plain(const Dual& x) noexcept 
 template <class Unit, class Real> constexpr double plain(const boost::units::quantity<Unit, Real>& x) noexcept {
     return plain(x.value());
 }
+
+/// A number and the letters of its unit, with a space before them, where the type does not say it:
+/// in_unit(60, " degrees").
+struct in_unit {
+    double value;
+    const char* unit;
+    template <class Number>
+    constexpr in_unit(const Number& number, const char* letters)
+        : value(detail::plain(number)), unit(letters) {}
+};
+constexpr double plain(const in_unit& x) noexcept { return x.value; }
+
+/// The letters of the unit of a value; none for a bare number.
+template <class Value> constexpr const char* unit_of(const Value&) noexcept { return nullptr; }
+template <class Unit, class Real> constexpr const char* unit_of(const quantity<Unit, Real>&) noexcept {
+    return unit_text<quantity<Unit, double>>.text.data();
+}
+constexpr const char* unit_of(const in_unit& x) noexcept { return x.unit; }
+
+/// A number in a rule, with its unit.
+constexpr rule shortest(const in_unit& value) { return rule(value.value, value.unit); }
+template <class Unit, class Real> constexpr rule shortest(const quantity<Unit, Real>& value) {
+    return shortest(in_unit(value, unit_of(value)));
+}
 } // namespace detail
 
 /// Why a block was not made: literals and numbers, free to copy.
@@ -99,9 +127,10 @@ struct refused_parameter {
     detail::field_name field{};
     double value = 0;
     detail::rule must{};
+    const char* unit = nullptr; ///< letters of the unit of `value`, with a space before them; null: none
 
-    /// Writes "notch.centre = 1200: must lie between 0 and half the sampling rate (1000)", values in SI, cut
-    /// off to fit `size` with its final zero. Returns the length of the whole.
+    /// Writes "notch.centre = 1200 Hz: must lie between 0 and half the sampling rate (1000 Hz)", values in SI,
+    /// cut off to fit `size` with its final zero. Returns the length of the whole.
     std::size_t write(char* out, std::size_t size) const {
         detail::text_buffer text{out, size > 0 ? size - 1 : 0};
         write(text);
@@ -112,6 +141,7 @@ struct refused_parameter {
         if (field.block == nullptr) return text.add("nothing was made yet");
         for (const char* words : {field.block, field.field, " = "}) text.add(words);
         text.add(value);
+        if (unit != nullptr) text.add(unit);
         text.add(": ");
         must.write(text);
     }
@@ -155,12 +185,19 @@ template <class Isa = isa::here> [[noreturn]] void refuse(const refused_paramete
 }
 } // namespace detail
 
+namespace detail {
+/// One function for values of all units: on a microcontroller each would be a copy.
+template <class Isa = isa::here>
+void require_number(bool holds, const field_name& field, double x, const char* unit, const rule& must) {
+    if (!holds || is_nan(x)) refuse({field, x, must, unit});
+}
+} // namespace detail
+
 /// Refuses `value` unless `holds`, naming block, field, value and rule. A NaN keeps no rule, whatever a
 /// compiler makes of its comparison.
 template <class Value, class Isa = isa::here>
 void require(bool holds, const detail::field_name& field, const Value& value, const detail::rule& must) {
-    const double x = detail::plain(value);
-    if (!holds || detail::is_nan(x)) detail::refuse({field, x, must});
+    detail::require_number<Isa>(holds, field, detail::plain(value), detail::unit_of(value), must);
 }
 /// The same for every lane: `holds(i)` is the rule of lane i, and the message names the first value that breaks
 /// it.
@@ -174,14 +211,16 @@ void require_lanes(Rule holds, const detail::field_name& field, const Value& val
 template <class Value, class Isa = isa::here>
 void require_finite(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i)
-        require(detail::is_finite(detail::plain(lane(value, i))), field, lane(value, i), "must be finite");
+        if (const double x = detail::plain(lane(value, i)); !detail::is_finite(x))
+            detail::require_number<Isa>(false, field, x, detail::unit_of(value), "must be finite");
 }
 /// Finite and above 0.
 template <class Value, class Isa = isa::here>
 void require_positive(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
-        require(detail::is_finite(x) && x > 0, field, x, "must be finite and above 0");
+        detail::require_number<Isa>(detail::is_finite(x) && x > 0, field, x, detail::unit_of(value),
+                                    "must be finite and above 0");
     }
 }
 /// Finite and not below 0.
@@ -189,7 +228,8 @@ template <class Value, class Isa = isa::here>
 void require_not_negative(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
-        require(detail::is_finite(x) && x >= 0, field, x, "must be finite and not below 0");
+        detail::require_number<Isa>(detail::is_finite(x) && x >= 0, field, x, detail::unit_of(value),
+                                    "must be finite and not below 0");
     }
 }
 /// A corner or centre frequency of a block that runs every `period`.
@@ -198,8 +238,10 @@ void require_below_nyquist(const detail::field_name& field, const Value& value, 
     const double nyquist = 0.5 / period.value();
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double f = detail::plain(lane(value, i));
-        require(detail::is_finite(f) && f > 0 && f < nyquist, field, f,
-                "must lie between 0 and half the sampling rate (" + detail::shortest(nyquist) + ")");
+        if (!(detail::is_finite(f) && f > 0 && f < nyquist))
+            detail::require_number<Isa>(false, field, f, detail::unit_of(value),
+                                        "must lie between 0 and half the sampling rate (" +
+                                            detail::shortest(detail::in_unit(nyquist, " Hz")) + ")");
     }
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 #include "signal.hpp"
 
-/// Literals for parameters: `125_us`, `330_Hz`, `12_kg`. Integers do not divide by a quantity: write
-/// `60.0 / 1_s`.
+/// Literals for parameters: `125_us`, `330_Hz`, `12_kg`. A rate is written `60_per_s` or `60.0 / 1_s`
+/// (integers do not divide by a quantity), and is not a frequency: see units.hpp.
 namespace quadrant::detail {
 template <class Unit> constexpr quantity<Unit> of(long double value) {
     return quantity<Unit>::from_value(static_cast<double>(value));
@@ -22,8 +22,9 @@ constexpr auto operator""_mps2(long double v) { return detail::of<si::accelerati
 constexpr auto operator""_s(long double v) { return detail::of<si::time>(v); }
 constexpr auto operator""_ms(long double v) { return detail::of<si::time>(v * 1e-3L); }
 constexpr auto operator""_us(long double v) { return detail::of<si::time>(v * 1e-6L); }
-constexpr auto operator""_Hz(long double v) { return detail::of<si::frequency>(v); }
-constexpr auto operator""_kHz(long double v) { return detail::of<si::frequency>(v * 1e3L); }
+constexpr auto operator""_Hz(long double v) { return detail::of<hertz_unit>(v); }
+constexpr auto operator""_kHz(long double v) { return detail::of<hertz_unit>(v * 1e3L); }
+constexpr auto operator""_per_s(long double v) { return detail::of<si::frequency>(v); }
 constexpr auto operator""_kg(long double v) { return detail::of<si::mass>(v); }
 constexpr auto operator""_N(long double v) { return detail::of<si::force>(v); }
 constexpr auto operator""_Nm(long double v) { return detail::of<si::torque>(v); }
@@ -46,6 +47,7 @@ constexpr auto operator""_ms(unsigned long long v) { return operator""_ms(static
 constexpr auto operator""_us(unsigned long long v) { return operator""_us(static_cast<long double>(v)); }
 constexpr auto operator""_Hz(unsigned long long v) { return operator""_Hz(static_cast<long double>(v)); }
 constexpr auto operator""_kHz(unsigned long long v) { return operator""_kHz(static_cast<long double>(v)); }
+constexpr auto operator""_per_s(unsigned long long v) { return operator""_per_s(static_cast<long double>(v)); }
 constexpr auto operator""_kg(unsigned long long v) { return operator""_kg(static_cast<long double>(v)); }
 constexpr auto operator""_N(unsigned long long v) { return operator""_N(static_cast<long double>(v)); }
 constexpr auto operator""_Nm(unsigned long long v) { return operator""_Nm(static_cast<long double>(v)); }

@@ -66,6 +66,17 @@ concept signal_tag = requires {
 
 template <signal_tag Signal, class Real = double> using quantity_of = quantity<typename Signal::unit, Real>;
 
+/// Short names for what travels on wires, for `using namespace quadrant::quantities`: force f = 3_N.
+namespace quantities {
+using position = quantity_of<signal::position>;         ///< [m]
+using velocity = quantity_of<signal::velocity>;         ///< [m/s]
+using acceleration = quantity_of<signal::acceleration>; ///< [m/s^2]
+using force = quantity_of<signal::force>;               ///< [N]
+using torque = quantity_of<signal::torque>;             ///< [N m]
+using voltage = quantity_of<signal::voltage>;           ///< [V]
+using current = quantity_of<signal::current>;           ///< [A]
+} // namespace quantities
+
 /// Gain from In to Out, and the same per second (integral gain).
 template <signal_tag Out, signal_tag In, class Real = double>
 using gain_of = quantity<unit_quotient<typename Out::unit, typename In::unit>, Real>;

@@ -9,10 +9,10 @@
 ///
 ///   u = law(reference, measured, velocity)
 ///
-/// reference  `axis_motion`: position, velocity, acceleration that the trajectory asks of sample k + lead().
-/// measured   position of sample k, from the encoder; velocity of sample k, from the tachometer, in units of the table.
-/// u          command, to act from sample k on until sample k + 1. The law does not limit it: a `limiter` follows, and a law
-///            that integrates is told what was left of it by applied(u), before the next sample.
+///   reference  `axis_motion`: position, velocity, acceleration that the trajectory asks of sample k + lead().
+///   measured   position of sample k, from the encoder; velocity of sample k, from the tachometer, in units of the table.
+///   u          command, to act from sample k on until sample k + 1. The law does not limit it: a `limiter` follows, and a law
+///              that integrates is told what was left of it by applied(u), before the next sample.
 /// reset      as new: at rest at zero.
 /// settle(x, u)  at rest at x, held by u: the next sample with reference and measurement at rest at x gives u,
 /// if

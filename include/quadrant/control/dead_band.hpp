@@ -16,7 +16,7 @@ template <class Value> constexpr Value beyond(const Value& x, const Value& half)
 /// Ignores small values and shifts the rest towards zero: a command that has to overcome a dead zone, or an
 /// error that shall not hunt around one encoder count.
 ///   y = x - half_width for x > half_width, x + half_width for x < -half_width, else 0
-/// Source: gap/FORMAT.md (actuator_dead_zone: the dead zone shifts the command); LinuxCNC deadzone, whose
+/// Source: docs/formats.md (actuator_dead_zone: the dead zone shifts the command); LinuxCNC deadzone, whose
 /// threshold is the whole width.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, odd and continuous.
 /// State: none; `reset` and `settle` set the held output and clear the fault.

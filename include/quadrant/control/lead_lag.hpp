@@ -24,7 +24,7 @@ template <signal_tag Command = signal::voltage, std::size_t A, std::size_t B>
 auto design_lead_lag(const sampled_plant<A, B>& plant, const lead_lag_loop& wanted, duration period) {
     require_below_nyquist("design_lead_lag.crossover", wanted.crossover, period);
     require(wanted.phase_margin > 0 && wanted.phase_margin < 90, "design_lead_lag.phase_margin",
-            wanted.phase_margin, "must lie between 0 and 90 (degrees)");
+            detail::in_unit(wanted.phase_margin, " degrees"), "must lie between 0 and 90 degrees");
     require_positive("design_lead_lag.integral", wanted.integral);
     const double wc = 2 * std::numbers::pi * wanted.crossover.value(), wi = wanted.integral * wc;
     const auto back = std::polar(1.0, -wc * period.value());
@@ -33,7 +33,8 @@ auto design_lead_lag(const sampled_plant<A, B>& plant, const lead_lag_loop& want
     const double lag = std::atan(wanted.integral),
                  lead =
                      std::remainder(wanted.phase_margin * degree - std::arg(-axis) + lag, 2 * std::numbers::pi);
-    require(lead > 0 && lead < 75 * degree, "design_lead_lag.phase_margin", lead / degree,
+    require(lead > 0 && lead < 75 * degree, "design_lead_lag.phase_margin",
+            detail::in_unit(lead / degree, " degrees"),
             "must need a lead between 0 and 75 degrees at this crossover (needs)");
     const double q = (1 - std::sin(lead)) / (1 + std::sin(lead)), wz = wc * std::sqrt(q),
                  wp = wc / std::sqrt(q);

@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// Clips a wire to what the amplifier can do.
 ///   y = low if x < low, high if x > high, else x
-/// Source: gap/FORMAT.md (limit of cascade_p_pi).
+/// Source: docs/formats.md (limit of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was
 /// clipped. `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
@@ -37,15 +37,16 @@ public:
         : given_(p), low_(in_real<Real>(p.low)), high_(in_real<Real>(p.high)) {
         require_positive("limiter.period", period);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
-            const double low = detail::plain(lane(p.low, i)), high = detail::plain(lane(p.high, i));
-            require(true, "limiter.low", low, "must be a number");
-            require(low <= high, "limiter.high", high,
-                    "must not lie below low (" + detail::shortest(low) + ")");
+            const auto low_given = lane(p.low, i), high_given = lane(p.high, i);
+            const double low = detail::plain(low_given), high = detail::plain(high_given);
+            require(true, "limiter.low", low_given, "must be a number");
+            require(low <= high, "limiter.high", high_given,
+                    "must not lie below low (" + detail::shortest(low_given) + ")");
             // As the step uses them: 1e300 is infinite in float.
             const bool open_below = !detail::is_finite(detail::plain(lane(low_, i))),
                        open_above = !detail::is_finite(detail::plain(lane(high_, i)));
-            require(!open_below || low < 0, "limiter.low", low, "must leave a finite number above it");
-            require(!open_above || high > 0, "limiter.high", high, "must leave a finite number below it");
+            require(!open_below || low < 0, "limiter.low", low_given, "must leave a finite number above it");
+            require(!open_above || high > 0, "limiter.high", high_given, "must leave a finite number below it");
         }
     }
 

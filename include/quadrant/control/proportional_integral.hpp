@@ -24,8 +24,8 @@ concept anti_windup_rule = std::same_as<A, integral_clamp> || std::same_as<A, co
 
 /// Velocity loop: drives the error to zero and holds against a constant force.
 ///   I[k] = I[k-1] + integral_gain T e[k] (restrained by AntiWindup),   u[k] = gain e[k] + I[k]
-/// Source: gap/FORMAT.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that a
-/// gain change does not jump (control_toolbox #294).
+/// Source: docs/formats.md (cascade_p_pi); anti-windup [Astrom1995] ch. 3.5; integral in output units, so that
+/// a gain change does not jump (control_toolbox #294).
 /// Ports: error in, output; `applied(u)` tells what the amplifier really applied, else u clipped to +-limit is
 /// assumed.
 /// State: the integral and the excess output - applied, both in output units; `reset` leaves zero;
@@ -78,7 +78,7 @@ public:
             const duration tracking = p.anti_windup.tracking_time;
             require(detail::is_finite(tracking.value()) && tracking >= period,
                     "proportional_integral.tracking_time", tracking,
-                    "must be finite and not below the period (" + detail::shortest(period.value()) + ")");
+                    "must be finite and not below the period (" + detail::shortest(period) + ")");
             tracking_ = Real(period.value() / tracking.value());
         }
         period_ = period;

@@ -9,7 +9,7 @@ namespace quadrant {
 
 /// Rounds a wire to the steps of a DAC or an encoder.
 ///   y = round(x / step) step, halves away from zero; step = 0: y = x
-/// Source: gap/FORMAT.md (DAC rounding of cascade_p_pi).
+/// Source: docs/formats.md (DAC rounding of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
 /// Range: step >= 0; from 2^52 steps on (2^23 in float) the input is its own rounding. A dual's derivative

@@ -11,7 +11,7 @@ namespace quadrant::diagnosis {
 /// Another program's log in the words of ours.
 struct imported_log {
     machine_log log;                ///< in SI: metres or radians; what read_log makes of the text
-    std::string text;               ///< as FORMAT.md writes a log
+    std::string text;               ///< as docs/formats.md writes a log
     std::vector<std::string> notes; ///< what was assumed, and what physics says of it
 };
 

@@ -8,8 +8,8 @@
 
 namespace quadrant::diagnosis {
 
-/// Reads a diagnosis file (FORMAT.md) back or throws bad_input. The signals that the report draws are not in
-/// it.
+/// Reads a diagnosis file (docs/formats.md) back or throws bad_input. The signals that the report draws are not
+/// in it.
 QUADRANT_DIAGNOSIS_DECL diagnosis_result read_diagnosis(std::string_view text, std::string_view name);
 QUADRANT_DIAGNOSIS_DECL diagnosis_result read_diagnosis(const std::filesystem::path& path);
 

@@ -8,8 +8,8 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// One reading of a diagnosis file: FORMAT.md's keys must be there, those that this project adds may. Keys that
-/// are not
+/// One reading of a diagnosis file: docs/formats.md's keys must be there, those that this project adds may.
+/// Keys that are not
 /// known are left alone: a later version may say more.
 class diagnosis_reader {
 public:

@@ -273,9 +273,9 @@ private:
 
 } // namespace detail
 
-/// Reads a log (FORMAT.md) or throws bad_input. Missing rows, single wrong readings and rows with the drive off
-/// are filled in and marked (axis_log::left_out); stamps that jitter by up to half a period are resampled;
-/// notes say so.
+/// Reads a log (docs/formats.md) or throws bad_input. Missing rows, single wrong readings and rows with the
+/// drive off are filled in and marked (axis_log::left_out); stamps that jitter by up to half a period are
+/// resampled; notes say so.
 inline machine_log read_log(const std::filesystem::path& path) {
     return detail::log_reader(detail::read_whole(path), path.string()).read();
 }

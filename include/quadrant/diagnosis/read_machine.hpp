@@ -8,8 +8,8 @@
 
 namespace quadrant::diagnosis {
 
-/// Reads a machine file (FORMAT.md) or throws bad_input. Nothing in it is ignored but a controller of unknown
-/// kind.
+/// Reads a machine file (docs/formats.md) or throws bad_input. Nothing in it is ignored but a controller of
+/// unknown kind.
 QUADRANT_DIAGNOSIS_DECL machine_description read_machine(std::string_view text, std::string_view name);
 QUADRANT_DIAGNOSIS_DECL machine_description read_machine(const std::filesystem::path& path);
 

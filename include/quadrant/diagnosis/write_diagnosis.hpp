@@ -144,8 +144,8 @@ inline ordered_json cause_json(const cause& c, axis_kind kind, const std::string
 
 } // namespace detail
 
-/// The diagnosis file (FORMAT.md, docs/schema/diagnosis.schema.json). A number that is not finite becomes null,
-/// which the schema refuses.
+/// The diagnosis file (docs/formats.md, docs/schema/diagnosis.schema.json). A number that is not finite becomes
+/// null, which the schema refuses.
 inline nlohmann::ordered_json to_json(const diagnosis_result& d) {
     using detail::ordered_json;
     ordered_json unseen = ordered_json::array();

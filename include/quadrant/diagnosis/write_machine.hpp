@@ -84,8 +84,8 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
 
 } // namespace detail
 
-/// The machine file (FORMAT.md) of a description: read_machine() of it gives the description back, but for a
-/// controller
+/// The machine file (docs/formats.md) of a description: read_machine() of it gives the description back, but
+/// for a controller
 /// of unknown kind, of which a description holds nothing, and for what is code: controllers, effects and forces
 /// of your own.
 inline nlohmann::ordered_json to_json(const machine_description& m) {

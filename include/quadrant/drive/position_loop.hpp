@@ -7,7 +7,7 @@ namespace quadrant {
 /// The position loop inside a drive (cyclic synchronous position): P on position over a `velocity_loop`.
 ///   v_asked = gain (r - x) + velocity_feedforward r'
 ///   F       = velocity_loop(v_asked, v)
-/// Source: gap/FORMAT.md, `drive.kind` `position`; [Franklin1998] ch. 4 for the cascade.
+/// Source: docs/formats.md, `drive.kind` `position`; [Franklin1998] ch. 4 for the cascade.
 /// Ports: loop(state, set-point, its velocity, position, velocity) once a step h of the drive; force out [N] or
 /// [N m]. The set-point is that of a `set_point_line`.
 /// State: that of the velocity loop.

@@ -14,7 +14,7 @@ namespace quadrant {
 ///   d  = gain (f - q) + minimum sign(f - q),  |d| <= maximum
 /// The motor's voltage is d times the supply, its torque that times the torque constant; back-EMF is part of
 /// the viscous friction.
-/// Source: gap/FORMAT.md, `drive.kind` `position_servo`; [Duclusaud2025] for such a servo's law.
+/// Source: docs/formats.md, `drive.kind` `position_servo`; [Duclusaud2025] for such a servo's law.
 /// Ports: servo(state, set-point, position) once a step h; duty out (-1 ... 1).
 /// State: the set-point that is followed, given and returned by the caller; `state::at(q)`: at rest there.
 /// Range: bare SI numbers; gain > 0 [1/rad]; 0 <= minimum; 0 < maximum; rate > 0 [rad/s], infinite: none.

@@ -10,8 +10,8 @@ namespace quadrant {
 /// How a drive goes from one set-point to the next.
 ///   hold     the newest set-point until the next one arrives
 ///   linear   from the previous set-point to the newest within one period: one period late
-///   cubic    a cubic between the two set-points before the newest, with the slopes of their neighbours: two periods late, no step
-///            of the velocity
+///   cubic    a cubic between the two set-points before the newest, with the slopes of their neighbours: two periods late, no
+///            step of the velocity
 enum class interpolation { hold, linear, cubic };
 
 /// The set-points of a drive as its loops see them: what a bus delivers every few servo periods, drawn as a

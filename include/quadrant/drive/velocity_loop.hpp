@@ -16,7 +16,7 @@ namespace quadrant {
 ///   e  = asked - w
 ///   I' = integral e,  |I| <= limit
 ///   F  = gain e + I,  |F| <= limit
-/// Source: gap/FORMAT.md, `drive.kind` `velocity`; [Franklin1998] ch. 4 for P and PI.
+/// Source: docs/formats.md, `drive.kind` `velocity`; [Franklin1998] ch. 4 for P and PI.
 /// Ports: loop(state, asked, velocity) once a step h: asked and measured velocity of the motor in [m/s] or
 /// [rad/s], force out [N] or [N m].
 /// State: integral [N] and filtered velocity, given and returned by the caller; `state::at(v)`: in steady

@@ -56,8 +56,7 @@ public:
         require_positive("preview.period", period);
         lead(p.lead);
         require(!limited_ && !out_.faulted(), "preview.lead", p.lead,
-                "must lie between 0 and " + detail::shortest(double(Capacity) * period.value()) +
-                    " (capacity)");
+                "must lie between 0 and " + detail::shortest(double(Capacity) * period) + " (capacity)");
     }
 
     outcome operator()(const Motion& r) noexcept {

@@ -10,7 +10,7 @@ namespace quadrant {
 
 /// Rate of change over the last period: reference velocity and acceleration, or a velocity from an encoder.
 ///   v[k] = (x[k] - x[k-1]) / T
-/// Source: gap/FORMAT.md (v_ref and a_ref of cascade_p_pi).
+/// Source: docs/formats.md (v_ref and a_ref of cascade_p_pi).
 /// Ports: one scalar in, its rate out (m -> m/s, m/s -> m/s^2); sign kept.
 /// State: the last input; `reset` leaves 0, so a first sample x0 reads as x0 / T: `settle(x0)` first.
 /// `settle(x)` stands still at x; `settle(x, rate)` has been moving at that rate and x was its last sample.
@@ -27,7 +27,7 @@ public:
     using number = parameter_real<Real>; ///< of parameters
 
     struct parameters {};
-    /// The last input, which the next one is held against.
+    /// The last input, which is taken from the next one.
     struct state {
         argument x{}; ///< last input
     };

@@ -34,7 +34,7 @@ public:
 
     /// The corner, at which a sine is 3 dB down and 90 degrees late.
     struct parameters {
-        quantity<si::frequency, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
+        quantity<hertz_unit, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
     };
     /// The slow part, which is what comes out, the band, and the last input.
     struct state {

@@ -13,7 +13,7 @@ namespace quadrant {
 /// Velocity from an encoder: a derivative behind a first-order low-pass.
 ///   H(s) = wc s / (s + wc), wc = 2 pi corner, bilinear without pre-warp:
 ///   v[k] = v[k-1] + 2 wc (y[k] - y[k-1] - T v[k-1]) / (2 + wc T)
-/// Source: gap/FORMAT.md (velocity_estimator filtered_derivative).
+/// Source: docs/formats.md (velocity_estimator filtered_derivative).
 /// Ports: one scalar in, its rate out; sign kept.
 /// State: the last input and the last output; a rate that has died out is zero; `reset` leaves 0, so a first
 /// sample y0 reads as a jump: `settle(y0)` first. `settle(y)` stands still at y; `settle(y, rate)` has been
@@ -36,7 +36,7 @@ public:
 
     /// The corner of the low-pass.
     struct parameters {
-        quantity<si::frequency, number> corner; ///< > 0
+        quantity<hertz_unit, number> corner; ///< > 0
     };
     /// The last position and rate: what a difference and its filter need.
     struct state {

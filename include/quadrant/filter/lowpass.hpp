@@ -39,7 +39,7 @@ public:
 
     /// The corner, at which a sine is 3 dB down and 45 degrees late.
     struct parameters {
-        quantity<si::frequency, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
+        quantity<hertz_unit, number> corner; ///< -3 dB; 0 < corner < half the sampling rate
     };
     /// The last input and output: all that a first-order filter remembers.
     struct state {

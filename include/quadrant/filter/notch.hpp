@@ -10,9 +10,9 @@ namespace quadrant {
 
 /// Takes one structural resonance out of a wire: zero gain at the centre, one far from it.
 ///   H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
-/// Source: gap/FORMAT.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
+/// Source: docs/formats.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
-///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), so that a constant passes to the last bit
+///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), a constant passes to the last bit
 /// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset`
 /// leaves zero, `settle(x)` the state of a constant x (gain one at standstill). What has died out is zero.
 /// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|.
@@ -34,9 +34,8 @@ public:
 
     /// The resonance to take out: where it is, and how wide.
     struct parameters {
-        quadrant::quantity<si::frequency, number>
-            centre;           ///< deepest point; 0 < centre < half the sampling rate
-        number damping = 0.1; ///< of the denominator, twice its damping ratio; > 0
+        quadrant::quantity<hertz_unit, number> centre; ///< deepest point; 0 < centre < half the sampling rate
+        number damping = 0.1;                          ///< of the denominator, twice its damping ratio; > 0
     };
     /// What the slow part lags behind, the band, and the last input.
     struct state {

@@ -37,8 +37,8 @@ template <class Real> struct second_order_coefficients {
 /// the sampling rate that rounding, which grows there as tan^2(w T/2), would take more than a tenth.
 template <class Real, class Number>
 second_order_coefficients<Real> second_order(const detail::field_name& field,
-                                             const quantity<si::frequency, Number>& corner,
-                                             const Number& damping, duration period) {
+                                             const quantity<hertz_unit, Number>& corner, const Number& damping,
+                                             duration period) {
     using std::tan;
     require_held<Real>(field, corner, period, damping);
     using plain = std::conditional_t<std::same_as<Real, float>, float, double>;
@@ -46,7 +46,7 @@ second_order_coefficients<Real> second_order(const detail::field_name& field,
     for (std::size_t i = 0; i < lane_count<Real>; ++i)
         require(detail::plain(lane(corner, i)) * period.value() <= most, field, lane(corner, i),
                 "must be at most " + detail::shortest(most) + " of the sampling rate in this number type (" +
-                    detail::shortest(most / period.value()) + ")");
+                    detail::shortest(detail::in_unit(most / period.value(), " Hz")) + ")");
     const Number t = tan(Number(pi * period.value()) * corner.value());
     return {.g = Real(t),
             .damping = Real(damping),

@@ -14,8 +14,8 @@ namespace quadrant {
 /// last place off a state, and the decay is lost in rounding. `damping` below 1 makes the decay of a section of
 /// second order that much slower.
 template <class Real, class Number, class Isa = isa::here>
-void require_held(const detail::field_name& field, const quantity<si::frequency, Number>& corner,
-                  duration period, const Number& damping = Number(1)) {
+void require_held(const detail::field_name& field, const quantity<hertz_unit, Number>& corner, duration period,
+                  const Number& damping = Number(1)) {
     using plain = std::conditional_t<std::same_as<Real, float>, float, double>;
     constexpr double least = 8 * double(std::numeric_limits<plain>::epsilon()) / std::numbers::pi;
     for (std::size_t i = 0; i < lane_count<Real>; ++i) {
@@ -23,7 +23,7 @@ void require_held(const detail::field_name& field, const quantity<si::frequency,
         require(detail::plain(lane(corner, i)) * period.value() >= smallest, field, lane(corner, i),
                 "must be at least " + detail::shortest(smallest) +
                     " of the sampling rate in this number type (" +
-                    detail::shortest(smallest / period.value()) + ")");
+                    detail::shortest(detail::in_unit(smallest / period.value(), " Hz")) + ")");
     }
 }
 

@@ -10,7 +10,7 @@ namespace quadrant {
 
 /// Velocity from an encoder: backward difference of the mean of the last two samples.
 ///   m[k] = (y[k] + y[k-1]) / 2,   v[k] = (m[k] - m[k-1]) / T = (y[k] - y[k-2]) / (2 T)
-/// Source: gap/FORMAT.md (velocity_estimator two_sample_mean).
+/// Source: docs/formats.md (velocity_estimator two_sample_mean).
 /// Ports: one scalar in, its rate out; sign kept.
 /// State: the last two inputs; `reset` leaves 0, so a first sample reads as a jump: `settle(y0)` first.
 /// `settle(y)` stands still at y; `settle(y, rate)` has been moving at that rate and y was its last sample.

@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// Friction of one level plus a part that grows with speed; as plant friction, or as feedforward against it.
 ///   F = coulomb sign(v) + viscous v, sign(0) = 0
-/// Source: [Armstrong1994] section 2; the feedforward of gap/FORMAT.md when Out is a voltage.
+/// Source: [Armstrong1994] section 2; the feedforward of docs/formats.md when Out is a voltage.
 /// Ports: scalar velocity in, scalar out with the sign of the velocity (a plant subtracts it, a feedforward
 /// adds it).
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.

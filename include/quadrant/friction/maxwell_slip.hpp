@@ -30,8 +30,9 @@ concept some_springs = N >
 /// State: per element its force, in the unit of the output, and whether it slips. `reset` leaves all relaxed
 /// and sticking; `settle(v)` as if v had been applied for ever (relaxed for v = 0).
 /// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the
-/// new Fs: what one can hold no more the others take. A changed level is then gone to as the law says: at once
-/// by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| - Fs' or 0),
+/// new Fs: force beyond an element's limit goes to the others. A changed level is then reached as the law says:
+/// at once by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| -
+/// Fs' or 0),
 /// K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
 /// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as
 /// tables print them, divided by their sum, which must not be above Fs. The other stays zero.
@@ -228,9 +229,9 @@ private:
             }
         }
         if (by_force)
-            require(forces <= p.curve.static_level.value(), "maxwell_slip.forces (sum)", forces,
-                    "must not be above static_level (" + detail::shortest(detail::plain(p.curve.static_level)) +
-                        ")");
+            require(forces <= p.curve.static_level.value(), "maxwell_slip.forces (sum)",
+                    decltype(p.curve.static_level)::from_value(forces),
+                    "must not be above static_level (" + detail::shortest(p.curve.static_level) + ")");
         else
             require(std::abs(detail::plain(weights) - 1) <= 1e-9, "maxwell_slip.weights (sum)", weights,
                     "must be 1; shares given as forces go into forces");

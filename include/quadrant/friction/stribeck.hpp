@@ -47,8 +47,7 @@ public:
         require_finite("stribeck.static_level", p.static_level);
         require_lanes([&](std::size_t i) { return lane(p.static_level, i) >= lane(p.coulomb, i); },
                       "stribeck.static_level", p.static_level,
-                      "must not be below coulomb (" + detail::shortest(detail::plain(lane(p.coulomb, 0))) +
-                          ")");
+                      "must not be below coulomb (" + detail::shortest(lane(p.coulomb, 0)) + ")");
         require_positive("stribeck.stribeck_velocity", p.stribeck_velocity);
         require_not_negative("stribeck.viscous", p.viscous);
         require(p.shape >= 0.25 && p.shape <= 4, "stribeck.shape", p.shape, "must lie between 0.25 and 4");

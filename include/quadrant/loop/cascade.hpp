@@ -65,7 +65,7 @@ template <signal_tag Command, class Real> struct cascade_wires {
 /// concept, not a framework: for another diagram copy the body and redraw it.
 ///   v_ref = (r[k]-r[k-1])/T, a_ref = (v_ref[k]-v_ref[k-1])/T, e = position_gain (r-y) + velocity_feedforward v_ref - v
 ///   u = round(limit(notch(PI(e)) + acceleration_feedforward a_ref + friction(v_ref)))
-/// Source: gap/FORMAT.md, controller kind cascade_p_pi.
+/// Source: docs/formats.md, controller kind cascade_p_pi.
 /// Ports: position reference and measured position in, command out (to act from this sample on).
 /// State: that of the boxes. `reset` as new (at rest at zero). `settle(start)` is the bumpless start in the
 /// middle of a

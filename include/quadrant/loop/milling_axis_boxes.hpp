@@ -30,7 +30,7 @@ struct milling_axis_boxes {
         gain_of<signal::velocity, signal::position, number> position_gain; ///< kv
         gain_of<Command, signal::velocity, number> velocity_gain;          ///< kp
         gain_rate_of<Command, signal::velocity, number> velocity_integral; ///< ki
-        quantity<si::frequency, number> estimator_corner; ///< of Vest, on reference and measurement
+        quantity<hertz_unit, number> estimator_corner; ///< of Vest, on reference and measurement
         typename quadrant::notch<signal::velocity, Real>::parameters notch; ///< behind both
         gain_of<signal::acceleration, Command, number> plant_gain;          ///< B, > 0
         quantity<si::frequency, number> plant_pole{};                       ///< A, in 1/s; >= 0

@@ -57,7 +57,7 @@ private:
         if constexpr (requires { p.motor.load.modes.mass; })
             require(p.motor.load.modes.mass == p.motor.mass, "table_axis.motor.load.modes.mass",
                     p.motor.load.modes.mass,
-                    "must be that of the motor (" + detail::shortest(detail::plain(p.motor.mass)) + ")");
+                    "must be that of the motor (" + detail::shortest(p.motor.mass) + ")");
         return p.motor;
     }
 };
@@ -90,7 +90,7 @@ template <class Real> struct table_wires {
 /// One axis of a machine, as named boxes: motor on friction with its load (cogging, ripple, modes), scale,
 /// encoder.
 ///   place = rigid + deflection of the modes,  reading = encoder(scale(place))
-/// Source: gap/FORMAT.md, whose effects the boxes are; [Jamaludin2008] chapter 2.
+/// Source: docs/formats.md, whose effects the boxes are; [Jamaludin2008] chapter 2.
 /// Ports: command u[k] [V] and the external force [N] held from sample k on in, reading [m] of sample k+1 out.
 /// State: that of the boxes. `reset`: at rest at zero; `settle(x)`: at rest with the rigid axis at x, no
 /// command pending.

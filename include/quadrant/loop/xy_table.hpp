@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// An xy-table: two axes of named boxes, each shaken by the acceleration of the other.
 ///   a_x = (forces of x)/M_x + into_x a_y,   a_y = (forces of y)/M_y + into_y a_x
-/// Source: gap/FORMAT.md (effect cross_coupling); [Jamaludin2008] chapter 2 for the table.
+/// Source: docs/formats.md (effect cross_coupling); [Jamaludin2008] chapter 2 for the table.
 /// Ports: a pair of commands [V] and a pair of external forces [N] in, the pair of readings [m] of the next
 /// sample out. A
 /// pair is made by name: table({.x = on_x(ux), .y = on_y(uy)}, {.x = on_x(fx), .y = on_y(fy)}); what belongs to

@@ -60,8 +60,8 @@ public:
         require_positive("fractional_delay.period", period);
         delay(p.delay);
         require(!limited_ && !out_.faulted(), "fractional_delay.delay", p.delay,
-                "must lie between " + detail::shortest(least * period.value()) + " and " +
-                    detail::shortest(double(Capacity) * period.value()) + " (capacity)");
+                "must lie between " + detail::shortest(least * period) + " and " +
+                    detail::shortest(double(Capacity) * period) + " (capacity)");
     }
 
     value operator()(value x) noexcept {

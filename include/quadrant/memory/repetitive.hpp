@@ -93,9 +93,9 @@ public:
         const double least = double(p.ahead + half + 2), cycles = detail::plain(p.cycle) / period.value();
         require(cycles >= least * (1 - rounding) && cycles <= double(Capacity) * (1 + rounding),
                 "repetitive.cycle", p.cycle,
-                "must lie between " + detail::shortest(least * period.value()) +
+                "must lie between " + detail::shortest(least * period) +
                     " (look-ahead of learning and smoothing, and two periods) and " +
-                    detail::shortest(double(Capacity) * period.value()) + " (capacity)");
+                    detail::shortest(double(Capacity) * period) + " (capacity)");
         for (std::size_t i = 0; i < Order; ++i) {
             require_finite("repetitive.weights", p.weights[i]);
             weights_[i] = Real(p.weights[i]);

@@ -60,7 +60,7 @@ public:
 
     /// How fast the estimate follows, and the axis it is made against.
     struct parameters {
-        quantity<si::frequency, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
+        quantity<hertz_unit, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
         nominal_plant<PlantOrder, PlantZeros, number> plant{}; ///< or an `axis_model`
     };
     static constexpr std::size_t order = Order + PlantZeros; ///< of the common denominator

@@ -41,7 +41,7 @@ public:
     struct parameters {
         quantity<si::mass, number> mass;                        ///< > 0
         gain_of<signal::force, Command, number> force_constant; ///< kf > 0
-        quantity<si::frequency, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
+        quantity<hertz_unit, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
     };
     using low_pass = transfer_function<signal::force, signal::force, Order, Real>;
     using state = typename low_pass::state;

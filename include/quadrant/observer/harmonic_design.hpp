@@ -18,14 +18,14 @@ template <std::size_t Harmonics> struct placed_poles {
     std::array<std::complex<double>, 2 + 2 * Harmonics> poles{}; ///< left of the axis, in conjugate pairs
 
     /// All at -decay. Gains grow with the power 2 + 2 Harmonics of it: for one or two harmonics.
-    static placed_poles equal(frequency decay) {
+    static placed_poles equal(per_second decay) {
         placed_poles p;
         p.poles.fill(-decay.value());
         return p;
     }
     /// Each at its own frequency, shifted left by decay; position and velocity at -decay. For any number of
     /// harmonics.
-    static placed_poles shifted(const std::array<frequency, Harmonics>& harmonics, frequency decay) {
+    static placed_poles shifted(const std::array<frequency, Harmonics>& harmonics, per_second decay) {
         placed_poles p = equal(decay);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             const double w = 2 * std::numbers::pi * harmonics[i].value();
@@ -86,10 +86,10 @@ template <std::size_t Harmonics> struct harmonic_model {
         for (std::size_t i = 0; i < order; ++i) {
             const complex s = poles[i];
             require(detail::is_finite(s.real()) && s.real() < 0, "harmonic_force_observer.design.poles",
-                    s.real(), "must be finite and left of the imaginary axis");
+                    in_unit(s.real(), " per s"), "must be finite and left of the imaginary axis");
             std::size_t pairs = 0, same = 0;
             for (const complex& other : poles) pairs += other == std::conj(s), same += other == s;
-            require(pairs == same, "harmonic_force_observer.design.poles", s.imag(),
+            require(pairs == same, "harmonic_force_observer.design.poles", in_unit(s.imag(), " per s"),
                     "must come in conjugate pairs");
             pole[i] = std::exp(s * T);
         }

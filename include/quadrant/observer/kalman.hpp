@@ -24,7 +24,7 @@ namespace quadrant {
 /// second argument, read before it is written (// z^-1, no loop to solve). Positive command, force and motion
 /// agree. With a delayed axis feed it the delayed command (`delay_line`).
 /// State: position, velocity, force; `reset`: at rest at zero; `settle(x)`: at rest at x, nothing pushes or
-/// drives; `settle(x, v)`: moving at v, held against viscous friction by a force.
+/// drives; `settle(x, v)`: moving at v, driven against viscous friction by a force.
 /// Range: encoder_noise and drift > 0 (a quantizer's noise: step / sqrt(12), white while some steps are crossed
 /// per period); their ratio sets the bandwidth(). In float up to 0.1 m with steps of 0.1 um.
 /// NaN and infinities in encoder or command: holds the last velocity, keeps the state, raises faulted().

@@ -18,7 +18,7 @@ namespace quadrant {
 /// Rows of numbers: m[row][column].
 template <std::size_t Rows, std::size_t Columns = Rows, class Number = double>
 using matrix = std::array<std::array<Number, Columns>, Rows>;
-/// A vector that stands upright.
+/// A column vector.
 template <std::size_t Size, class Number = double> using column = std::array<Number, Size>;
 
 namespace detail {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <complex>
+#include <concepts>
 #include <cstddef>
 #include <numbers>
 
@@ -16,6 +17,18 @@ template <std::size_t Order, std::size_t Zeros = 0, class Number = double> struc
     static_assert(Zeros <= Order, "a plant cannot look ahead");
     std::array<Number, Zeros + 1> numerator{};
     std::array<Number, Order + 1> denominator{};
+
+    constexpr nominal_plant() = default;
+    /// nominal_plant<2, 1>{{600, 3}, {0, 345, 1}}: every coefficient of both is written. Two bare numbers are
+    /// no plant, so that {1.9, 4.6} does not pass for an `axis_model`.
+    template <std::size_t Above, std::size_t Below>
+    requires(Above == Zeros + 1 && Below == Order + 1) constexpr nominal_plant(const Number (&above)[Above],
+                                                                               const Number (&below)[Below])
+        : numerator(std::to_array(above)), denominator(std::to_array(below)) {}
+    /// From two whole arrays.
+    template <std::same_as<std::array<Number, Zeros + 1>> Above,
+              std::same_as<std::array<Number, Order + 1>> Below>
+    constexpr nominal_plant(const Above& above, const Below& below) : numerator(above), denominator(below) {}
 };
 
 /// A mass that a motor drives against viscous friction, from command to position: Gn(s) = B / (s (s + A)).

@@ -69,7 +69,7 @@ template <std::size_t Size, class Number> bool roots_left_of_axis(const std::arr
 /// denominator on top, so that 1 - Q has m + 1 zeros at s = 0 (m = 0 forgets a constant disturbance, m = 1 a
 /// ramp). [Jamaludin2008] (4.6), (4.7).
 template <std::size_t Order, std::size_t NumeratorOrder, class Number>
-continuous<Order, Number> q_filter(const quantity<si::frequency, Number>& corner) {
+continuous<Order, Number> q_filter(const quantity<hertz_unit, Number>& corner) {
     static_assert(NumeratorOrder < Order, "Q must be a low-pass: its numerator needs a lower order");
     continuous<Order, Number> q{.denominator =
                                     detail::binomial<Order>(Number(2 * std::numbers::pi * corner.value()))};

@@ -41,7 +41,7 @@ public:
         quantity<si::mass, number> mass;                            ///< > 0
         gain_of<signal::force, Command, number> force_constant;     ///< kf > 0
         gain_of<signal::force, signal::velocity, number> viscous{}; ///< >= 0
-        quantity<si::frequency, number> corner; ///< l1 / (2 pi): position below, acceleration above it
+        quantity<hertz_unit, number> corner; ///< l1 / (2 pi): position below, acceleration above it
     };
     /// The last measurements, and velocity [m/s] and disturbing force [N] made from them.
     struct state {

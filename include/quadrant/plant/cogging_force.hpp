@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// The pull of the magnets on the iron: a force that depends on the position alone, command or not.
 ///   F = sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i)
-/// Source: gap/FORMAT.md (effect cogging: cogging_period_m, cogging_N, cogging_phase_rad), the same signs.
+/// Source: docs/formats.md (effect cogging: cogging_period_m, cogging_N, cogging_phase_rad), the same signs.
 /// Ports: position [m] in, force on the axis [N] out; positive pushes forward.
 /// State: none; `reset` and `settle` set the held output and clear the fault. With phases, F(0) is not zero.
 /// NaN and infinities: holds the last output, raises faulted().

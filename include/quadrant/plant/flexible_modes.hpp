@@ -15,17 +15,17 @@ namespace quadrant {
 
 /// One mode of a machine beside its rigid axis; the same numbers as `analysis::flexible_mode`.
 template <class Number = double> struct machine_mode {
-    quantity<si::frequency, Number> centre; ///< undamped; > 0
-    Number damping{};                       ///< ratio zeta; 0 <= it < 1
-    Number share{};                         ///< of its motion in that of the rigid axis, signed; finite
+    quantity<hertz_unit, Number> centre; ///< undamped; > 0
+    Number damping{};                    ///< ratio zeta; 0 <= it < 1
+    Number share{};                      ///< of its motion in that of the rigid axis, signed; finite
 };
 
 /// What a mode of the machine's base is made from.
 template <class Number = double> struct machine_base {
-    quantity<si::mass, Number> slide;      ///< that the motor drives; > 0
-    quantity<si::mass, Number> base;       ///< that its reaction shakes; > 0
-    quantity<si::frequency, Number> bolts; ///< of the base alone on its bolts; > 0
-    Number damping{};                      ///< ratio zeta; 0 <= it < 1
+    quantity<si::mass, Number> slide;   ///< that the motor drives; > 0
+    quantity<si::mass, Number> base;    ///< that its reaction shakes; > 0
+    quantity<hertz_unit, Number> bolts; ///< of the base alone on its bolts; > 0
+    Number damping{};                   ///< ratio zeta; 0 <= it < 1
 };
 /// The base on its bolts as a mode: the encoder measures the slide against it, so that
 ///   centre = bolts, share = slide/base, anti-resonance at bolts/sqrt(1 + slide/base): base and slide together on the bolts

@@ -9,7 +9,7 @@ namespace quadrant {
 
 /// A force constant that varies with the magnets: what the motor gives of what is asked, along the travel.
 ///   y = u (1 + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i))
-/// Source: gap/FORMAT.md (effect force_ripple: ripple, ripple_period_m, ripple_phase_rad), the same signs.
+/// Source: docs/formats.md (effect force_ripple: ripple, ripple_period_m, ripple_phase_rad), the same signs.
 /// Ports: ripple(u, x), command or force in and out, the same signal, and the position [m]; ripple(u) stays
 /// where it was.
 /// State: the position; `reset`: zero; `settle(u)` where it is.

@@ -17,7 +17,7 @@ namespace quadrant {
 /// A linear-motor axis: amplifier limit and DAC, input delay, motor, moving mass on a friction box, encoder.
 ///   M dv/dt = kf u(t - delay) + external - friction(v), dx/dt = v; reading = encoder rounding of x
 /// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
-/// Source: gap/FORMAT.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
+/// Source: docs/formats.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
 /// or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`): friction/presliding.hpp.
 /// Load: what a motor force meets on its way to the mass, as cogging and ripple in `axis_load`; asked at x + v
 /// h/2 of each sub-step h. Default none.

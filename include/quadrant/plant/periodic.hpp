@@ -21,7 +21,7 @@ requires(Harmonics > 0) struct periodic {
 
 namespace detail {
 /// The sum above, its phases worked in: one sine and one cosine a call. Source of the parameters' convention:
-/// gap/FORMAT.md.
+/// docs/formats.md.
 template <signal_tag Signal, std::size_t Harmonics, class Real> class periodic_sum {
 public:
     template <class Number>

@@ -25,7 +25,7 @@ namespace quadrant {
 ///   reading       load + cyclic(load)
 /// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints
 /// (`no_joint_laws`: nothing).
-/// Source: the laws are those of the blocks named; how they join is gap/FORMAT.md's table of effects.
+/// Source: the laws are those of the blocks named; how they join is docs/formats.md's table of effects.
 /// Ports: advance(state, command, surroundings) moves the state on by one step h under a command that is held
 /// over it; positive command, force and motion agree. reading(state): what the encoder sees, without its count.
 /// State: a value of its own, so that one law moves many axes, and an observer may correct it by shift().
@@ -263,7 +263,7 @@ private:
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             require(lane(p.limit, i) > 0, "servo_axis.limit", lane(p.limit, i), "must be above 0");
             require(detail::plain(lane(p.second.mass, i)) < lane(p.mass, i), "servo_axis.second.mass",
-                    detail::plain(lane(p.second.mass, i)), "must lie below the mass, of which it is a part");
+                    lane(p.second.mass, i), "must lie below the mass, of which it is a part");
         }
         require_finite("servo_axis.constant", p.constant);
         require_finite("servo_axis.spring", p.spring);
@@ -271,13 +271,18 @@ private:
         require_finite("servo_axis.gravity_phase", p.gravity_phase);
         require_not_negative("servo_axis.load_friction", p.load_friction);
         require_finite("servo_axis.coupling", p.coupling);
-        for (const repeating* r : {&p.ripple, &p.cogging, &p.process, &p.along, &p.cyclic}) {
-            require_positive("servo_axis: a period", r->period);
+        const auto repeats = [](const char* name, const repeating& r) {
+            require_positive({name, ".period"}, r.period);
             for (std::size_t i = 0; i < harmonics; ++i) {
-                require_finite("servo_axis: a harmonic", r->cosine[i]);
-                require_finite("servo_axis: a harmonic", r->sine[i]);
+                require_finite({name, ".cosine"}, r.cosine[i]);
+                require_finite({name, ".sine"}, r.sine[i]);
             }
-        }
+        };
+        repeats("servo_axis.ripple", p.ripple);
+        repeats("servo_axis.cogging", p.cogging);
+        repeats("servo_axis.process", p.process);
+        repeats("servo_axis.along", p.along);
+        repeats("servo_axis.cyclic", p.cyclic);
         require_finite("servo_axis.process_mean", p.process_mean);
         require_finite("servo_axis.process_start", p.process_start);
         require_finite("servo_axis.drift", p.drift);

@@ -25,10 +25,9 @@ public:
 
     /// The second mass and its spring.
     struct parameters {
-        quantity<si::mass, number> mass{}; ///< >= 0
-        quantity<si::frequency, number> centre =
-            quantity<si::frequency, number>::from_value(number(100)); ///< > 0
-        number damping{0};                                            ///< zeta
+        quantity<si::mass, number> mass{};                                                           ///< >= 0
+        quantity<hertz_unit, number> centre = quantity<hertz_unit, number>::from_value(number(100)); ///< > 0
+        number damping{0};                                                                           ///< zeta
     };
     /// Deflection against the axis [m] and its speed [m/s].
     struct state {

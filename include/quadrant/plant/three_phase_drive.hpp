@@ -16,7 +16,8 @@ namespace quadrant {
 /// What stands between a current command and the force of a linear motor: three phases, an inverter, two PI
 /// controllers of the current in the frame of the magnets. Where lag, ripple and limits of a drive come from.
 ///   L di/dt = v - R i - e,  e = speed kf/1.5 across the magnets,  force = kf i_q        (stationary frame, exact for held v, e)
-///   v_d = PI(0 - i_d), v_q = PI(demand - i_q), |v| <= bus/sqrt(3);  PI with zero on the motor's pole: bandwidth w, kp = w L, ki = w R
+///   v_d = PI(0 - i_d), v_q = PI(demand - i_q), |v| <= bus/sqrt(3)
+///   PI with zero on the motor's pole: bandwidth w, kp = w L, ki = w R
 /// Source: the drive of [LowKeck2003] (PWM inverter, two PI in the rotor frame); frames and PI: [Ellis2012].
 /// Errors of a real drive: commutation_offset (angle by which the controller takes the magnets for elsewhere:
 /// force falls with its cosine), gain_error and current_offset of the sensor of phase a (force ripples twice,
@@ -140,7 +141,8 @@ private:
         const double most = double(p.steps) / period.value() / 12;
         require(p.bandwidth.value() > 0 && p.bandwidth.value() <= most, "three_phase_drive.bandwidth",
                 p.bandwidth,
-                "must be above 0 and at most 1/12 of the current loop's rate (" + detail::shortest(most) + ")");
+                "must be above 0 and at most 1/12 of the current loop's rate (" +
+                    detail::shortest(detail::in_unit(most, " Hz")) + ")");
         require_finite("three_phase_drive.commutation_offset", p.commutation_offset);
         require(detail::is_finite(detail::plain(p.gain_error)) && detail::plain(p.gain_error) > -1,
                 "three_phase_drive.gain_error", p.gain_error, "must be finite and above -1");

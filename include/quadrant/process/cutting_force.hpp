@@ -100,7 +100,7 @@ private:
         require(p.fundamental.value() > 0 && p.fundamental.value() < highest, "cutting_force.fundamental",
                 p.fundamental,
                 "must lie between 0 and half the sampling rate by the number of harmonics (" +
-                    detail::shortest(highest) + ")");
+                    detail::shortest(detail::in_unit(highest, " Hz")) + ")");
         require_finite("cutting_force.scale", p.scale);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             require_finite("cutting_force.harmonics.real", p.harmonics.real[i] * p.scale);

@@ -169,13 +169,13 @@ private:
         const double highest = 0.5 / (period.value() * static_cast<double>(Edges));
         require(p.spindle.value() > 0 && p.spindle.value() < highest, "milling_force.spindle", p.spindle,
                 "must lie between 0 and half the sampling rate by the number of edges (" +
-                    detail::shortest(highest) + ")");
+                    detail::shortest(detail::in_unit(highest, " Hz")) + ")");
         require_positive("milling_force.diameter", p.diameter);
         require_positive("milling_force.feed_per_tooth", p.feed_per_tooth);
         require_positive("milling_force.axial_depth", p.axial_depth);
         require_positive("milling_force.radial_depth", p.radial_depth);
         require(p.radial_depth <= p.diameter, "milling_force.radial_depth", p.radial_depth,
-                "must not be beyond the diameter (" + detail::shortest(p.diameter.value()) + ")");
+                "must not be beyond the diameter (" + detail::shortest(p.diameter) + ")");
         require_positive("milling_force.tangential", p.tangential);
         require_not_negative("milling_force.radial", p.radial);
         require_not_negative("milling_force.edge_tangential", p.edge_tangential);

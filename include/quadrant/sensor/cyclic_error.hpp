@@ -7,7 +7,7 @@ namespace quadrant {
 
 /// What an encoder's interpolation, or an eccentric scale, adds to the position.
 ///   y = x + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i)
-/// Source: gap/FORMAT.md (effect encoder_cyclic_error: cyclic_m, cyclic_period_m, cyclic_phase_rad), the same
+/// Source: docs/formats.md (effect encoder_cyclic_error: cyclic_m, cyclic_period_m, cyclic_phase_rad), the same
 /// signs.
 /// Ports: position [m] in, reading [m] out. The period is that of the scale's signal (4 um on the table of
 /// [Jamaludin2008]), or of a turn of the screw.

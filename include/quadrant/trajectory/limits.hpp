@@ -57,15 +57,16 @@ enum class profile_kind : unsigned char {
 inline void require_limits(const char* block, const motion_limits& of, profile_kind kind) {
     using quadrant::detail::field_name;
     const bounds b = plain(of);
-    require(b.velocity > 0, field_name(block, ".velocity"), b.velocity, "must be above 0 (infinite: no bound)");
-    require(b.acceleration > 0, field_name(block, ".acceleration"), b.acceleration,
+    require(b.velocity > 0, field_name(block, ".velocity"), of.velocity,
             "must be above 0 (infinite: no bound)");
-    require(b.jerk > 0, field_name(block, ".jerk"), b.jerk, "must be above 0 (infinite: no bound)");
+    require(b.acceleration > 0, field_name(block, ".acceleration"), of.acceleration,
+            "must be above 0 (infinite: no bound)");
+    require(b.jerk > 0, field_name(block, ".jerk"), of.jerk, "must be above 0 (infinite: no bound)");
     require(kind != profile_kind::constant_velocity || b.acceleration == unlimited,
-            field_name(block, ".acceleration"), b.acceleration,
+            field_name(block, ".acceleration"), of.acceleration,
             "must be infinite: a profile of constant velocity keeps no such limit");
     require(kind >= profile_kind::trapezoidal_acceleration || b.jerk == unlimited, field_name(block, ".jerk"),
-            b.jerk, "must be infinite: only trapezoidal and cubic acceleration keep such a limit");
+            of.jerk, "must be infinite: only trapezoidal and cubic acceleration keep such a limit");
 }
 
 } // namespace quadrant::trajectory

@@ -68,7 +68,7 @@ inline const std::vector<double>& motion_of(const axis_log& log) {
     return stands ? log.position : r;
 }
 
-/// A servo log (CSV, FORMAT.md). Sample k means t = k T.
+/// A servo log (CSV, docs/formats.md). Sample k means t = k T.
 struct machine_log {
     std::string file;
     double sample_period_s = 0; ///< mean of the stamps' differences

@@ -6,7 +6,7 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// A step of the stamps may be this share of the period off, if the log is resampled (FORMAT.md).
+/// A step of the stamps may be this share of the period off, if the log is resampled (docs/formats.md).
 inline constexpr double most_spread = 0.5 + 0.01;
 
 /// The rows of a log and the even clock that its columns are put on. Where every row stands on the clock and

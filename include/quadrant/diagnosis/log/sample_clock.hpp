@@ -16,7 +16,7 @@ struct sample_clock {
 
 /// Period of the stamps t[k] = t0 + k T + jitter. `refuse(row, message)` throws.
 template <class Refuse> sample_clock read_even_clock(const std::vector<double>& t, Refuse refuse) {
-    constexpr double allowed = 0.2; // FORMAT.md
+    constexpr double allowed = 0.2; // docs/formats.md
     constexpr double leeway = 0.01; // the line through the stamps is itself an estimate
     const std::size_t n = t.size();
     std::vector<double> steps(n - 1);

@@ -60,7 +60,7 @@ struct payload_description {
 /// "static", ...).
 struct tolerance_description {
     std::map<std::string, double> given;
-    static constexpr double unstated = 0.05; ///< FORMAT.md: absent means 0.05 and a note
+    static constexpr double unstated = 0.05; ///< docs/formats.md: absent means 0.05 and a note
     double of(const std::string& key) const {
         const auto found = given.find(key);
         return found == given.end() ? unstated : found->second;

@@ -71,7 +71,7 @@ template <class Make> controller_description own_controller(std::vector<own_key>
     return out;
 }
 
-/// The same without keys: that it is another one is found, not by what it would be mended.
+/// The same without keys: a mismatch is detected, but no correction is suggested.
 template <class Loop> controller_description own_controller(Loop loop) {
     return own_controller({}, [loop = std::move(loop)](std::span<const double>) { return loop; });
 }

@@ -38,7 +38,7 @@ struct lossy_commands {
 /// followed side by side, row by row, and the likeliest `abreast` of them are kept (M-algorithm
 /// [Anderson1984]). The weight of a loss is the share of the histories that have it, `lag` rows later. What is
 /// explained is taken out of the innovations, so that the past is found anew without the pulses, a few times
-/// over. Noise is normal but for a share of strangers (Cauchy, three times as wide), its size that of the
+/// over. Noise is normal but for a share of outliers (Cauchy, three times as wide), its size that of the
 /// neighbourhood, a median over `window` rows. A command that hardly changed says nothing: its weight stays p.
 class lost_commands {
 public:

@@ -70,7 +70,7 @@ inline separation best_motion(const proving_ground& ground, const std::vector<pl
 namespace detail {
 
 /// The names of one group that are still in question, the most probable first, at most three: each costs its
-/// share of the simulations. Two names of one model (gap/FORMAT.md) stand as one where a third name is in
+/// share of the simulations. Two names of one model (docs/formats.md) stand as one where a third name is in
 /// question. All are fitted to the end, which the search spares those that showed little at a first look.
 inline std::vector<confusable> readings_of(const std::vector<rival>& rivals, const axis_record& record) {
     constexpr std::size_t most = 3;

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-/// What a diagnosis says: the JSON of FORMAT.md (schema quadrant.diagnosis/1) plus the signals that the report
-/// draws. Fields named in m and N are in rad and N m for a rotary axis; keys and sentences are in its own words
-/// already.
+/// What a diagnosis says: the JSON of docs/formats.md (schema quadrant.diagnosis/1) plus the signals that the
+/// report draws. Fields named in m and N are in rad and N m for a rotary axis; keys and sentences are in its
+/// own words already.
 namespace quadrant::diagnosis {
 
 /// Ordered from the best to the worst: the verdict of several axes is the largest.

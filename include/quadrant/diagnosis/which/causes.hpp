@@ -106,7 +106,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
         // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
-        // unexplained are not told apart by it, nor are two that are one model (gap/FORMAT.md) while their
+        // unexplained are not told apart by it, nor are two that are one model (docs/formats.md) while their
         // predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
