@@ -2,6 +2,7 @@
 #pragma once
 #include "../../base/lanes.hpp"
 #include "../model/plant_axis.hpp"
+#include "products.hpp"
 
 #include <vector>
 
@@ -182,15 +183,18 @@ template <class Real> void pass(const pass_input& in) {
 
 } // namespace detail
 
-/// The observer's pass compiled for one instruction set, for any number of plants.
+/// What takes the time of a fit, compiled for one instruction set: the observer's pass for any number of plants,
+/// and products of the signals that come out of it.
 struct pass_table {
     void (*one)(const pass_input&);
     void (*two)(const pass_input&);
     void (*more)(const pass_input&);
+    void (*products)(const products_input&);
 };
 template <class Isa = isa::here>
 inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>, &detail::pass<lanes<2, Isa>>,
-                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>};
+                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>,
+                                      &detail::products<lanes<detail::register_width<Isa>, Isa>>};
 
 /// All plants of `in`.
 inline void pass_all(const pass_input& in, const pass_table& by) {

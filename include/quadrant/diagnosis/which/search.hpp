@@ -568,7 +568,6 @@ private:
         const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
         const fitter fit(record_.observer, record_.score);
         fit_result here = from.fit;
-        fit.evaluate(here);
         const auto slopes = fit.slopes(here);
         in_groups(which, 4, [&](std::span<const std::size_t> some) {
             const bool late = how == when_late::leave_out && over();
