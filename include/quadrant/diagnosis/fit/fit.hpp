@@ -78,6 +78,8 @@ public:
 
     /// One fit from its start to its end; see fit_course.
     fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const;
+    /// The objective of models as they stand, side by side.
+    std::vector<double> objectives(std::span<const plant_model> plants) const;
     /// Several fits side by side: what their next steps need is found in one pass.
     template <class Course> void run(std::span<Course> courses) const {
         std::vector<plant_model> plants;
@@ -341,6 +343,18 @@ inline fit_result fitter::fit(const plant_model& start, const std::vector<parame
     fit_course course(*this, start, ps, iterations);
     run(std::span(&course, 1));
     return std::move(course.result());
+}
+
+inline std::vector<double> fitter::objectives(std::span<const plant_model> plants) const {
+    std::vector<double> out;
+    for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
+        std::vector<fit_course> looks;
+        for (const plant_model& p : plants.subspan(first, std::min(predictor::abreast, plants.size() - first)))
+            looks.emplace_back(*this, p, std::vector<parameter>{}, 0);
+        run(std::span(looks));
+        for (fit_course& c : looks) out.push_back(c.result().objective);
+    }
+    return out;
 }
 
 } // namespace quadrant::diagnosis
