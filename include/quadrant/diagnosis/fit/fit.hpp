@@ -159,7 +159,8 @@ private:
             find_quadratics(r.quadratic[i], r.innovation, own, known, scoring_.channels[i], i, curvature);
     }
 
-    Eigen::VectorXd step(const fit_result& r, double damping) const {
+    /// The next point; `gain`: what the quadratics promise for the way there [nats].
+    Eigen::VectorXd step(const fit_result& r, double damping, double& gain) const {
         const auto n = r.x.size();
         Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
         Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
@@ -169,6 +170,7 @@ private:
                 a(i, i) += 1 / square(q.spread);
                 g[i] += (r.x[i] - q.expected) / square(q.spread);
             }
+        const Eigen::MatrixXd curvature = a;
         for (Eigen::Index i = 0; i < n; ++i) a(i, i) *= 1 + damping;
         // Projection: what would leave its bounds is set on the bound and the others are solved again.
         std::vector<bool> fixed(static_cast<std::size_t>(n), false);
@@ -194,6 +196,7 @@ private:
             }
             if (!clipped) break;
         }
+        gain = -(g.dot(d) + 0.5 * d.dot(curvature * d));
         return r.x + d;
     }
     static Eigen::VectorXd masked(const Eigen::VectorXd& d, const std::vector<Eigen::Index>& open) {
@@ -297,9 +300,11 @@ private:
         try_step();
     }
     void try_step() {
+        double promised = 0;
+        trial_.x = fitter_->step(best_, damping_, promised);
+        if (!(promised > hair)) return conclude();
         trial_.plant = best_.plant;
         trial_.parameters = best_.parameters;
-        trial_.x = fitter_->step(best_, damping_);
         fitter::put(trial_.plant, trial_.parameters, trial_.x);
         stage_ = stage::trial;
     }
@@ -313,8 +318,12 @@ private:
         }
         damping_ *= 8;
         if (!better_ && ++attempt_ < 6) return try_step();
+        conclude();
+    }
+    /// The end of an iteration: whether another follows, and with which slopes.
+    void conclude() {
         since_ += gain_;
-        const bool settled = gain_ < 0.1; // a hair beside the margins of the selection
+        const bool settled = gain_ < hair;
         if ((settled && since_ < 1) || iteration_ == iterations_) {
             if (better_) fitter_->quadratics(best_, slopes_, known_, false);
             stage_ = stage::done;
@@ -325,6 +334,9 @@ private:
             next();
         }
     }
+
+    /// A gain beside the margins of the selection that is worth no pass [nats].
+    static constexpr double hair = 0.1;
 
     const fitter* fitter_;
     known_slopes known_;
