@@ -46,7 +46,8 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
 }
 /// exp(-x) for x >= 0, within one unit in the last place; beyond 708, where it is no normal number any more,
 /// that of 708. 2^-k from the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the
-/// work of `exp`, and the same on every instruction set. A single lane has the C library's, which is faster there.
+/// work of `exp`, and the same on every instruction set. A single lane has the C library's, which is faster
+/// there.
 template <std::size_t W, class Isa> lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
     using number = lanes<W, Isa>;
     if constexpr (W == 1) return number(std::exp(-(x[0] > 708 ? 708 : x[0])));
