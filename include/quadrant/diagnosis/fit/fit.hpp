@@ -302,7 +302,7 @@ private:
     void try_step() {
         double promised = 0;
         trial_.x = fitter_->step(best_, damping_, promised);
-        if (!(promised > hair)) return conclude();
+        if (!(promised > least_promise)) return conclude();
         trial_.plant = best_.plant;
         trial_.parameters = best_.parameters;
         fitter::put(trial_.plant, trial_.parameters, trial_.x);
@@ -337,6 +337,9 @@ private:
 
     /// A gain beside the margins of the selection that is worth no pass [nats].
     static constexpr double hair = 0.1;
+    /// A step that promises less is not tried. Far below the hair: where the score is rough a step gains more than
+    /// its quadratics promise.
+    static constexpr double least_promise = 1e-3;
 
     const fitter* fitter_;
     known_slopes known_;
