@@ -16,19 +16,18 @@ inline void fft(std::vector<complex>& x) {
         j ^= bit;
         if (i < j) std::swap(x[i], x[j]);
     }
-    for (std::size_t width = 2; width <= n; width *= 2) {
-        const double step = -2 * std::numbers::pi / double(width);
-        for (std::size_t k = 0; k < width / 2; ++k) {
-            const complex turn = std::polar(1.0, step * double(k));
-            for (std::size_t i = k; i < n; i += width) {
-                const complex even = x[i], odd = x[i + width / 2];
+    std::vector<complex> turns(n / 2); // of every stage: a shorter one takes every other of them, or fewer
+    for (std::size_t k = 0; k < n / 2; ++k)
+        turns[k] = std::polar(1.0, -2 * std::numbers::pi / double(n) * double(k));
+    for (std::size_t width = 2, apart = n / 2; width <= n; width *= 2, apart /= 2)
+        for (std::size_t i = 0; i < n; i += width)
+            for (std::size_t k = 0; k < width / 2; ++k) {
+                const complex turn = turns[k * apart], even = x[i + k], odd = x[i + k + width / 2];
                 const complex w{turn.real() * odd.real() - turn.imag() * odd.imag(),
                                 turn.real() * odd.imag() + turn.imag() * odd.real()};
-                x[i] = even + w;
-                x[i + width / 2] = even - w;
+                x[i + k] = even + w;
+                x[i + k + width / 2] = even - w;
             }
-        }
-    }
 }
 
 /// A measured response with what is known about its error.

@@ -160,19 +160,19 @@ private:
                           h_ * (h_ + damping_) * stiffness(0, added));
     }
     Real step(state& s, Real momentum, Real v, const auto& changed, const auto& added) const noexcept {
-        using std::abs, std::exp;
+        using std::abs;
         const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
         Real level = changed(select(forward, forward_.level, backward_.level));
         if (falls_by_side_)
-            level = level +
-                    select(forward, forward_.excess, backward_.excess) *
-                        exp(-abs(v) * select(forward, forward_.inverse_velocity, backward_.inverse_velocity));
+            level = level + select(forward, forward_.excess, backward_.excess) *
+                                decayed(abs(v) *
+                                        select(forward, forward_.inverse_velocity, backward_.inverse_velocity));
         else if (falls_)
-            level = level + forward_.excess * exp(-abs(v) * forward_.inverse_velocity);
+            level = level + forward_.excess * decayed(abs(v) * forward_.inverse_velocity);
         Real kept(0);
         if (relaxes_) { // a level of zero has no distance to keep
             const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
-            kept = exp(-select(less(by, Real(700)), by, Real(700)));
+            kept = decayed(select(less(by, Real(700)), by, Real(700)));
         }
         return springs_ > 1 ? several(s, momentum, level, kept,
                                       select(forward, forward_.inertia, backward_.inertia), added)

@@ -46,9 +46,11 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
 }
 /// exp(-x) for x >= 0, within one unit in the last place; beyond 708, where it is no normal number any more,
 /// that of 708. 2^-k from the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the
-/// work of `exp`, and the same on every instruction set.
+/// work of `exp`, and the same on every instruction set. A single lane has the C library's, which is faster
+/// there.
 template <std::size_t W, class Isa> lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
     using number = lanes<W, Isa>;
+    if constexpr (W == 1) return number(std::exp(-(x[0] > 708 ? 708 : x[0])));
     const number most(708), shift(0x1.8p52);
     const number y = -select(less(most, x), most, x);
     const number shifted = detail::rounded_here<number>(y * number(1.442695040888963407359924681) + shift);
@@ -120,10 +122,14 @@ lanes<W, Isa> rounded(const lanes<W, Isa>& x, const Round& round) noexcept {
 
 /// As std::floor.
 template <std::size_t W, class Isa> lanes<W, Isa> floor(const lanes<W, Isa>& x) noexcept {
-    return detail::rounded(x, [](const auto& v) {
+    const auto floored = [](const auto& v) {
         using std::floor;
         return floor(v);
-    });
+    };
+    if constexpr (isa::rounds_in_registers<Isa>)
+        return lanes<W, Isa>::map(floored, x);
+    else
+        return detail::rounded(x, floored);
 }
 template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept;
 /// Halves away from zero, as std::round.

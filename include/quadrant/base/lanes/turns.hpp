@@ -15,17 +15,17 @@ template <class Real> struct on_circle { Real cosine, sine; };
 template <std::size_t W, class Isa> on_circle<lanes<W, Isa>> circle_of_turns(const lanes<W, Isa>& t) noexcept {
     using number = lanes<W, Isa>;
     const number quarters = floor(number(4) * t + number(0.5));
-    const number x = (t - number(0.25) * quarters) * number(6.283185307179586), z = x * x;
-    number s = number(1.58962301576546568060e-10);
-    for (const double c : {-2.50507477628578072866e-8, 2.75573136213857245213e-6, -1.98412698295895385996e-4,
-                           8.33333333332211858878e-3, -1.66666666666666307295e-1})
-        s = s * z + number(c);
+    const number x = (t - number(0.25) * quarters) * number(6.283185307179586), z = x * x, z2 = z * z;
+    // In pairs of terms, so that no multiplication waits for all of those before it.
+    const auto pair = [&z](double low, double high) { return number(low) + z * number(high); };
+    number s = (pair(-1.66666666666666307295e-1, 8.33333333332211858878e-3) +
+                z2 * pair(-1.98412698295895385996e-4, 2.75573136213857245213e-6)) +
+               (z2 * z2) * pair(-2.50507477628578072866e-8, 1.58962301576546568060e-10);
     s = x + x * z * s;
-    number c = number(-1.13585365213876817300e-11);
-    for (const double k : {2.08757008419747316778e-9, -2.75573141792967388112e-7, 2.48015872888517045348e-5,
-                           -1.38888888888730564116e-3, 4.16666666666665929218e-2})
-        c = c * z + number(k);
-    c = number(1) - number(0.5) * z + z * z * c;
+    number c = (pair(4.16666666666665929218e-2, -1.38888888888730564116e-3) +
+                z2 * pair(2.48015872888517045348e-5, -2.75573141792967388112e-7)) +
+               (z2 * z2) * pair(2.08757008419747316778e-9, -1.13585365213876817300e-11);
+    c = number(1) - number(0.5) * z + z2 * c;
     // Quarter turns: (c, s), (-s, c), (-c, -s), (s, -c).
     const number quarter = quarters - number(4) * floor(number(0.25) * quarters);
     const auto odd = either(equal(quarter, number(1)), equal(quarter, number(3)));

@@ -14,7 +14,8 @@ struct screening {
     const tolerance_description& tolerance;
     const axis_record& record;
     const plant_model& leader;
-    const std::vector<double>& residual; ///< [N], sign of residual_force()
+    const std::vector<double>& residual;   ///< [N], sign of residual_force()
+    const std::vector<double>& innovation; ///< of the leader [m]
 
     /// Force of the largest command, the scale of forces on this axis [N].
     double force_scale() const { return leader.force_constant * record.scale.command; }
@@ -47,18 +48,10 @@ inline parameter freed(const char* key, double& (*of)(plant_model&), double valu
 /// The value from which a fit begins, of those that may be tried: where the gradient sees nothing (a dead zone,
 /// a limit, a play) only looking helps. Each costs one pass over the log.
 inline double best_start(const screening& s, double& (*of)(plant_model&), const std::vector<double>& values) {
-    const fitter fit(s.record.observer, s.record.score);
-    std::vector<fit_course> looks;
-    for (double value : values) {
-        plant_model plant = s.leader;
-        of(plant) = value;
-        looks.emplace_back(fit, plant, std::vector<parameter>{}, 0);
-    }
-    fit.run(std::span(looks));
-    const auto least = std::min_element(looks.begin(), looks.end(), [](auto& a, auto& b) {
-        return a.result().objective < b.result().objective;
-    });
-    return values[static_cast<std::size_t>(least - looks.begin())];
+    std::vector<plant_model> plants(values.size(), s.leader);
+    for (std::size_t i = 0; i < values.size(); ++i) of(plants[i]) = values[i];
+    const auto looks = fitter(s.record.observer, s.record.score).objectives(plants);
+    return values[static_cast<std::size_t>(std::min_element(looks.begin(), looks.end()) - looks.begin())];
 }
 
 /// Where the fit of a limit begins: the best of several shares of the largest value that the record shows. No

@@ -52,9 +52,7 @@ inline constexpr effect encoder_cyclic_error{
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
-        std::vector<double> innovation;
-        s.record.observer.run(s.leader, innovation);
-        innovation.resize(s.record.position.size()); // those of the position
+        const auto innovation = std::span(s.innovation).first(s.record.position.size()); // of the position
         std::vector<std::vector<parameter>> out;
         // Coarse and fine periods apart: at constant speed the rows themselves are a grating, and alias one
         // into the other.

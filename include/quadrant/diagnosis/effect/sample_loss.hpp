@@ -49,8 +49,9 @@ inline constexpr effect sample_loss{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         plant_model plant = s.leader;
         plant.loss = 0;
-        std::vector<double> innovation;
-        s.record.observer.run(plant, innovation);
+        std::vector<double> without;
+        if (s.leader.loss > 0) s.record.observer.run(plant, without);
+        const auto& innovation = s.leader.loss > 0 ? without : s.innovation;
         const auto with = [&](double size) {
             return s.record.observer.commands_with_loss(plant, innovation, {.learned = true, .size = size});
         };

@@ -15,8 +15,7 @@ inline std::vector<double> ringing_frequencies(const screening& s, double lowest
     for (double f = lowest; f < highest; f *= rung) ladder.push_back(f);
     std::vector<plant_model> plants(ladder.size(), s.leader);
     for (std::size_t i = 0; i < ladder.size(); ++i) plants[i].mode = {small, ladder[i], 0.03};
-    std::vector<double> here;
-    s.record.observer.run(s.leader, here);
+    const std::vector<double>& here = s.innovation;
     std::vector<std::vector<double>> there(ladder.size());
     s.record.observer.run(plants, there);
     const auto ms = block_ms(here, s.record.score.skip, s.record.score.block);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "predictor.hpp"
-#include "scoring.hpp"
+#include "quadratic.hpp"
 
 #include <Eigen/Dense>
 #include <limits>
@@ -32,23 +31,15 @@ struct parameter {
     double from_fit(double x) const { return logarithmic ? std::exp(x) : x; }
 };
 
-/// Mean square of one block as a quadratic in the step of the parameters: ms + 2 g d + d' A d.
-struct block_quadratic {
-    double ms = 0;
-    Eigen::VectorXd g;
-    Eigen::MatrixXd a;
-    double at(const Eigen::VectorXd& d) const { return std::max(0.0, ms + 2 * g.dot(d) + d.dot(a * d)); }
-};
-
 /// A plant model fitted to one record, and how well it predicts each block of it.
 struct fit_result {
     plant_model plant{};
     std::vector<parameter> parameters{};
     Eigen::VectorXd x{}; ///< fit coordinates
-    std::vector<double> innovation{};
+    viewed_signal innovation{};
     std::vector<std::vector<double>> ms{}; ///< by channel and block
     double choices = 0; ///< score that the model took from the log itself, see predictor::run
-    std::vector<std::vector<block_quadratic>> quadratic{}; ///< by channel and block
+    std::vector<block_quadratics> quadratic{}; ///< by channel
     double objective = std::numeric_limits<double>::infinity();
 };
 
@@ -71,19 +62,24 @@ public:
         return sum;
     }
 
-    /// How the innovation moves with each parameter.
-    std::vector<std::vector<double>> slopes(const fit_result& r) const {
-        std::vector<std::size_t> which;
+    /// A model with its innovations, and how they move with each parameter.
+    shared_slopes slopes(fit_result& r) const {
+        put(r.plant, r.parameters, r.x);
         std::vector<double> step;
-        const auto plants = moved(r, {}, which, step);
-        std::vector<std::vector<double>> e(plants.size()), out(r.parameters.size());
+        std::vector<plant_model> plants = moved(r, 0, step);
+        plants.insert(plants.begin(), r.plant);
+        std::vector<std::vector<double>> e(plants.size());
         predictor_.run(plants, e);
-        for (std::size_t j = 0; j < which.size(); ++j) out[which[j]] = slope(std::move(e[j]), r, step[j]);
-        return out;
+        r.innovation = {std::move(e.front()), scoring_};
+        e.erase(e.begin());
+        for (std::size_t j = 0; j < e.size(); ++j) to_slope(e[j], r, step[j]);
+        return {std::move(e), scoring_};
     }
 
     /// One fit from its start to its end; see fit_course.
     fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const;
+    /// The objective of models as they stand, side by side.
+    std::vector<double> objectives(std::span<const plant_model> plants) const;
     /// Several fits side by side: what their next steps need is found in one pass.
     template <class Course> void run(std::span<Course> courses) const {
         std::vector<plant_model> plants;
@@ -104,7 +100,7 @@ public:
 
     void evaluate(fit_result& r) const {
         put(r.plant, r.parameters, r.x);
-        const double choices = predictor_.run(r.plant, r.innovation);
+        const double choices = predictor_.run(r.plant, r.innovation.rows);
         judge(r, choices);
     }
     /// What the innovations of a model say of it.
@@ -112,9 +108,10 @@ public:
         // As many of a block's rows are independent as its score says.
         double independent = 0;
         r.ms.clear();
-        for (const channel& c : scoring_.channels) {
-            independent += c.nu / static_cast<double>(c.block);
-            r.ms.push_back(detail::block_ms(r.innovation, c));
+        r.innovation.look(scoring_);
+        for (std::size_t i = 0; i < scoring_.channels.size(); ++i) {
+            independent += scoring_.channels[i].nu / static_cast<double>(scoring_.channels[i].block);
+            r.ms.push_back(r.innovation.block_ms(scoring_, i));
         }
         r.choices = choices * independent;
         r.objective = score_ms(r.ms) + prior(r) + r.choices;
@@ -137,83 +134,33 @@ private:
 
     friend class fit_course;
 
-    using columns = std::vector<const std::vector<double>*>;
-
-    /// The model with each parameter moved by a step, but those whose slope is known.
-    static std::vector<plant_model> moved(const fit_result& r, const columns& known,
-                                          std::vector<std::size_t>& which, std::vector<double>& step) {
+    /// The model with each parameter moved by a step, from the `first` on.
+    static std::vector<plant_model> moved(const fit_result& r, std::size_t first, std::vector<double>& step) {
         std::vector<plant_model> plants;
-        which.clear();
         step.clear();
-        for (std::size_t i = 0; i < r.parameters.size(); ++i) {
-            if (i < known.size() && known[i]) continue;
+        for (std::size_t i = first; i < r.parameters.size(); ++i) {
             const auto& q = r.parameters[i];
             const double x = r.x[static_cast<Eigen::Index>(i)];
-            which.push_back(i);
             step.push_back(x + q.step > q.to_fit(q.high) ? -q.step : q.step);
             plants.push_back(r.plant);
             q.of(plants.back()) = q.from_fit(x + step.back());
         }
         return plants;
     }
-    static std::vector<double> slope(std::vector<double> moved, const fit_result& r, double step) {
+    static void to_slope(std::vector<double>& moved, const fit_result& r, double step) {
         const double inverse = 1 / step;
-        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation[k]) * inverse;
-        return moved;
+        for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation.rows[k]) * inverse;
     }
-
-    static columns pointers(const std::vector<std::vector<double>>& d, const columns& known = {}) {
-        columns out;
-        for (std::size_t i = 0; i < d.size(); ++i)
-            out.push_back(i < known.size() && known[i] ? known[i] : &d[i]);
-        return out;
-    }
-    /// The blocks as quadratics, with these slopes.
-    void linearize(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known) const {
-        r.quadratic.clear();
-        for (const auto& blocks : r.ms) r.quadratic.emplace_back(blocks.size());
-        quadratics(r, found, known, true);
-    }
-    /// The same at another point with the slopes kept.
-    void follow(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known) const {
-        quadratics(r, found, known, false);
-    }
-    void quadratics(fit_result& r, const std::vector<std::vector<double>>& found, const columns& known,
+    /// The blocks as quadratics with these slopes; without `curvature` that of the point before is kept.
+    void quadratics(fit_result& r, const std::vector<viewed_signal>& own, const known_slopes& known,
                     bool curvature) const {
-        const auto d = pointers(found, known);
-        for (std::size_t i = 0; i < scoring_.channels.size(); ++i) {
-            const channel& c = scoring_.channels[i];
-            if (c.mean == 1) {
-                quadratics(r.quadratic[i], r.innovation, d, c.block, curvature,
-                           [&](std::size_t b) { return c.first_of_block[b]; });
-                continue;
-            }
-            std::vector<std::vector<double>> slow;
-            for (const auto* x : d) slow.push_back(detail::seen(*x, c));
-            const std::size_t means = c.block / c.mean;
-            quadratics(r.quadratic[i], detail::seen(r.innovation, c), pointers(slow), means, curvature,
-                       [&](std::size_t b) { return b * means; });
-        }
-    }
-    /// `first_of(b)`: where block b begins.
-    template <class FirstOf>
-    static void quadratics(std::vector<block_quadratic>& out, const std::vector<double>& e, const columns& d,
-                           std::size_t block, bool curvature, FirstOf first_of) {
-        const auto n = static_cast<Eigen::Index>(d.size());
-        Eigen::MatrixXd j(static_cast<Eigen::Index>(block), n);
-        for (std::size_t b = 0; b < out.size(); ++b) {
-            const std::size_t k0 = first_of(b);
-            for (Eigen::Index i = 0; i < n; ++i)
-                std::copy_n(d[static_cast<std::size_t>(i)]->data() + k0, block, j.col(i).data());
-            const Eigen::Map<const Eigen::VectorXd> eb(e.data() + k0, static_cast<Eigen::Index>(block));
-            const double inverse = 1 / static_cast<double>(block);
-            out[b].ms = eb.squaredNorm() * inverse;
-            out[b].g = j.transpose() * eb * inverse;
-            if (curvature) out[b].a = j.transpose() * j * inverse;
-        }
+        r.quadratic.resize(scoring_.channels.size());
+        for (std::size_t i = 0; i < scoring_.channels.size(); ++i)
+            find_quadratics(r.quadratic[i], r.innovation, own, known, scoring_.channels[i], i, curvature);
     }
 
-    Eigen::VectorXd step(const fit_result& r, double damping) const {
+    /// The next point; `gain`: what the quadratics promise for the way there [nats].
+    Eigen::VectorXd step(const fit_result& r, double damping, double& gain) const {
         const auto n = r.x.size();
         Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
         Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
@@ -223,6 +170,7 @@ private:
                 a(i, i) += 1 / square(q.spread);
                 g[i] += (r.x[i] - q.expected) / square(q.spread);
             }
+        const Eigen::MatrixXd curvature = a;
         for (Eigen::Index i = 0; i < n; ++i) a(i, i) *= 1 + damping;
         // Projection: what would leave its bounds is set on the bound and the others are solved again.
         std::vector<bool> fixed(static_cast<std::size_t>(n), false);
@@ -248,6 +196,7 @@ private:
             }
             if (!clipped) break;
         }
+        gain = -(g.dot(d) + 0.5 * d.dot(curvature * d));
         return r.x + d;
     }
     static Eigen::VectorXd masked(const Eigen::VectorXd& d, const std::vector<Eigen::Index>& open) {
@@ -255,12 +204,11 @@ private:
         for (auto i : open) out[i] = d[i];
         return out;
     }
-    static void add(const std::vector<block_quadratic>& blocks, const channel& c, Eigen::MatrixXd& a,
-                    Eigen::VectorXd& g) {
-        for (const auto& b : blocks) {
-            const double w = c.nu / (b.ms + square(c.floor));
-            a += w * b.a;
-            g += w * b.g;
+    static void add(const block_quadratics& q, const channel& c, Eigen::MatrixXd& a, Eigen::VectorXd& g) {
+        for (std::size_t b = 0; b < q.size(); ++b) {
+            const double w = c.nu / (q.ms[b] + square(c.floor));
+            a += w * q.curvature(b);
+            g += w * q.gradient(b);
         }
     }
 
@@ -272,14 +220,13 @@ private:
 /// done. Many courses that ask at the same time share the lanes of a pass (fitter::run).
 class fit_course {
 public:
-    /// `known`: slopes that are taken as they are instead of being found again; null where there is none. For a
-    /// first look
-    /// at one more effect: the others' slopes are those of the model without it.
+    /// `known`: slopes that are taken as they are instead of being found again. For a first look at one more
+    /// effect: the others' slopes are those of the model without it.
     /// `chords`: steps that may be taken with the slopes of an earlier point before they are found again.
     /// Slopes cost a pass for each parameter, a step costs one; the last steps are taken with new slopes in any
     /// case.
     fit_course(const fitter& f, const plant_model& start, const std::vector<parameter>& ps, int iterations,
-               fitter::columns known = {}, int chords = 4)
+               known_slopes known = {}, int chords = 4)
         : fitter_(&f), known_(std::move(known)), iterations_(iterations),
           chords_(chords), best_{.plant = start,
                                  .parameters = ps,
@@ -295,7 +242,7 @@ public:
         if (stage_ == stage::begin) plants.push_back(best_.plant);
         if (stage_ == stage::trial) plants.push_back(trial_.plant);
         if (stage_ != stage::trial) {
-            auto each = fitter::moved(best_, known_, which_, step_);
+            auto each = fitter::moved(best_, known_.count(), step_);
             plants.insert(plants.end(), std::make_move_iterator(each.begin()),
                           std::make_move_iterator(each.end()));
         }
@@ -304,20 +251,20 @@ public:
     std::size_t take(std::span<std::vector<double>> innovation, std::span<const double> choices) {
         switch (stage_) {
         case stage::begin:
-            best_.innovation.swap(innovation[0]);
+            best_.innovation.rows.swap(innovation[0]);
             fitter_->judge(best_, choices[0]);
             take_slopes(innovation.subspan(1));
             next();
-            return 1 + which_.size();
+            return 1 + step_.size();
         case stage::slopes:
             take_slopes(innovation);
             since_ = 0;
             old_ = 0;
             if (!better_) damping_ = damping_before_;
             next();
-            return which_.size();
+            return step_.size();
         case stage::trial:
-            trial_.innovation.swap(innovation[0]);
+            trial_.innovation.rows.swap(innovation[0]);
             fitter_->judge(trial_, choices[0]);
             compare();
             return 1;
@@ -332,10 +279,13 @@ private:
     enum class stage { begin, trial, slopes, done };
 
     void take_slopes(std::span<std::vector<double>> moved) {
-        slopes_.resize(best_.parameters.size());
-        for (std::size_t j = 0; j < which_.size(); ++j)
-            slopes_[which_[j]] = fitter::slope(std::move(moved[j]), best_, step_[j]);
-        fitter_->linearize(best_, slopes_, known_);
+        slopes_.resize(step_.size());
+        for (std::size_t j = 0; j < step_.size(); ++j) {
+            fitter::to_slope(moved[j], best_, step_[j]);
+            slopes_[j].rows.swap(moved[j]);
+            slopes_[j].look(fitter_->scoring_);
+        }
+        fitter_->quadratics(best_, slopes_, known_, true);
     }
     /// The next iteration, if there is one.
     void next() {
@@ -350,9 +300,11 @@ private:
         try_step();
     }
     void try_step() {
+        double promised = 0;
+        trial_.x = fitter_->step(best_, damping_, promised);
+        if (!(promised > least_promise)) return conclude();
         trial_.plant = best_.plant;
         trial_.parameters = best_.parameters;
-        trial_.x = fitter_->step(best_, damping_);
         fitter::put(trial_.plant, trial_.parameters, trial_.x);
         stage_ = stage::trial;
     }
@@ -366,26 +318,35 @@ private:
         }
         damping_ *= 8;
         if (!better_ && ++attempt_ < 6) return try_step();
+        conclude();
+    }
+    /// The end of an iteration: whether another follows, and with which slopes.
+    void conclude() {
         since_ += gain_;
-        const bool settled = gain_ < 0.1; // a hair beside the margins of the selection
+        const bool settled = gain_ < hair;
         if ((settled && since_ < 1) || iteration_ == iterations_) {
-            if (better_) fitter_->follow(best_, slopes_, known_);
+            if (better_) fitter_->quadratics(best_, slopes_, known_, false);
             stage_ = stage::done;
         } else if (settled || ++old_ > chords_) {
             stage_ = stage::slopes;
         } else {
-            fitter_->follow(best_, slopes_, known_);
+            fitter_->quadratics(best_, slopes_, known_, false);
             next();
         }
     }
 
+    /// A gain beside the margins of the selection that is worth no pass [nats].
+    static constexpr double hair = 0.1;
+    /// A step that promises less is not tried. Far below the hair: where the score is rough a step gains more than
+    /// its quadratics promise.
+    static constexpr double least_promise = 1e-3;
+
     const fitter* fitter_;
-    fitter::columns known_;
+    known_slopes known_;
     int iterations_, chords_, iteration_ = 0, attempt_ = 0, old_ = 0;
     stage stage_ = stage::begin;
     fit_result best_, trial_{};
-    std::vector<std::vector<double>> slopes_{};
-    std::vector<std::size_t> which_{};
+    std::vector<viewed_signal> slopes_{}; ///< of the parameters behind the known ones
     std::vector<double> step_{};
     double damping_ = 1e-3, damping_before_ = 0, since_ = 0,
            gain_ = 0; // since: what was gained with these slopes
@@ -397,6 +358,18 @@ inline fit_result fitter::fit(const plant_model& start, const std::vector<parame
     fit_course course(*this, start, ps, iterations);
     run(std::span(&course, 1));
     return std::move(course.result());
+}
+
+inline std::vector<double> fitter::objectives(std::span<const plant_model> plants) const {
+    std::vector<double> out;
+    for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
+        std::vector<fit_course> looks;
+        for (const plant_model& p : plants.subspan(first, std::min(predictor::abreast, plants.size() - first)))
+            looks.emplace_back(*this, p, std::vector<parameter>{}, 0);
+        run(std::span(looks));
+        for (fit_course& c : looks) out.push_back(c.result().objective);
+    }
+    return out;
 }
 
 } // namespace quadrant::diagnosis

@@ -2,6 +2,7 @@
 #pragma once
 #include "../../base/lanes.hpp"
 #include "../model/plant_axis.hpp"
+#include "products.hpp"
 
 #include <vector>
 
@@ -40,11 +41,12 @@ struct pass_input {
 
 namespace detail {
 
-/// How many doubles one register of a set holds.
-template <class Isa>
-inline constexpr std::size_t register_width = quadrant::detail::lane_registers<8, Isa>::width == 8   ? 8
-                                              : quadrant::detail::lane_registers<4, Isa>::width == 4 ? 4
-                                                                                                     : 2;
+/// How many doubles one register of a set holds, at most `most`.
+template <class Isa, std::size_t most = 8>
+inline constexpr std::size_t register_width =
+    most == 8 && quadrant::detail::lane_registers<8, Isa>::width == 8 ? 8
+    : quadrant::detail::lane_registers<4, Isa>::width == 4            ? 4
+                                                                      : 2;
 
 /// Plants in the lanes of one number, on their way through the log.
 template <class Real> class lane_group {
@@ -137,17 +139,19 @@ private:
         if (in.command_of) return command_of_each(in, k, more);
         const auto row = [&](std::size_t back) { return in.command[k >= back ? k - back : 0]; };
         if (delay_.same) return Real(row(delay_.whole[0] + more));
-        Real u(0);
-        for (std::size_t i = 0; i < width; ++i) set_lane(u, i, row(delay_.whole[i] + more));
-        return u;
+        return each_lane([&](std::size_t i) { return row(delay_.whole[i] + more); });
     }
     Real command_of_each(const pass_input& in, std::size_t k, std::size_t more) const {
-        Real u(0);
-        for (std::size_t i = 0; i < width; ++i) {
+        return each_lane([&](std::size_t i) {
             const std::size_t back = delay_.whole[i] + more;
-            set_lane(u, i, in.command_of[i < in.plants ? i : in.plants - 1][k >= back ? k - back : 0]);
-        }
-        return u;
+            return in.command_of[i < in.plants ? i : in.plants - 1][k >= back ? k - back : 0];
+        });
+    }
+    /// Gathered in memory and read at once: no lane waits for the one before it.
+    template <class NumberOf> static Real each_lane(const NumberOf& number_of) {
+        std::array<double, width> out;
+        for (std::size_t i = 0; i < width; ++i) out[i] = number_of(i);
+        return Real(out);
     }
     static void keep(const pass_input& in, double* const* out, std::size_t k, const Real& value) {
         const auto numbers = value.each();
@@ -182,19 +186,24 @@ template <class Real> void pass(const pass_input& in) {
 
 } // namespace detail
 
-/// The observer's pass compiled for one instruction set, for any number of plants.
+/// What takes the time of a fit, compiled for one instruction set: the observer's pass for any number of plants,
+/// and products of the signals that come out of it.
 struct pass_table {
     void (*one)(const pass_input&);
     void (*two)(const pass_input&);
+    void (*four)(const pass_input&);
     void (*more)(const pass_input&);
+    void (*products)(const products_input&);
 };
 template <class Isa = isa::here>
 inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>, &detail::pass<lanes<2, Isa>>,
-                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>};
+                                      &detail::pass<lanes<detail::register_width<Isa, 4>, Isa>>,
+                                      &detail::pass<lanes<detail::register_width<Isa>, Isa>>,
+                                      &detail::products<lanes<detail::register_width<Isa>, Isa>>};
 
 /// All plants of `in`.
 inline void pass_all(const pass_input& in, const pass_table& by) {
-    (in.plants > 2 ? by.more : in.plants > 1 ? by.two : by.one)(in);
+    (in.plants > 4 ? by.more : in.plants > 2 ? by.four : in.plants > 1 ? by.two : by.one)(in);
 }
 
 } // namespace quadrant::diagnosis

@@ -49,21 +49,38 @@ inline std::vector<double> block_ms(const std::vector<double>& e, std::size_t fi
     }
     return out;
 }
+/// Sum of term(i) for i < count; four sums side by side, so that no addition waits for the one before it.
+template <class Term> double sum_of(std::size_t count, const Term& term) {
+    double a = 0, b = 0, c = 0, d = 0;
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+        a += term(i);
+        b += term(i + 1);
+        c += term(i + 2);
+        d += term(i + 3);
+    }
+    for (; i < count; ++i) a += term(i);
+    return (a + b) + (c + d);
+}
 /// A signal as a channel sees it: the means inside each of its blocks, block after block.
 inline std::vector<double> seen(const std::vector<double>& e, const channel& c) {
     std::vector<double> out;
     out.reserve(c.first_of_block.size() * (c.block / c.mean));
     for (const std::size_t first : c.first_of_block)
-        for (std::size_t k = first; k + c.mean <= first + c.block; k += c.mean) {
-            double sum = 0;
-            for (std::size_t i = k; i < k + c.mean; ++i) sum += e[i];
-            out.push_back(sum / static_cast<double>(c.mean));
-        }
+        for (std::size_t k = first; k + c.mean <= first + c.block; k += c.mean)
+            out.push_back(sum_of(c.mean, [row = e.data() + k](std::size_t i) { return row[i]; }) /
+                          static_cast<double>(c.mean));
     return out;
 }
 /// Mean squares of a channel's blocks.
 inline std::vector<double> block_ms(const std::vector<double>& e, const channel& c) {
-    return block_ms(seen(e, c), 0, c.block / c.mean);
+    if (c.mean > 1) return block_ms(seen(e, c), 0, c.block / c.mean);
+    std::vector<double> out;
+    out.reserve(c.first_of_block.size());
+    for (const std::size_t first : c.first_of_block)
+        out.push_back(sum_of(c.block, [row = e.data() + first](std::size_t i) { return row[i] * row[i]; }) /
+                      static_cast<double>(c.block));
+    return out;
 }
 
 /// What means over c.mean rows see of the reading's noise behind an observer with both poles at `pole`: the

@@ -129,11 +129,19 @@ public:
     };
     on_second second_log(const candidate& m) const {
         fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
-        fitter(second->observer, second->score).evaluate(there);
-        std::vector<double> e, a;
-        second->observer.run(there.plant, e, &a);
+        std::vector<double> a;
+        const double choices = second->observer.run(there.plant, there.innovation.rows, &a);
+        fitter(second->observer, second->score).judge(there, choices);
         return {-there.objective, models.settled(there.ms, second->score, noise),
                 rms(residual_of(*second, there.plant, a))};
+    }
+    /// The log-scores alone, of several models.
+    std::vector<double> scores_on_second(const std::vector<const candidate*>& some) const {
+        std::vector<plant_model> plants;
+        for (const candidate* m : some) plants.push_back(restarted(m->fit.plant, *second));
+        auto out = fitter(second->observer, second->score).objectives(plants);
+        for (double& score : out) score = -score;
+        return out;
     }
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }

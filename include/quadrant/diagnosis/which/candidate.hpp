@@ -86,12 +86,12 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
     c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double w = view.nu / (blocks[b].ms + view.floor * view.floor);
+            const double w = view.nu / (blocks.ms[b] + view.floor * view.floor);
             auto& f = sums[fold_of(view.segment_of_block[b])];
-            f.a += w * blocks[b].a;
-            f.g += w * blocks[b].g;
-            c.curvature += w * blocks[b].a;
-            c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks[b].g;
+            f.a += w * blocks.curvature(b);
+            f.g += w * blocks.gradient(b);
+            c.curvature += w * blocks.curvature(b);
+            c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
         }
     });
     for (const auto& f : sums) all.a += f.a;
@@ -115,7 +115,7 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const auto segment = view.segment_of_block[b];
             c.held_out[segment] -=
-                0.5 * view.nu * std::log(blocks[b].at(step[fold_of(segment)]) + view.floor * view.floor);
+                0.5 * view.nu * std::log(blocks.at(b, step[fold_of(segment)]) + view.floor * view.floor);
         }
     });
     c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
@@ -136,13 +136,13 @@ inline std::vector<parameter> resumed(const fit_result& f) {
 class first_look {
 public:
     first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,
-               const std::vector<std::vector<double>>& slopes, int steps) {
+               const shared_slopes& slopes, int steps) {
         const auto resumed_from = resumed(from.fit);
         for (const auto& start : added.starts(look)) {
             plant_model plant = from.fit.plant;
             added.join(plant, look);
             std::vector<parameter> ps;
-            std::vector<const std::vector<double>*> known;
+            known_slopes known{.from = &slopes};
             for (std::size_t i = 0; i < resumed_from.size(); ++i) {
                 // The effect's own parameters replace the described ones.
                 const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
@@ -150,7 +150,7 @@ public:
                 });
                 if (replaced) continue;
                 ps.push_back(resumed_from[i]);
-                known.push_back(&slopes[i]);
+                known.which.push_back(i);
             }
             ps.insert(ps.end(), start.begin(), start.end());
             courses_.emplace_back(fit, plant, ps, steps, std::move(known), 0);

@@ -29,8 +29,12 @@ inline constexpr double alike = 0.2;
 /// hold-out log counts as it stands.
 inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
     const auto draws = segment_draws(c.record.segments);
-    std::vector<double> score(rivals.size()), second;
-    for (const rival& r : rivals) second.push_back(c.second ? c.second_log(r.model).score : 0);
+    std::vector<double> score(rivals.size()), second(rivals.size());
+    if (c.second) {
+        std::vector<const candidate*> models;
+        for (const rival& r : rivals) models.push_back(&r.model);
+        second = c.scores_on_second(models);
+    }
     for (const auto& draw : draws) {
         for (std::size_t j = 0; j < rivals.size(); ++j) {
             score[j] = second[j] - rivals[j].model.penalty;

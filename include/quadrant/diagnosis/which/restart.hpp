@@ -20,20 +20,19 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);
     double& (*const start)(plant_model&) = [](plant_model& p) -> double& { return p.cutting_start; };
-    fit_result best;
-    constexpr int tries = 24; // six a cycle of the fourth harmonic
-    for (int i = 0; i < tries; ++i) {
-        fit_result trial{.plant = plant, .x = Eigen::VectorXd(0)};
-        start(trial.plant) = plant.cutting.period * i / tries;
-        fit.evaluate(trial);
-        if (trial.objective < best.objective) best = std::move(trial);
-    }
+    constexpr std::size_t tries = 24; // six a cycle of the fourth harmonic
+    std::vector<plant_model> plants(tries, plant);
+    for (std::size_t i = 0; i < tries; ++i)
+        start(plants[i]) = plant.cutting.period * static_cast<double>(i) / static_cast<double>(tries);
+    const auto looks = fit.objectives(plants);
+    plant_model& best =
+        plants[static_cast<std::size_t>(std::min_element(looks.begin(), looks.end()) - looks.begin())];
     const double period = plant.cutting.period;
     return fit
-        .fit(best.plant,
+        .fit(best,
              {{.key = "process",
                .of = start,
-               .start = start(best.plant),
+               .start = start(best),
                .low = -period,
                .high = 2 * period,
                .step = 1e-4 * period}},

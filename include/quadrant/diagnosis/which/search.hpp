@@ -573,11 +573,10 @@ private:
                      std::vector<candidate>& models, when_late how) const {
         if (which.empty()) return;
         const auto left = residual_behind_drive(from);
-        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left};
         const fitter fit(record_.observer, record_.score);
         fit_result here = from.fit;
-        fit.evaluate(here);
         const auto slopes = fit.slopes(here);
+        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left, here.innovation.rows};
         in_groups(which, 4, [&](std::span<const std::size_t> some) {
             const bool late = how == when_late::leave_out && over();
             for (const std::size_t i : some) {
@@ -607,7 +606,7 @@ private:
         std::stable_sort(which.begin(), which.end(),
                          [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
         const std::size_t fitted = std::min(most, which.size());
-        in_groups(std::span(which).first(fitted), 2, [&](std::span<const std::size_t> some) {
+        in_groups(std::span(which).first(fitted), 4, [&](std::span<const std::size_t> some) {
             std::vector<candidate*> pair;
             for (const std::size_t i : some) pair.push_back(&models[i]);
             if (how == when_late::leave_out && over())
