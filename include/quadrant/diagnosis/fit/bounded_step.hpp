@@ -16,9 +16,9 @@ template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
     return size.asDiagonal() * even.ldlt().solve(size.asDiagonal() * b);
 }
 
-/// The step d that minimizes g'd + d'a d / 2 between `low` and `high`, by projection: a component that would leave its
-/// bounds is set on the bound, and the others are solved again beside it. To clamp the components of the free solution
-/// would leave the others where they belong beside values that nothing has any more.
+/// The step d that minimizes g'd + d'a d / 2 between `low` and `high`, by projection: a component that would
+/// leave its bounds is set on the bound, and the others are solved again beside it. To clamp the components of
+/// the free solution would leave the others where they belong beside values that nothing has any more.
 inline Eigen::VectorXd bounded_step(const Eigen::MatrixXd& a, const Eigen::VectorXd& g,
                                     const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
     const Eigen::Index n = g.size();
