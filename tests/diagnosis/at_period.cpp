@@ -11,7 +11,8 @@ TEST_CASE(
     constexpr std::size_t rows = 1000;
     constexpr double period = 0.005, other = 0.00507;
     const auto wave = [](double t, double phase) { return std::sin(6 * t + phase); };
-    axis_log axis{.name = "q"};
+    axis_log axis;
+    axis.name = "q";
     std::vector<std::vector<double>*> columns{
         &axis.reference, &axis.position, &axis.velocity,         &axis.duty,
         &axis.effort,    &axis.motor,    &axis.controller_reads, &axis.command};
@@ -21,7 +22,11 @@ TEST_CASE(
     axis.drive_off.assign(rows, 0);
     for (std::size_t k = 600; k < 800; ++k) axis.drive_off[k] = 1;
     axis.command_is = command_origin::measured;
-    machine_log log{.file = "log.csv", .sample_period_s = period, .samples = rows, .axes = {axis}};
+    machine_log log;
+    log.file = "log.csv";
+    log.sample_period_s = period;
+    log.samples = rows;
+    log.axes = {axis};
 
     const machine_log out = at_period(log, other);
     axis_log b = out.axes.front();
