@@ -23,8 +23,11 @@ struct rules {
     double abreast = 0;       ///< least share of the best way's gain at which another is followed beside it
     std::size_t threads = 0;  ///< 0: as many as there are cores; the result is the same
     std::size_t finalists =
-        4;                    ///< of each round are fitted to the end; the others showed little at a first look
-    int first_look = 2;       ///< steps from each start
+        4;              ///< of each round are fitted to the end; the others showed little at a first look
+    int first_look = 2; ///< steps from each start
+    /// Rows that these looks and finalists are for. A shorter record affords more of them in the same time, and
+    /// needs them: a few blocks tell little after a step or two.
+    std::size_t rows_of_a_look = 14000;
     bool near_rivals = false; ///< a cause's rivals are only those that gained something where it was found
     std::size_t forms = 4;    ///< of the forms without a name that are fitted to the end
     /// When the search ends with what it has; the names that it did not come to are told, and count against

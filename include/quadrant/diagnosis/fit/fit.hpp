@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "bounded_step.hpp"
 #include "quadratic.hpp"
 
-#include <Eigen/Dense>
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace quadrant::diagnosis {
-
-/// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so
-/// that no pivot depends on them.
-template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
-    const Eigen::VectorXd size =
-        a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-    const Eigen::MatrixXd even = size.asDiagonal() * a * size.asDiagonal();
-    return size.asDiagonal() * even.ldlt().solve(size.asDiagonal() * b);
-}
 
 /// One number of the plant model that a fit may move.
 struct parameter {
@@ -172,37 +163,14 @@ private:
             }
         const Eigen::MatrixXd curvature = a;
         for (Eigen::Index i = 0; i < n; ++i) a(i, i) *= 1 + damping;
-        // Projection: what would leave its bounds is set on the bound and the others are solved again.
-        std::vector<bool> fixed(static_cast<std::size_t>(n), false);
-        Eigen::VectorXd d = Eigen::VectorXd::Zero(n);
-        for (Eigen::Index round = 0; round <= n; ++round) {
-            std::vector<Eigen::Index> open;
-            for (Eigen::Index i = 0; i < n; ++i)
-                if (!fixed[static_cast<std::size_t>(i)]) open.push_back(i);
-            if (open.empty()) break;
-            Eigen::VectorXd rhs = -(g + a * (d - masked(d, open)));
-            const Eigen::MatrixXd sub = a(open, open);
-            const Eigen::VectorXd free = solved(sub, Eigen::VectorXd(rhs(open)));
-            bool clipped = false;
-            for (std::size_t j = 0; j < open.size(); ++j) {
-                const auto i = open[j];
-                const auto& q = p(r.parameters, i);
-                const double low = q.to_fit(q.low) - r.x[i], high = q.to_fit(q.high) - r.x[i];
-                d[i] = free[static_cast<Eigen::Index>(j)];
-                if (!(d[i] >= low && d[i] <= high)) {
-                    d[i] = std::clamp(std::isfinite(d[i]) ? d[i] : 0.0, low, high);
-                    fixed[static_cast<std::size_t>(i)] = clipped = true;
-                }
-            }
-            if (!clipped) break;
+        Eigen::VectorXd low(n), high(n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            low[i] = p(r.parameters, i).to_fit(p(r.parameters, i).low) - r.x[i];
+            high[i] = p(r.parameters, i).to_fit(p(r.parameters, i).high) - r.x[i];
         }
+        const Eigen::VectorXd d = bounded_step(a, g, low, high);
         gain = -(g.dot(d) + 0.5 * d.dot(curvature * d));
         return r.x + d;
-    }
-    static Eigen::VectorXd masked(const Eigen::VectorXd& d, const std::vector<Eigen::Index>& open) {
-        Eigen::VectorXd out = Eigen::VectorXd::Zero(d.size());
-        for (auto i : open) out[i] = d[i];
-        return out;
     }
     static void add(const block_quadratics& q, const channel& c, Eigen::MatrixXd& a, Eigen::VectorXd& g) {
         for (std::size_t b = 0; b < q.size(); ++b) {

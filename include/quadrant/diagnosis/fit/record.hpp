@@ -23,6 +23,9 @@ struct axis_record {
     /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the
     /// command is logged.
     std::vector<double> reaction{};
+    /// Where something was measured behind the drive: when within a row it and the position were read here, as
+    /// the described drive has it best, see driven_motion::with_timing() [s].
+    double reading_age = 0, tap_lateness = 0;
     predictor observer;
     scoring score{};
 };
@@ -233,6 +236,11 @@ inline axis_record for_machine(axis_record r, const axis_description& a, held_by
     const plant_model described(a, r.scale.give());
     if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
+    if (r.observer.drive && r.observer.drive->tapped()) {
+        const drive_model timed = r.observer.drive->with_timing(described.drive);
+        r.reading_age = timed.reading_age;
+        r.tap_lateness = timed.tap_lateness;
+    }
     if (r.observer.drive && !r.observer.drive->tapped()) {
         r.reaction = reaction_to_reading(described, *r.observer.drive);
         r.observer.drift_pole = drift_pole_of(described, r.period);

@@ -20,10 +20,15 @@ inline machine_log at_period(const machine_log& log, double period) {
     double error = 0;
     for (const axis_log& a : log.axes) {
         axis_log b = a;
-        for (std::vector<double>* x : {&b.reference, &b.position, &b.reference_velocity,
-                                       &b.reference_acceleration, &b.velocity, &b.other_acceleration})
+        for (std::vector<double>* x :
+             {&b.reference, &b.position, &b.reference_velocity, &b.reference_acceleration, &b.velocity,
+              &b.other_acceleration, &b.duty, &b.effort, &b.motor, &b.controller_reads})
             *x = smooth(*x);
-        b.command = a.command_is == command_origin::measured ? smooth(a.command) : rows.held(a.command);
+        if (a.command_is == command_origin::measured || a.command.empty())
+            b.command = smooth(a.command);
+        else
+            b.command = rows.held(a.command);
+        if (!a.drive_off.empty()) b.drive_off = rows.left_out(a.drive_off);
         if (!a.left_out.empty()) b.left_out = rows.left_out(a.left_out);
         error = std::max(error, rows.interpolation_error(a.position));
         out.axes.push_back(std::move(b));

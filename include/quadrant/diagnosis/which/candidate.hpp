@@ -77,7 +77,7 @@ inline double rarity(const std::vector<const effect*>& effects) {
 /// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by
 /// one Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each
 /// segment is scored once.
-inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd& prior_curvature) {
+inline void cross_validate(candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
     std::array<detail::fold_sum, folds> sums;
     detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
@@ -94,21 +94,27 @@ inline void cross_validate(candidate& c, const scoring& s, const Eigen::VectorXd
             c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
         }
     });
-    for (const auto& f : sums) all.a += f.a;
-    all.a.diagonal() += prior_curvature;
+    for (const auto& f : sums) {
+        all.a += f.a;
+        all.g += f.g;
+    }
+    Eigen::VectorXd low(n), high(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
+        const double x = c.fit.x[i];
+        low[i] = std::min(p.to_fit(p.low) - x, 0.0);
+        high[i] = std::max(p.to_fit(p.high) - x, 0.0);
+        if (!(p.spread > 0)) continue;
+        all.a(i, i) += 1 / (p.spread * p.spread);
+        all.g[i] += (x - p.expected) / (p.spread * p.spread);
+    }
     c.held_out.assign(s.segments, 0.0);
     c.leave.clear();
     std::array<Eigen::VectorXd, folds> step;
     for (std::size_t f = 0; f < folds; ++f) {
         Eigen::MatrixXd a = all.a - sums[f].a;
         a.diagonal() *= 1 + 1e-9;
-        step[f] = n > 0 ? solved(a, sums[f].g) : Eigen::VectorXd(0);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
-            const double x = c.fit.x[i], low = p.to_fit(p.low) - x, high = p.to_fit(p.high) - x;
-            step[f][i] =
-                std::isfinite(step[f][i]) ? std::clamp(step[f][i], std::min(low, 0.0), std::max(high, 0.0)) : 0;
-        }
+        step[f] = bounded_step(a, all.g - sums[f].g, low, high);
         c.leave.push_back(c.fit.x + step[f]);
     }
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
@@ -178,11 +184,7 @@ private:
 /// later: a diagnosis remembers hundreds of models.
 inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
-    Eigen::VectorXd curvature = Eigen::VectorXd::Zero(c.fit.x.size());
-    for (Eigen::Index i = 0; i < curvature.size(); ++i)
-        if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0)
-            curvature[i] = 1 / (p.spread * p.spread);
-    cross_validate(c, record.score, curvature);
+    cross_validate(c, record.score);
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
     c.fit.innovation = {};

@@ -69,9 +69,14 @@ inline bool contains(const candidate& model, const candidate& other, const effec
 inline double between(double before, double after) {
     return std::sqrt(std::max(std::numeric_limits<double>::min(), square(before) - square(after)));
 }
-/// What the cause number `which` explains, in force on held-out motion.
+/// What the cause number `which` explains, in force on held-out motion. Where the model without it stops at the
+/// end of a tolerance, calibration bent as far as it may to what the cause does, and hides some of it: there it
+/// is what the best model leaves when the cause's own numbers go back to what is described.
 inline double explained_by(const axis_case& c, std::size_t which) {
-    return between(c.models.held_out_force(c.path[which]), c.models.held_out_force(c.best()));
+    const double after = c.models.held_out_force(c.best());
+    const double found = between(c.models.held_out_force(c.path[which]), after);
+    if (!c.path[which].stops_at_a_tolerance()) return found;
+    return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
 /// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each
 /// other suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no
@@ -106,25 +111,45 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
 
     const double energy = square(c.models.held_out_force(c.best()));
     const double unexplained = c.settled ? 0 : std::max(0.0, energy - square(c.floor_force()));
-    double sum = 0;
+    const double there = c.second ? square(c.second_log(c.best()).force) : 0;
+    const double unexplained_there = there - square(c.floor_force());
+    const auto excess_on_second = [&](const candidate& m) {
+        if (!c.second || !(unexplained_there > 0)) return 0.0;
+        return std::max(0.0, square(c.second_log(m).force) - there) / unexplained_there;
+    };
+    const auto excess_of_own = [&](const candidate& m) {
+        const double here = std::max(0.0, energy - square(c.models.held_out_force(m))) / unexplained;
+        if (!c.second || !(unexplained_there > 0)) return here;
+        return here + std::max(0.0, there - square(c.second_log(m).force)) / unexplained_there;
+    };
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
         // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
         // unexplained are not told apart by it, nor are two that are one model (docs/formats.md) while their
         // predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
+        // Not told apart: by neither log.
+        const double more = excess() / unexplained + excess_on_second(r.model);
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
-                            excess() < unexplained; // more flexible and no better: no second reading
+                            more < 1; // more flexible and no better: no second reading
         const bool equivalent = may_be_one(*r.name, *own) &&
                                 excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
-        if (within)
-            r.weight = std::max(r.weight, odds * std::exp(-excess() / unexplained) * out.front().weight);
+        if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
+        // Two names of one model whose difference is small beside what both leave: the commoner one is
+        // likelier, whichever was found first.
+        if (equivalent && within) {
+            const double commoner = r.name->prior.odds / own->prior.odds, less = excess_of_own(r.model);
+            r.weight = std::max(r.weight, commoner * std::exp(-more) * out.front().weight);
+            if (&r != &out.front())
+                out.front().weight = std::max(out.front().weight, std::exp(-less) / commoner * r.weight);
+        }
         r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
-        sum += r.weight;
     }
+    double sum = 0;
+    for (const auto& r : out) sum += r.weight;
     // A name that the search did not come to may be as good as the cause itself, as often as it is as common.
     double all = 0, missed = 0;
     for (const effect* e : c.models.suspects()) {
@@ -175,7 +200,10 @@ inline double against_others(const axis_case& c, const std::vector<rival>& names
     std::vector<const effect*> same;
     for (const rival& r : names)
         if (r.same || &r == &names.front()) same.push_back(r.name);
-    return 1 / (1 + std::exp((c.models.best_without(same) - c.best().total) / score_temperature));
+    return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(),
+                                                    [&](const candidate& m) { return c.worth(m); }) -
+                              c.worth(c.best())) /
+                             score_temperature));
 }
 
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even

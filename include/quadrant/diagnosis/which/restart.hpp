@@ -7,8 +7,8 @@ namespace quadrant::diagnosis {
 
 /// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle
 /// the other one begins is found again, everything else stays as fitted. Costs some forty passes, when there is
-/// a process at all. Of a drive, the force that its integral holds at the first row is found again, and what
-/// happened in the first record did not happen here.
+/// a process at all. Of a drive, the force that its integral holds at the first row and the moments at which
+/// its registers were read are found again, and what happened in the first record did not happen here.
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
     if (plant.drive.has_integral()) {
@@ -16,6 +16,12 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
         // What drifts says nothing of where it began.
         if (record.observer.drift_pole == 1)
             plant = fitter(record.observer, record.score).fit(plant, {start_of_drive(record.scale)}, 4).plant;
+    }
+    if (record.observer.drive && record.observer.drive->tapped()) {
+        plant.drive.reading_age = record.reading_age;
+        plant.drive.tap_lateness = record.tap_lateness;
+        const auto timing = timing_of_readings(plant.drive, record.period);
+        plant = fitter(record.observer, record.score).fit(plant, {timing.begin(), timing.end()}, 4).plant;
     }
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);

@@ -19,8 +19,8 @@ public:
            progress tell)
         : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
         given_.fit.plant = plant_model(axis, record.scale.give());
-        if (record.observer.drive && record.observer.drive->tapped())
-            given_.fit.plant.drive = record.observer.drive->with_timing(given_.fit.plant.drive);
+        given_.fit.plant.drive.reading_age = record.reading_age;
+        given_.fit.plant.drive.tap_lateness = record.tap_lateness;
         given_.fit.parameters = {};
         given_.fit.x = Eigen::VectorXd(0);
         const fitter fit(record.observer, record.score);
@@ -71,6 +71,20 @@ public:
         return **c.held_out_force;
     }
 
+    /// Rms of the residual force of a model with the numbers of one of its effects back as described, all
+    /// others kept [N].
+    double force_without(const candidate& whole, const effect& e) const {
+        candidate c;
+        c.fit.plant = whole.fit.plant;
+        plant_model described = given_.fit.plant;
+        const auto values = e.read(described);
+        for (const parameter& p : whole.fit.parameters)
+            if (!(p.spread > 0) &&
+                std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; }))
+                p.of(c.fit.plant) = p.of(described);
+        return rms(residual(c));
+    }
+
     /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end,
     /// the others scored as they stand. What was tried is kept: the same set of effects is not fitted twice.
     std::vector<candidate> with_each(const candidate& from) const { return with_each(from, suspects()); }
@@ -84,7 +98,7 @@ public:
             out.push_back(known ? *known : joined(from, e));
         }
         sketch_each(from, rank, out, when_late::leave_out);
-        finish_best(rank, rules_.finalists, out, when_late::leave_out);
+        finish_best(rank, rules_.finalists * effort(), out, when_late::leave_out);
         for (std::size_t i : rank) {
             if (out[i].missed) {
                 missed_.insert(out[i].effects.back());
@@ -400,9 +414,25 @@ public:
         return path;
     }
 
-    /// Score of the best model that was tried and has none of these effects, nor one that holds one of them.
-    /// Forms without a name hold too much to count.
-    double best_without(const std::vector<const effect*>& names) const {
+    /// Of `known` and the models that were tried and score at least `least`, the one that is worth the most, by
+    /// more than the margin if it is another one.
+    template <class Worth>
+    candidate most_worth(const candidate& known, double least, const Worth& worth) const {
+        const candidate* best = &known;
+        double most = worth(known) + rules_.margin;
+        for (const candidate& c : tried_)
+            if (std::isfinite(c.total) && c.total > least && !same(c, known) && pays(c, calibrated_))
+                if (const double w = worth(c); w > most) {
+                    most = w;
+                    best = &c;
+                }
+        return *best;
+    }
+    /// The most that a model is worth that was tried and has none of these effects, nor one that holds one of
+    /// them. Forms without a name hold too much to count, and so little does a model whose score is below
+    /// `least`.
+    template <class Worth>
+    double best_without(const std::vector<const effect*>& names, double least, const Worth& worth) const {
         const auto has_one = [&](const candidate& c) {
             return std::any_of(names.begin(), names.end(), [&](const effect* e) {
                 return std::any_of(c.effects.begin(), c.effects.end(), [&](const effect* in) {
@@ -410,9 +440,9 @@ public:
                 });
             });
         };
-        double out = calibrated_.total;
+        double out = worth(calibrated_);
         for (const candidate& c : tried_)
-            if (!has_one(c) && std::isfinite(c.total)) out = std::max(out, c.total);
+            if (!has_one(c) && std::isfinite(c.total) && c.total > least) out = std::max(out, worth(c));
         return out;
     }
 
@@ -490,6 +520,20 @@ private:
                 std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
         }
         fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
+    }
+    /// How many times the looks and finalists of a long record this one affords.
+    std::size_t effort() const {
+        return std::max<std::size_t>(1,
+                                     rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
+    }
+    /// A model with the numbers of the machine file as they are described. Where calibration stops at the end
+    /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there.
+    static candidate as_described(candidate c) {
+        for (std::size_t i = 0; i < c.fit.parameters.size(); ++i)
+            if (const parameter& p = c.fit.parameters[i]; p.spread > 0 && !is_of_record(p))
+                c.fit.x[static_cast<Eigen::Index>(i)] = p.expected;
+        fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
+        return c;
     }
     /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
@@ -572,11 +616,17 @@ private:
     void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
                      std::vector<candidate>& models, when_late how) const {
         if (which.empty()) return;
-        const auto left = residual_behind_drive(from);
         const fitter fit(record_.observer, record_.score);
-        fit_result here = from.fit;
-        const auto slopes = fit.slopes(here);
-        const screening look{axis_.plant, axis_.tolerance, record_, from.fit.plant, left, here.innovation.rows};
+        std::vector<candidate> origins{from};
+        if (from.stops_at_a_tolerance()) origins.push_back(as_described(from));
+        std::vector<std::vector<double>> left, innovation;
+        std::vector<shared_slopes> slopes;
+        for (const candidate& origin : origins) {
+            fit_result here = origin.fit;
+            slopes.push_back(fit.slopes(here));
+            left.push_back(residual_behind_drive(origin));
+            innovation.push_back(std::move(here.innovation.rows));
+        }
         in_groups(which, 4, [&](std::span<const std::size_t> some) {
             const bool late = how == when_late::leave_out && over();
             for (const std::size_t i : some) {
@@ -586,16 +636,23 @@ private:
             if (late) return;
             std::vector<first_look> looks;
             std::vector<fit_course> courses;
-            for (const std::size_t i : some) {
-                looks.emplace_back(fit, from, *models[i].effects.back(), look, slopes, rules_.first_look);
-                std::move(looks.back().courses().begin(), looks.back().courses().end(),
-                          std::back_inserter(courses));
-            }
+            for (const std::size_t i : some)
+                for (std::size_t j = 0; j < origins.size(); ++j) {
+                    const screening look{axis_.plant,          axis_.tolerance, record_,
+                                         origins[j].fit.plant, left[j],         innovation[j]};
+                    looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
+                                       rules_.first_look *
+                                           static_cast<int>(std::min<std::size_t>(effort(), 4)));
+                    std::move(looks.back().courses().begin(), looks.back().courses().end(),
+                              std::back_inserter(courses));
+                }
             fit.run(std::span(courses));
             auto next = courses.begin();
-            for (std::size_t j = 0; j < some.size(); ++j) {
+            for (std::size_t j = 0; j < looks.size(); ++j) {
                 for (fit_course& c : looks[j].courses()) c = std::move(*next++);
-                models[some[j]].fit = looks[j].best();
+                fit_result best = looks[j].best();
+                fit_result& kept = models[some[j / origins.size()]].fit;
+                if (j % origins.size() == 0 || best.objective < kept.objective) kept = std::move(best);
             }
         });
     }
