@@ -51,7 +51,7 @@ inline std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
             continue;
         }
         // Beside the other name something else was no longer needed, and the whole explains less.
-        if (way.back().effects.size() < c.best().effects.size() &&
+        if ((!c.record.replayed() || way.back().effects.size() < c.best().effects.size()) &&
             c.worth(way.back()) + c.limits.margin < c.worth(c.best()))
             continue;
         --left;

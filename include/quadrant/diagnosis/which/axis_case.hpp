@@ -42,7 +42,7 @@ public:
                 in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second), axis, how);
         count_unnamed = coarse() && is_excluded("encoder_quantization");
         follow(models.run());
-        if (!second || best().effects.empty()) return;
+        if (!second || !record.replayed() || best().effects.empty()) return;
         const auto worth_of = [&](const candidate& m) { return worth(m); };
         if (auto more = models.most_worth(best(), least_score(), worth_of); !search::same(more, best()))
             follow(models.path_to(more));
@@ -148,9 +148,14 @@ public:
         return out;
     }
     /// What a model is worth on motion that it was not fitted to: of this log, and of the hold-out log.
-    double worth(const candidate& m) const { return m.total + (second ? second_log(m).score : 0); }
+    double worth(const candidate& m) const {
+        return m.total + (second && record.replayed() ? second_log(m).score : 0);
+    }
     /// Score on this log below which a model counts little beside the best, whatever the hold-out log says.
-    double least_score() const { return best().total - 5 * score_temperature; }
+    double least_score() const {
+        return record.replayed() ? best().total - 5 * score_temperature
+                                 : -std::numeric_limits<double>::infinity();
+    }
     bool controller_differs() const { return controller && controller->differs; }
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }

@@ -77,7 +77,7 @@ inline double rarity(const std::vector<const effect*>& effects) {
 /// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by
 /// one Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each
 /// segment is scored once.
-inline void cross_validate(candidate& c, const scoring& s) {
+inline void cross_validate(candidate& c, const scoring& s, bool replayed) {
     const auto n = c.fit.x.size();
     std::array<detail::fold_sum, folds> sums;
     detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
@@ -114,7 +114,13 @@ inline void cross_validate(candidate& c, const scoring& s) {
     for (std::size_t f = 0; f < folds; ++f) {
         Eigen::MatrixXd a = all.a - sums[f].a;
         a.diagonal() *= 1 + 1e-9;
-        step[f] = bounded_step(a, all.g - sums[f].g, low, high);
+        if (replayed)
+            step[f] = bounded_step(a, all.g - sums[f].g, low, high);
+        else // at the optimum, where nothing presses against a bound
+            step[f] = solved(a, Eigen::VectorXd(sums[f].g))
+                          .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
+                          .cwiseMax(low)
+                          .cwiseMin(high);
         c.leave.push_back(c.fit.x + step[f]);
     }
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
@@ -184,7 +190,7 @@ private:
 /// later: a diagnosis remembers hundreds of models.
 inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
-    cross_validate(c, record.score);
+    cross_validate(c, record.score, record.replayed());
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
     c.fit.innovation = {};

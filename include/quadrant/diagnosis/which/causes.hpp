@@ -75,7 +75,7 @@ inline double between(double before, double after) {
 inline double explained_by(const axis_case& c, std::size_t which) {
     const double after = c.models.held_out_force(c.best());
     const double found = between(c.models.held_out_force(c.path[which]), after);
-    if (!c.path[which].stops_at_a_tolerance()) return found;
+    if (!c.record.replayed() || !c.path[which].stops_at_a_tolerance()) return found;
     return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
 /// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each
@@ -114,7 +114,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const double there = c.second ? square(c.second_log(c.best()).force) : 0;
     const double unexplained_there = there - square(c.floor_force());
     const auto excess_on_second = [&](const candidate& m) {
-        if (!c.second || !(unexplained_there > 0)) return 0.0;
+        if (!c.second || !c.record.replayed() || !(unexplained_there > 0)) return 0.0;
         return std::max(0.0, square(c.second_log(m).force) - there) / unexplained_there;
     };
     const auto excess_of_own = [&](const candidate& m) {
@@ -140,7 +140,7 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
         // Two names of one model whose difference is small beside what both leave: the commoner one is
         // likelier, whichever was found first.
-        if (equivalent && within) {
+        if (equivalent && within && c.record.replayed()) {
             const double commoner = r.name->prior.odds / own->prior.odds, less = excess_of_own(r.model);
             r.weight = std::max(r.weight, commoner * std::exp(-more) * out.front().weight);
             if (&r != &out.front())

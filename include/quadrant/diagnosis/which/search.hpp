@@ -523,6 +523,7 @@ private:
     }
     /// How many times the looks and finalists of a long record this one affords.
     std::size_t effort() const {
+        if (!record_.replayed()) return 1;
         return std::max<std::size_t>(1,
                                      rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
     }
@@ -618,7 +619,7 @@ private:
         if (which.empty()) return;
         const fitter fit(record_.observer, record_.score);
         std::vector<candidate> origins{from};
-        if (from.stops_at_a_tolerance()) origins.push_back(as_described(from));
+        if (record_.replayed() && from.stops_at_a_tolerance()) origins.push_back(as_described(from));
         std::vector<std::vector<double>> left, innovation;
         std::vector<shared_slopes> slopes;
         for (const candidate& origin : origins) {
