@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// A light motor that creeps against a large cogging torque: models that stand still predict its readings well, and
-// contradict its motion.
+// A light motor that creeps against a large cogging torque: models that stand still predict its readings well,
+// and contradict its motion.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>

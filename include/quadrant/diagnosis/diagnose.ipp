@@ -280,10 +280,10 @@ inline axis_case& need_blocks(axis_case& c, const std::string& file) {
 inline double left_along_motion(const axis_case& c) {
     return c.beside_motion(c.best()) / c.beside_motion(c.path.front());
 }
-/// Whether an axis is looked at again with models led along its motion: structure is left, and what was found leaves
-/// more of the forces along that motion than was there before, whatever it does to the predictions. Beside forces
-/// without a name a corrected model predicts best by standing still. A play hides the motor's motion, and a drive's
-/// loops are replayed with the readings.
+/// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
+/// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
+/// Beside forces without a name a corrected model predicts best by standing still. A play hides the motor's
+/// motion, and a drive's loops are replayed with the readings.
 inline bool contradicts_motion(const axis_case& c) {
     if (c.at_floor() || c.best().effects.empty() || c.models.over() || c.axis.drive.closes() ||
         c.best().fit.plant.backlash > 0)

@@ -305,8 +305,8 @@ private:
 
     /// A gain beside the margins of the selection that is worth no pass [nats].
     static constexpr double hair = 0.1;
-    /// A step that promises less is not tried. Far below the hair: where the score is rough a step gains more than
-    /// its quadratics promise.
+    /// A step that promises less is not tried. Far below the hair: where the score is rough a step gains more
+    /// than its quadratics promise.
     static constexpr double least_promise = 1e-3;
 
     const fitter* fitter_;

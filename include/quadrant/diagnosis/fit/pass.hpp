@@ -186,8 +186,8 @@ template <class Real> void pass(const pass_input& in) {
 
 } // namespace detail
 
-/// What takes the time of a fit, compiled for one instruction set: the observer's pass for any number of plants,
-/// and products of the signals that come out of it.
+/// What takes the time of a fit, compiled for one instruction set: the observer's pass for any number of
+/// plants, and products of the signals that come out of it.
 struct pass_table {
     void (*one)(const pass_input&);
     void (*two)(const pass_input&);

@@ -56,8 +56,9 @@ struct predictor {
     const driven_motion* drive =
         nullptr; ///< of a drive with loops of its own; null: `command` is the actuator's
     /// Null: the plant is corrected by the readings. Else it is led along this motion, and the innovations are
-    /// those that the forces which this motion does not need would make of a free mass. An observer lets a model
-    /// stand, or creep behind a stiff damping, where a light machine moves slowly under forces that the model
+    /// those that the forces which this motion does not need would make of a free mass. An observer lets a
+    /// model stand, or creep behind a stiff damping, where a light machine moves slowly under forces that the
+    /// model
     /// does not have: the corrections carry it, and little shows in them. No state of a led plant takes part.
     std::shared_ptr<const led_motion> led{};
     double drift_pole =

@@ -29,9 +29,11 @@ struct axis_record {
     predictor observer;
     scoring score{};
 
-    /// Whether the force is what a drive's replay makes of the logged motion. Its gains have tolerances in one ratio,
+    /// Whether the force is what a drive's replay makes of the logged motion. Its gains have tolerances in one
+    /// ratio,
     /// which a fit bends together to what a missing effect does: such a record is searched from the described
-    /// numbers, too, with more looks where it is short, and its hold-out log has a say in the search. For logged
+    /// numbers, too, with more looks where it is short, and its hold-out log has a say in the search. For
+    /// logged
     /// commands these did not prove better: on records whose rest has no name they lost names that are known.
     bool replayed() const { return observer.drive != nullptr; }
 };

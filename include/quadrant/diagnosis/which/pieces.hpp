@@ -6,9 +6,9 @@
 namespace quadrant::diagnosis {
 
 /// A record of one motion, or a replayed one of fewer motions than there are folds, cut into as many pieces as
-/// folds, of whole blocks: a model is then tested on the piece that it was not fitted to, as it is on a motion of a
-/// longer record. To leave one of two motions out would leave half of the record to find the parameters from.
-/// Other records stay as they are. `motions`: how many the record holds.
+/// folds, of whole blocks: a model is then tested on the piece that it was not fitted to, as it is on a motion
+/// of a longer record. To leave one of two motions out would leave half of the record to find the parameters
+/// from. Other records stay as they are. `motions`: how many the record holds.
 inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     motions = r.segments;
     const auto& first = r.score.channels.front().first_of_block;
