@@ -115,7 +115,7 @@ TEST_CASE("reversal: from 0 to 120 N the glitch falls with every step of the fee
 TEST_CASE("reversal: a feedforward twice too large is worse than none; one of the wrong sign is refused") {
     CHECK(sinusoid(300, 100).near > sinusoid(0, 100).near);
     CHECK_THROWS_WITH_AS(sinusoid(-145, 100),
-                         "coulomb_viscous.coulomb = -0.1 N: must be finite and not below 0", invalid_parameter);
+                         "coulomb_viscous.coulomb = -0.1 V: must be finite and not below 0", invalid_parameter);
 }
 TEST_CASE("reversal: it is the friction: without it nothing stands out after a reversal") {
     auto smooth = x_axis();
