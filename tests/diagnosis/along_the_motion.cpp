@@ -74,16 +74,71 @@ machine_log record() {
 
 } // namespace
 
+namespace {
+
+/// The record, ready for fits, and the machine file's plant. Not to be copied: the record refers to the log.
+struct prepared {
+    machine_description machine = motor();
+    machine_log log = record();
+    std::size_t motions = 0;
+    axis_record r = ready();
+    plant_model given{machine.axes.front(), r.scale.give()};
+
+    prepared() = default;
+    prepared(const prepared&) = delete;
+    axis_record ready() {
+        const auto& axis = machine.axes.front();
+        const auto& l = log.axes.front();
+        return for_machine(
+            in_pieces(prepare(l, period, count, scales_of(axis.plant, l, period, count)), motions), axis);
+    }
+    /// As the record was made.
+    plant_model right() const {
+        plant_model out = given;
+        out.friction.coulomb = coulomb;
+        out.friction.viscous_slope = 0.002;
+        out.cogging = harmonics(2 * 3.14159265358979 / 7, std::vector{-cogging, -0.15}, std::vector{0.6, 1.1});
+        return out;
+    }
+};
+double mean_of_counted(const std::vector<double>& x, const led_motion& by) {
+    double sum = 0, rows = 0;
+    for (std::size_t k = 500; k < x.size(); ++k) // behind the swing
+        if (by.counts[k]) {
+            sum += x[k];
+            ++rows;
+        }
+    return sum / rows;
+}
+
+} // namespace
+
+TEST_CASE("along the motion: a force too much is found with its size and its sign") {
+    const prepared made;
+    const auto by = motion_to_lead(made.r, made.given);
+    axis_record r = made.r;
+    r.observer.led = by;
+    constexpr double too_much = 0.1;
+    plant_model pushed = made.right();
+    pushed.constant_force += too_much;
+    std::vector<double> e, e_right, a, a_right;
+    r.observer.run(pushed, e, &a);
+    r.observer.run(made.right(), e_right, &a_right);
+    const double force = mean_of_counted(residual_of(r, pushed, a), *by) -
+                         mean_of_counted(residual_of(r, made.right(), a_right), *by);
+    CHECK(force ==
+          doctest::Approx(too_much).epsilon(0.05)); // what the model pushes and the machine did not follow
+    const double far = 1 - r.observer.pole();       // e = d T^2/(M (1 - z)^2), see predictor
+    const double ahead = mean_of_counted(e, *by) - mean_of_counted(e_right, *by);
+    CHECK(ahead == doctest::Approx(-too_much * period * period / (inertia * far * far)).epsilon(0.05));
+}
+
 TEST_CASE(
     "along the motion: a friction that would hold the axis shows whole, which hardly shows in the readings") {
-    const auto machine = motor();
-    const auto log = record();
-    axis_description axis = machine.axes.front();
-    std::size_t motions = 0;
-    const auto& l = log.axes.front();
-    const axis_record r = for_machine(
-        in_pieces(prepare(l, period, count, scales_of(axis.plant, l, period, count)), motions), axis);
-    const auto led = motion_to_lead(r, plant_model(axis, r.scale.give()));
+    const prepared made;
+    const axis_record& r = made.r;
+    const plant_model &given = made.given, right = made.right();
+    const auto led = motion_to_lead(r, given);
     const auto left = [&](const plant_model& p) {
         std::vector<double> force;
         r.observer.forces_beside(*led, {&p, 1}, r.command, {&force, 1});
@@ -94,11 +149,7 @@ TEST_CASE(
         r.observer.run(p, e);
         return rms(std::span(e).subspan(500));
     };
-    const plant_model given(axis, r.scale.give());
-    plant_model right = given, stands = given;
-    right.friction.coulomb = coulomb;
-    right.friction.viscous_slope = 0.002;
-    right.cogging = harmonics(2 * 3.14159265358979 / 7, std::vector{-cogging, -0.15}, std::vector{0.6, 1.1});
+    plant_model stands = given;
     stands.friction.coulomb = 2;
     CHECK(corrected(stands) < 0.2 * corrected(given)); // it predicts, because it does not move
     CHECK(left(stands) > 2 * left(given));             // and needs two newton metres to be moved

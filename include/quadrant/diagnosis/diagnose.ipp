@@ -13,6 +13,8 @@
 #include "which/calibrated.hpp"
 #include "which/causes.hpp"
 
+#include <memory>
+
 namespace quadrant::diagnosis {
 
 namespace detail {
@@ -276,10 +278,6 @@ inline axis_case& need_blocks(axis_case& c, const std::string& file) {
     return c;
 }
 
-/// What a case leaves of the forces along the motion, over what the calibrated machine leaves there.
-inline double left_along_motion(const axis_case& c) {
-    return c.beside_motion(c.best()) / c.beside_motion(c.path.front());
-}
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
 /// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
 /// Beside forces without a name a corrected model predicts best by standing still. A play hides the motor's
@@ -288,7 +286,7 @@ inline bool contradicts_motion(const axis_case& c) {
     if (c.at_floor() || c.best().effects.empty() || c.models.over() || c.axis.drive.closes() ||
         c.best().fit.plant.backlash > 0)
         return false;
-    return left_along_motion(c) > 1 / (1 - c.limits.least_shrink);
+    return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
 }
 
 /// Effects of the caller's own have names of their own.
@@ -376,7 +374,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         if (detail::contradicts_motion(*found)) {
             tell("axis " + axis.name + ": again, along the measured motion");
             auto led = look(held_by::motion);
-            if (detail::left_along_motion(*led) < 1 - r.least_shrink) {
+            if (led->left_along_motion() < 1 - r.least_shrink) {
                 found = std::move(led);
                 out.notes.push_back(fmt::format(
                     "axis {}: judged by the forces along the measured motion: models corrected by the readings "

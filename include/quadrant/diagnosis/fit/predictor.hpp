@@ -20,6 +20,17 @@ const pass_table& passes();
 inline const pass_table& passes() { return passes_of<>; }
 #endif
 
+/// Second difference of a reading around each row, without what a plant's encoder adds to it, over the square
+/// of the period [m/s^2]; 0 at both ends.
+inline std::vector<double> acceleration_of(const plant_model& plant, std::span<const double> position,
+                                           double period) {
+    std::vector<double> out(position.size(), 0.0);
+    const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
+    for (std::size_t k = 1; k + 1 < position.size(); ++k)
+        out[k] = (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
+    return out;
+}
+
 /// A motion that plants are led along instead of being corrected by its readings: what an expert's regression
 /// does.
 struct led_motion {
@@ -98,7 +109,7 @@ struct predictor {
     }
 
     /// What the forces on each plant leave when it is led along a motion, in units of the command times the
-    /// described force constant [N]; 0 where that motion does not count.
+    /// described force constant [N]; 0 where that motion does not count. At most `abreast` plants.
     void forces_beside(const led_motion& by, std::span<const plant_model> plants, std::span<const double> u,
                        std::span<std::vector<double>> left) const {
         constexpr double heavier = 1e4; // so heavy that no force moves it beside the way
@@ -110,7 +121,7 @@ struct predictor {
                          led_base = heavier * p.moving_mass() - p.mode.mass;
             for (double& x : left[i]) x *= led_base;
             left[i] = zero_phase(left[i], corner_Hz, period);
-            const auto at = [&](std::size_t k) { return by.way[k] - p.cyclic.at(by.way[k]); };
+            const auto needed = acceleration_of(p, by.way, period);
             // Force that one volt more would make: a weak motor, or friction that takes its share, explains
             // nothing by making all forces small.
             const auto a_volt = [&](std::size_t k) {
@@ -124,8 +135,7 @@ struct predictor {
                     left[i][k] = 0;
                     continue;
                 }
-                const double needed = base * (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
-                left[i][k] = by.force_constant / a_volt(k) * (left[i][k] - needed);
+                left[i][k] = by.force_constant / a_volt(k) * (left[i][k] - base * needed[k]);
             }
         }
     }
@@ -167,11 +177,9 @@ private:
                 v += period * a;
             }
             if (!acceleration) continue;
-            const auto at = [&](std::size_t k) { return position[k] - plants[i].cyclic.at(position[k]); };
-            acceleration[i].assign(position.size(), 0.0);
+            acceleration[i] = acceleration_of(plants[i], position, period);
             for (std::size_t k = 1; k + 1 < position.size(); ++k)
-                acceleration[i][k] =
-                    left[i][k] / plants[i].mass + (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
+                acceleration[i][k] += left[i][k] / plants[i].mass;
         }
     }
     std::size_t whole_periods(double delay) const {

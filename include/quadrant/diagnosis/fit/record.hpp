@@ -71,10 +71,8 @@ inline std::vector<double> residual_force(const plant_model& plant, std::span<co
                                           std::span<const double> model_acceleration, double period,
                                           double bandwidth_Hz, std::span<const unsigned char> left_out = {}) {
     const std::size_t n = position.size();
-    std::vector<double> raw(n, 0.0);
-    const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
-    for (std::size_t k = 1; k + 1 < n; ++k)
-        raw[k] = plant.mass * (model_acceleration[k] - (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period));
+    auto raw = acceleration_of(plant, position, period);
+    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = plant.mass * (model_acceleration[k] - raw[k]);
     for (std::size_t k = 0; k < left_out.size(); ++k)
         if (left_out[k]) raw[k] = 0;
     return zero_phase(raw, bandwidth_Hz, period);

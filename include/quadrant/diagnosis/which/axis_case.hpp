@@ -7,6 +7,7 @@
 #include "restart.hpp"
 #include "search.hpp"
 
+#include <array>
 #include <optional>
 
 namespace quadrant::diagnosis {
@@ -105,16 +106,14 @@ public:
         const candidate& m = applied();
         return claims > 0 && models.settled(m) && models.near_its_laws(m);
     }
-    /// What a model's forces leave along the measured motion, rms where the axis moves [N]. The same of a model
-    /// that was fitted to the readings and of one that was led.
-    double beside_motion(const candidate& m) const {
-        const plant_model described(axis, record.scale.give());
-        const auto by = motion_to_lead(record, described);
-        std::vector<double> left;
-        record.observer.forces_beside(*by, {&m.fit.plant, 1}, record.command, {&left, 1});
-        const auto rows = std::count(by->counts.begin(), by->counts.end(), 1);
-        return rows > 0 ? rms(left) * std::sqrt(static_cast<double>(left.size()) / static_cast<double>(rows))
-                        : 0;
+    /// What the best model's forces leave along the measured motion, over what those of the calibrated machine
+    /// leave there. The same measure for a model that was fitted to the readings and for one that was led.
+    double left_along_motion() const {
+        const std::array plants{best().fit.plant, path.front().fit.plant};
+        std::array<std::vector<double>, 2> left;
+        const auto by = motion_to_lead(record, plant_model(axis, record.scale.give()));
+        record.observer.forces_beside(*by, plants, record.command, left);
+        return rms(left[0]) / rms(left[1]);
     }
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const {
