@@ -369,7 +369,10 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             return std::make_unique<axis_case>(rigid, coupled, other ? &*other : nullptr,
                                                machine.sample_period_s, excluded, limits, tell, how);
         };
-        auto found = look(held_by::readings);
+        // A servo's law on duty is soft, and a force moves it where it shows. A stiff loop hides it from the
+        // path.
+        const bool soft = axis.drive.kind == drive_kind::position_servo && logged->drive;
+        auto found = look(soft ? held_by::loop : held_by::readings);
         detail::need_blocks(*found, log.file);
         if (detail::contradicts_motion(*found)) {
             tell("axis " + axis.name + ": again, along the measured motion");

@@ -109,7 +109,7 @@ public:
         if (!std::isfinite(r.objective)) r.objective = std::numeric_limits<double>::infinity();
     }
 
-    double prior(const fit_result& r) const {
+    static double prior(const fit_result& r) {
         double sum = 0;
         for (Eigen::Index i = 0; i < r.x.size(); ++i)
             if (const auto& q = p(r.parameters, i); q.spread > 0)

@@ -2,6 +2,7 @@
 #pragma once
 #include "../../base/lanes.hpp"
 #include "../model/plant_axis.hpp"
+#include "closed_pass.hpp"
 #include "products.hpp"
 
 #include <vector>
@@ -194,12 +195,15 @@ struct pass_table {
     void (*four)(const pass_input&);
     void (*more)(const pass_input&);
     void (*products)(const products_input&);
+    void (*closed)(const closed_input&);
 };
 template <class Isa = isa::here>
-inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>, &detail::pass<lanes<2, Isa>>,
+inline constexpr pass_table passes_of{&detail::pass<lanes<1, Isa>>,
+                                      &detail::pass<lanes<2, Isa>>,
                                       &detail::pass<lanes<detail::register_width<Isa, 4>, Isa>>,
                                       &detail::pass<lanes<detail::register_width<Isa>, Isa>>,
-                                      &detail::products<lanes<detail::register_width<Isa>, Isa>>};
+                                      &detail::products<lanes<detail::register_width<Isa>, Isa>>,
+                                      &detail::closed_pass<lanes<detail::register_width<Isa>, Isa>>};
 
 /// All plants of `in`.
 inline void pass_all(const pass_input& in, const pass_table& by) {

@@ -6,6 +6,7 @@
 #include "pass.hpp"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -72,6 +73,11 @@ struct predictor {
     /// model
     /// does not have: the corrections carry it, and little shows in them. No state of a led plant takes part.
     std::shared_ptr<const led_motion> led{};
+    /// None: a drive's law is replayed on the logged motion. Else its loops are closed on the plant, which
+    /// nothing corrects, and which starts at this velocity [m/s]: the innovations are what is between its path
+    /// and the logged one. For a drive that takes positions, where nothing drifts: a force that acts for long
+    /// shows in full, and the friction holds what it holds on the machine.
+    std::optional<double> closed{};
     double drift_pole =
         1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
@@ -182,6 +188,59 @@ private:
                 acceleration[i][k] += left[i][k] / plants[i].mass;
         }
     }
+    /// What each drive follows in each step of each row. Plants with one drive share it.
+    struct followed {
+        std::vector<double> set_point, its_velocity;
+    };
+    followed set_points_of(const drive_model& d, std::size_t steps) const {
+        followed out;
+        set_point_clock clock(d, drive->set_point, period);
+        const double scale = drive->in_volts ? d.velocity_per_V : 1;
+        const auto all = position.size() * steps;
+        out.set_point.reserve(all);
+        out.its_velocity.reserve(all);
+        for (std::size_t j = 0; j < all; ++j) {
+            const double begin = static_cast<double>(j) / static_cast<double>(steps);
+            const auto r = clock.between(begin, begin + 1 / static_cast<double>(steps));
+            out.set_point.push_back(scale * r.value);
+            out.its_velocity.push_back(r.velocity / period);
+        }
+        return out;
+    }
+    /// The logged path beside that of each plant with its drive's loops closed on it; accelerations as where
+    /// the readings correct it.
+    void pass_closed(std::span<const plant_model> plants, std::span<const double> u,
+                     std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
+        if (acceleration) pass(plants, u, innovation, acceleration, {position.data(), l1(), l2(), 1});
+        std::array<std::vector<double>, abreast> own;
+        std::array<const double*, abreast> command_of{};
+        for (auto& rows_of : innovation) rows_of.resize(rows());
+        if (drive->tapped()) drive_each(plants, own, command_of, innovation);
+        std::size_t steps = 1;
+        for (const plant_model& p : plants)
+            steps = std::max(steps, static_cast<std::size_t>(steps_of_drive(p, period)));
+        std::array<followed, abreast> follows;
+        std::array<closed_input::plant, abreast> each;
+        std::array<double*, abreast> e{};
+        for (std::size_t i = 0; i < plants.size(); ++i) {
+            std::size_t same = 0;
+            while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
+            if (same == i) follows[i] = set_points_of(plants[i].drive, steps);
+            each[i] = {axis_parameters(plants[i]), loops_of(plants[i].drive, drive->constant),
+                       follows[same].set_point.data(), follows[same].its_velocity.data()};
+            e[i] = innovation[i].data();
+        }
+        passes().closed({.period = period,
+                         .rows = position.size(),
+                         .steps = steps,
+                         .position = position.data(),
+                         .velocity = *closed,
+                         .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
+                         .off = drive->off.empty() ? nullptr : drive->off.data(),
+                         .plants = plants.size(),
+                         .plant_of = each.data(),
+                         .innovation = e.data()});
+    }
     std::size_t whole_periods(double delay) const {
         return static_cast<std::size_t>(std::max(0.0, delay) / period);
     }
@@ -236,6 +295,7 @@ private:
     void pass(std::span<const plant_model> plants, std::span<const double> u,
               std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
         if (led) return pass_led(plants, u, innovation, acceleration);
+        if (closed) return pass_closed(plants, u, innovation, acceleration);
         pass(plants, u, innovation, acceleration, {position.data(), l1(), l2(), 1});
         if (drift_pole < 1)
             for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);

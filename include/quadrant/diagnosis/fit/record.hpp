@@ -36,6 +36,8 @@ struct axis_record {
     /// logged
     /// commands these did not prove better: on records whose rest has no name they lost names that are known.
     bool replayed() const { return observer.drive != nullptr; }
+    /// Whether the drive's loops are closed on the model, so that its path is judged.
+    bool closed() const { return observer.closed.has_value(); }
 };
 
 /// Rows where one motion ends and the next begins: the velocity of the reference changes sign, starts or stops.
@@ -234,14 +236,57 @@ inline axis_record prepare(const axis_log& log, double period, double resolution
     return r;
 }
 
-/// How models are held to a record: corrected by its readings, or led along its motion.
-enum class held_by { readings, motion };
+/// How models are held to a record: corrected by its readings, led along its motion, or with the drive's loops
+/// closed on them and nothing but their path compared.
+enum class held_by { readings, motion, loop };
+
+/// Rows after which a signal has forgotten itself, for its mean square: sum of the squared correlation of its
+/// rows, up to where they are opposite for the first time.
+inline double rows_of_memory(std::span<const double> e) {
+    double all = 0;
+    for (double x : e) all += x * x;
+    double sum = 1;
+    for (std::size_t lag = 1; lag < e.size() / 2 && all > 0; ++lag) {
+        double product = 0;
+        for (std::size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
+        if (product <= 0) break;
+        sum += 2 * (product / all) * (product / all);
+    }
+    return sum;
+}
+
+/// One channel for the path of a closed loop: in blocks of five memories of what the described machine leaves,
+/// at most a fifth of the record, each worth as many readings as it has memories. What a corrected model leaves
+/// repeats itself from channel to channel; this does not, and counts in full.
+inline void judge_path(axis_record& r, const plant_model& described) {
+    std::vector<double> e;
+    r.observer.run(described, e);
+    const std::size_t rows = r.position.size();
+    const double memory = std::max(rows_of_memory(std::span(e).first(rows)), r.scale.block() / r.period);
+    auto& s = r.score;
+    channel path = s.channels.front();
+    path.mean = 1;
+    path.block =
+        std::clamp(static_cast<std::size_t>(5 * memory), s.block, std::max(s.block, (rows - s.skip) / 5));
+    path.nu = score_temperature * static_cast<double>(path.block) / memory;
+    path.noise_gain = path.rounding = 1;
+    path.floor = 0.4 * r.resolution;
+    path.first_of_block = lay_blocks(path.block, s.skip, r.left_out, rows);
+    path.segment_of_block.clear();
+    for (const std::size_t first : path.first_of_block)
+        path.segment_of_block.push_back(r.segment[first + path.block / 2]);
+    std::vector<channel> out{path};
+    for (const channel& c : s.channels) // and what was measured behind the drive
+        if (!c.first_of_block.empty() && c.first_of_block.front() >= rows) out.push_back(c);
+    s.channels = std::move(out);
+}
 
 /// The record with its observer stepping as finely as the described machine needs.
 inline axis_record for_machine(axis_record r, const axis_description& a, held_by how = held_by::readings) {
     const plant_model described(a, r.scale.give());
     if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
+    if (how == held_by::loop) r.observer.closed = r.velocity[0];
     if (r.observer.drive && r.observer.drive->tapped()) {
         const drive_model timed = r.observer.drive->with_timing(described.drive);
         r.reading_age = timed.reading_age;
@@ -259,6 +304,7 @@ inline axis_record for_machine(axis_record r, const axis_description& a, held_by
             c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
         }
     }
+    if (how == held_by::loop) judge_path(r, described);
     return r;
 }
 

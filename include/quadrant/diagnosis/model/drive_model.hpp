@@ -53,8 +53,6 @@ struct drive_model {
 
     bool operator==(const drive_model&) const = default;
     bool closes() const { return kind != drive_kind::current; }
-    /// Whether it is on at this time of the record [s].
-    bool is_on(double time) const { return time < off_from || time >= off_until; }
     /// Whether the velocity loop remembers a force that no row shows.
     bool has_integral() const {
         return (kind == drive_kind::velocity || kind == drive_kind::position) && velocity_integral > 0;

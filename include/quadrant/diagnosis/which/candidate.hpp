@@ -77,7 +77,7 @@ inline double rarity(const std::vector<const effect*>& effects) {
 /// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by
 /// one Newton step from the whole fit (the blocks are quadratic there), and the fold is scored with them. Each
 /// segment is scored once.
-inline void cross_validate(candidate& c, const scoring& s, bool replayed) {
+inline void cross_validate(candidate& c, const scoring& s, bool replayed, bool closed) {
     const auto n = c.fit.x.size();
     std::array<detail::fold_sum, folds> sums;
     detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
@@ -131,6 +131,7 @@ inline void cross_validate(candidate& c, const scoring& s, bool replayed) {
         }
     });
     c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
+    if (closed) c.penalty += fitter::prior(c.fit); // a machine far from its description has to be worth it
     c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }
@@ -190,7 +191,7 @@ private:
 /// later: a diagnosis remembers hundreds of models.
 inline void judge(const axis_record& record, candidate& c) {
     if (!std::isfinite(c.fit.objective)) return;
-    cross_validate(c, record.score, record.replayed());
+    cross_validate(c, record.score, record.replayed(), record.closed());
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
     c.fit.innovation = {};

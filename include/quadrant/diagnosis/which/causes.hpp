@@ -131,9 +131,9 @@ inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
         // Not told apart: by neither log.
         const double more = excess() / unexplained + excess_on_second(r.model);
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within = pays && leaner && !r.unlisted() && unexplained > 0 &&
+        const bool within = pays && leaner && !c.record.closed() && !r.unlisted() && unexplained > 0 &&
                             more < 1; // more flexible and no better: no second reading
-        const bool equivalent = may_be_one(*r.name, *own) &&
+        const bool equivalent = may_be_one(*r.name, *own) && !c.record.closed() &&
                                 excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
@@ -175,22 +175,56 @@ inline double doubtful_beside(const axis_case& c, double explained) {
     return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
 
+/// Mean square of what is between the path of a plant and that of a log, where its drive's loops are closed on
+/// it.
+inline double beside_path(const axis_record& r, const plant_model& plant) {
+    std::vector<double> e;
+    r.observer.run(plant, e);
+    double sum = 0, rows = 0;
+    for (std::size_t k = r.score.skip; k < r.position.size(); ++k)
+        if (r.left_out.empty() || !r.left_out[k]) {
+            sum += square(e[k]);
+            ++rows;
+        }
+    return rows > 0 ? sum / rows : 0;
+}
+/// What the best model leaves of both logs' paths beside what the cause number `which` explains of them.
+inline double left_of_paths(const axis_case& c, std::size_t which) {
+    const plant_model with = c.best().fit.plant,
+                      without = c.models.plant_without(c.best(), *c.best().effects[which]);
+    double left = beside_path(c.record, with), before = beside_path(c.record, without);
+    if (c.second) {
+        left += beside_path(*c.second, restarted(with, *c.second));
+        before += beside_path(*c.second, restarted(without, *c.second));
+    }
+    return std::sqrt(left) / between(std::sqrt(before), std::sqrt(left));
+}
+
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or
 /// there; on the hold-out log, where a gap stays open there, beside what it explains here and there. A name
 /// that makes that one worse was not the cause there.
 inline double unknown(const axis_case& c, std::size_t which) {
     const std::size_t names = c.models.suspects().size();
-    if (!c.second) return by_chance(names, doubtful_beside(c, explained_by(c, which)));
+    if (!c.second)
+        return by_chance(names, c.record.closed() ? left_of_paths(c, which)
+                                                  : doubtful_beside(c, explained_by(c, which)));
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
+    const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
+    const auto with_gain = [&](double out) { return 1 / (1 + (1 - out) / out * std::exp(gain)); };
+    // What predicts another motion worse than the machine file does is no cause of both.
+    constexpr double doubt = 0.6;
+    if (c.record.closed() && beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
+                                 beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
+        return doubt;
+    if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_paths(c, which)));
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
     const double here = explained_by(c, which), there = between(std::min(before.force, machine), after.force);
     double out = by_chance(names, doubtful_beside(c, std::max(here, there)));
     if (!c.settled_on_second) // the motion there may show it less, but not nothing of it beside an open gap
         out = std::max(out, by_chance(names, between(after.force, c.floor_force()) / std::sqrt(here * there)));
-    const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
-    return 1 / (1 + (1 - out) / out * std::exp(gain));
+    return with_gain(out);
 }
 
 /// The probability of the models that have the cause or one of its other names, against the best one tried that
@@ -266,7 +300,9 @@ inline void widen(std::vector<parameter_estimate>& mine, const std::vector<param
 /// these gains that they are fitted outside a narrow tolerance by what a law is wrong by: such a value is a
 /// suspect, no claim.
 inline bool may_be_inside_its_tolerance(const axis_case& c, const std::vector<parameter_estimate>& found) {
-    if (!c.axis.drive.closes() || found.empty() || !found.front().key.starts_with("drive.")) return false;
+    if (!c.axis.drive.closes() || c.record.closed() || found.empty() ||
+        !found.front().key.starts_with("drive."))
+        return false;
     for (const parameter& p : c.path.front().fit.parameters)
         if (p.key == found.front().key && p.spread > 0) {
             const estimate& e = found.front().values.front();

@@ -29,6 +29,8 @@ public:
         candidate start;
         start.fit.plant = given_.fit.plant;
         start.fit.parameters = calibration(axis, record.scale.give());
+        if (record.closed()) // in the unit of a score that counts in full
+            for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(score_temperature);
         if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
         if (record.observer.drive && record.observer.drive->tapped())
             for (parameter& p : timing_of_readings(start.fit.plant.drive, record.period))
@@ -75,14 +77,18 @@ public:
     /// others kept [N].
     double force_without(const candidate& whole, const effect& e) const {
         candidate c;
-        c.fit.plant = whole.fit.plant;
-        plant_model described = given_.fit.plant;
-        const auto values = e.read(described);
+        c.fit.plant = plant_without(whole, e);
+        return rms(residual(c));
+    }
+    /// A model with the numbers of one of its effects back as described, all others kept.
+    plant_model plant_without(const candidate& whole, const effect& e) const {
+        plant_model out = whole.fit.plant, described = given_.fit.plant;
+        const auto values = e.read(out);
         for (const parameter& p : whole.fit.parameters)
             if (!(p.spread > 0) &&
                 std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; }))
-                p.of(c.fit.plant) = p.of(described);
-        return rms(residual(c));
+                p.of(out) = p.of(described);
+        return out;
     }
 
     /// `from` with each of the suspects that it lacks, the most promising after a first look fitted to the end,
@@ -454,7 +460,9 @@ public:
         const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
         if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far))
             return false;
-        return shrinks(more, less);
+        // What calibration bends to hides some of what an effect takes off.
+        return shrinks(more, less) ||
+               (record_.closed() && less.stops_at_a_tolerance() && shrinks(more, given_));
     }
     /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while
     /// that does not grow, half of the innovations of one channel. A drag is small beside the peaks of every
@@ -524,8 +532,9 @@ private:
     /// How many times the looks and finalists of a long record this one affords.
     std::size_t effort() const {
         if (!record_.replayed()) return 1;
-        return std::max<std::size_t>(1,
-                                     rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
+        // The valleys of a path are narrow: few steps from a start tell little.
+        const std::size_t affords = rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size());
+        return record_.closed() ? 3 : std::max<std::size_t>(1, affords);
     }
     /// A model with the numbers of the machine file as they are described. Where calibration stops at the end
     /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there.

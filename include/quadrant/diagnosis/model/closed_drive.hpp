@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "driven_motion.hpp"
+#include "plant_axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// How finely a row is simulated when a drive closes its loop inside the plant: its fastest loop turns by a
+/// twentieth of a radian at most in a step, in two hundred steps at most.
+inline int steps_of_drive(const plant_model& plant, double period) {
+    const drive_model& d = plant.drive;
+    const double mass = plant.moving_mass();
+    const double stiffness = d.kind == drive_kind::position_servo
+                                 ? d.duty_gain * d.supply * plant.force_constant
+                                 : d.velocity_integral + d.velocity_gain * d.position_gain;
+    double rate = std::max(d.velocity_gain / mass, std::sqrt(stiffness / mass));
+    if (std::isfinite(d.velocity_filter_Hz)) rate = std::max(rate, 2 * std::numbers::pi * d.velocity_filter_Hz);
+    return static_cast<int>(std::clamp(std::ceil(20 * period * rate), 8.0, 200.0));
+}
+
+/// The numbers of a drive's loops and what they give, one of each or a lane each.
+template <class Real> struct loop_numbers {
+    using number = parameter_real<Real>;
+
+    drive_kind kind = drive_kind::current; ///< of all lanes
+    typename position_servo<Real>::parameters servo{};
+    typename position_loop<Real>::parameters loop{};
+    number of_duty{1};     ///< of the actuator's command a unit of what the loops give: supply [V], or 1/[N/V]
+    number start_force{0}; ///< of the velocity loop [N]
+    number off_from{0}, off_until{0}; ///< part of the record in which the drive gives nothing [s]
+};
+
+/// `constant`: force of a unit of the actuator's command, as described, where the drive gives a force.
+inline loop_numbers<double> loops_of(const drive_model& d, double constant) {
+    return {.kind = d.kind,
+            .servo = d.servo_numbers(),
+            .loop = d.position_loop_numbers(),
+            .of_duty = d.kind == drive_kind::position_servo ? d.supply : 1 / constant,
+            .start_force = d.start_force,
+            .off_from = d.off_from,
+            .off_until = d.off_until};
+}
+
+/// An axis with its drive's loops closed on it, one of them or one in each lane: what a drive does on the
+/// machine. Its clock is finer than the log's.
+template <class Real, class Axis> class closed_axis {
+public:
+    using surroundings = typename Axis::surroundings;
+
+    closed_axis(const typename Axis::parameters& p, const loop_numbers<Real>& n, Real step, Real position,
+                Real velocity)
+        : numbers_(n), mechanics_(p, step, already_checked()), servo_(n.servo, step, already_checked()),
+          outer_(n.loop, step, already_checked()), inner_(n.loop.velocity, step, already_checked()),
+          state_(Axis::state::at(mechanics_.position_of(position), velocity)),
+          loop_(velocity_loop<Real>::state::at(velocity, Real(n.start_force))) {}
+
+    /// Before the first step: where the set-points begin.
+    void follow(Real set_point) { follower_ = position_servo<Real>::state::at(set_point); }
+    Real reading() const { return mechanics_.reading(state_); }
+
+    /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the drive
+    /// is switched off.
+    Real operator()(Real set_point, Real its_velocity, bool off, const surroundings& now) {
+        auto loop = velocity_loop<Real>::state::at(state_.v);
+        auto follower = position_servo<Real>::state::at(state_.x);
+        Real u(0);
+        if (!off) {
+            std::swap(loop, loop_);
+            std::swap(follower, follower_);
+            u = Real(numbers_.of_duty) * given(set_point, its_velocity);
+            const auto gives = either(less(now.time, Real(numbers_.off_from)),
+                                      greater_equal(now.time, Real(numbers_.off_until)));
+            u = select(gives, u, Real(0));
+            loop_ = {select(gives, loop_.integral, loop.integral),
+                     select(gives, loop_.filtered, loop.filtered)};
+            follower_ = {select(gives, follower_.followed, follower.followed)};
+        } else {
+            loop_ = loop;
+            follower_ = follower;
+        }
+        mechanics_.advance(state_, u, now);
+        return u;
+    }
+
+private:
+    /// Duty of a servo, else force [N].
+    Real given(Real set_point, Real its_velocity) {
+        if (numbers_.kind == drive_kind::position_servo) return servo_(follower_, set_point, state_.x);
+        if (numbers_.kind == drive_kind::velocity) return inner_(loop_, set_point, state_.v);
+        return outer_(loop_, set_point, its_velocity, state_.x, state_.v);
+    }
+
+    loop_numbers<Real> numbers_;
+    Axis mechanics_;
+    position_servo<Real> servo_;
+    position_loop<Real> outer_;
+    velocity_loop<Real> inner_;
+    typename Axis::state state_;
+    typename velocity_loop<Real>::state loop_;
+    typename position_servo<Real>::state follower_{};
+};
+
+/// An axis whose drive closes its loops on the plant itself. The set-points are those of `motion`; its measured
+/// motion is not used, but for where it starts. seen(row, reading, set-points): called as each row begins, may
+/// give the set-point of that row. Returns the actuator's command, mean over each row.
+template <class Seen>
+std::vector<double> run_closed(const plant_model& plant, const driven_motion& motion, double period,
+                               double velocity, std::span<const double> other_acceleration, Seen&& seen) {
+    const std::size_t n = motion.set_point.size();
+    const int steps = steps_of_drive(plant, period);
+    const double h = period / steps, scale = motion.in_volts ? plant.drive.velocity_per_V : 1;
+    closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion.constant), h,
+                                         motion.position[0], velocity);
+    axis.follow(motion.set_point[0]);
+    std::vector<double> set_point = motion.set_point, command(n);
+    set_point_clock clock(plant.drive, set_point, period);
+    for (std::size_t k = 0; k < n; ++k) {
+        seen(k, axis.reading(), set_point);
+        plant_axis::surroundings now{.time = static_cast<double>(k) * period,
+                                     .other_acceleration =
+                                         other_acceleration.empty() ? 0 : other_acceleration[k]};
+        for (int i = 0; i < steps; ++i, now.time += h) {
+            const double begin = static_cast<double>(k) + static_cast<double>(i) / steps;
+            const auto r = clock.between(begin, begin + 1.0 / steps);
+            command[k] += axis(scale * r.value, r.velocity / period, motion.is_off(k), now) / steps;
+        }
+    }
+    return command;
+}
+
+} // namespace quadrant::diagnosis

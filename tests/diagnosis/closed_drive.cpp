@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSL-1.0
+// A drive whose loops are closed on the model, one by one and side by side in lanes.
+#include <doctest/doctest.h>
+#include <quadrant/diagnosis/fit/record.hpp>
+
+#include <numbers>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+constexpr double period = 0.005;
+
+/// A servo with an arm: 7.5 g m^2, Coulomb friction that grows with the load, gravity.
+plant_model arm() {
+    plant_description d;
+    d.mass_kg = 0.0075;
+    d.force_constant_N_per_V = 0.12;
+    d.viscous_N_s_per_m = 0.04;
+    d.coulomb_N = 0.01;
+    plant_model p(d, 1e-4);
+    p.gravity.torque = 0.48;
+    p.friction.load = 0.25;
+    p.drive.kind = drive_kind::position_servo;
+    p.drive.duty_gain = 1.2;
+    p.drive.supply = 7.4;
+    p.drive.delay = 0.002;
+    return p;
+}
+driven_motion asked(std::size_t rows) {
+    driven_motion m;
+    m.period = period;
+    for (std::size_t k = 0; k < rows; ++k)
+        m.set_point.push_back(0.6 * std::sin(2 * std::numbers::pi * 0.7 * period * static_cast<double>(k)));
+    m.position.assign(rows, 0.0);
+    m.velocity.assign(rows, 0.0);
+    return m;
+}
+std::vector<double> path(const plant_model& p, const driven_motion& m) {
+    std::vector<double> out(m.set_point.size());
+    run_closed(p, m, period, 0, {}, [&](std::size_t k, double reading, const auto&) { out[k] = reading; });
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("closed drive: a proportional servo under gravity stays behind by what its duty needs") {
+    plant_model p = arm();
+    p.friction = {};
+    p.friction.viscous_slope = 0.04;
+    driven_motion m = asked(1200);
+    for (double& r : m.set_point) r = 0.5;
+    const double q = path(p, m).back(), stiffness = 1.2 * 7.4 * 0.12;
+    CHECK(stiffness * (0.5 - q) == doctest::Approx(0.48 * std::sin(q)).epsilon(1e-3));
+}
+TEST_CASE("closed drive: it gives nothing where it is switched off, by its log and by its model") {
+    plant_model p = arm();
+    p.gravity.torque = 0;
+    driven_motion m = asked(400);
+    m.off.assign(400, 1);
+    for (double x : path(p, m)) CHECK(x == 0);
+    m.off.clear();
+    p.drive.off_from = 0;
+    p.drive.off_until = 1; // [s]
+    const auto x = path(p, m);
+    CHECK(x[199] == 0);
+    CHECK(std::abs(x[399]) > 0.1);
+}
+TEST_CASE("closed drive: plants side by side go the ways that they go alone") {
+    const driven_motion m = asked(600);
+    std::vector<plant_model> plants(7, arm());
+    plants[1].force_constant *= 0.6;
+    plants[2].gravity.torque *= 1.5;
+    plants[3].friction.load = 0;
+    plants[4].drive.delay = 0.004;
+    plants[5].drive.minimum_duty = 0.02;
+    plants[6].drive.off_from = 1;
+    plants[6].drive.off_until = 1.5;
+    predictor by{.period = period, .corner_Hz = 5, .position = m.position, .command = m.set_point};
+    by.drive = &m;
+    by.closed = 0.0;
+    std::vector<std::vector<double>> e(plants.size());
+    by.run(plants, e);
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        CAPTURE(i);
+        const auto alone = path(plants[i], m);
+        double away = 0, farthest = 0;
+        for (std::size_t k = 0; k < alone.size(); ++k) {
+            away = std::max(away, std::abs(m.position[k] - e[i][k] - alone[k]));
+            farthest = std::max(farthest, std::abs(alone[k]));
+        }
+        CHECK(farthest > 0.1);
+        CHECK(away < 1e-9); // lanes have their own exponential and sine
+    }
+}
+TEST_CASE("memory of a signal: one row of white noise, two time constants of a decaying correlation squared") {
+    std::vector<double> white(20000), slow(20000);
+    std::uint64_t state = 1;
+    double x = 0;
+    for (std::size_t k = 0; k < white.size(); ++k) {
+        state = state * 6364136223846793005U + 1442695040888963407U;
+        white[k] = static_cast<double>(state >> 11) * 0x1p-53 - 0.5;
+        slow[k] = x = 0.95 * x + white[k];
+    }
+    CHECK(rows_of_memory(white) == doctest::Approx(1).epsilon(0.05));
+    // sum of 0.95^(2 |lag|) over all lags: (1 + 0.9025) / (1 - 0.9025)
+    CHECK(rows_of_memory(slow) == doctest::Approx(19.5).epsilon(0.2));
+}
