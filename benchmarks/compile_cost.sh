@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 # usage: compile_cost.sh >docs/compile_cost.md     what it costs to include each header, and to compile a full loop
 #        compile_cost.sh check                     fails when the headers read a tenth more lines than the page says
+#        compile_cost.sh files [BUILD]             fails when a file of the diagnosis takes more than 15 s or 600 MB
 # Environment: RUNS   compilations of each, of which the fastest counts (default 3)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -42,6 +43,18 @@ if [ "${1-}" = check ]; then
     exit
 fi
 
+files() { # [BUILD]    rows of a table: the files of quadrant_diagnosis_once in a build of the preset `release`
+    if [ "${1-}" = "" ]; then
+        cmake -S "$root" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=g++ \
+            -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DQUADRANT_BUILD_TESTS=OFF -DQUADRANT_BUILD_BENCHMARKS=OFF >&2
+    fi
+    python3 "$root/benchmarks/compile_files.py" "${1:-$work/build}"
+}
+if [ "${1-}" = files ]; then
+    files "${2-}"
+    exit
+fi
+
 cat <<END
 # Cost of compiling
 
@@ -60,6 +73,17 @@ END
 row 02_closed_loop.cpp "$root/examples/02_closed_loop.cpp" -O2 -c -o "$work/object"
 row servo_axis.cpp "$root/examples/microcontroller/servo_axis.cpp" -O2 -DSERVO_NUMBER=double -c -o "$work/object"
 
+cat <<END
+
+## The diagnosis, compiled once
+
+The files of the CMake target \`quadrant_diagnosis_once\`, with g++ \`-O2\`. None may take more than 15 s or 600 MB
+(\`sh benchmarks/compile_cost.sh files\`, in ctest \`headers.files\` with \`QUADRANT_TESTS=all\`).
+
+| file | s | MB |
+|---|---|---|
+END
+files || echo "a file takes more than it may" >&2
 cat <<END
 
 ## One header alone

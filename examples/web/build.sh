@@ -32,16 +32,19 @@ part() { # NAME HEADER...
     shift
     for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
 }
-part diagnose diagnose
-part apply apply read_diagnosis read_machine effect/effect_list
-part passes simulate fit/predictor
-part controllers controller/kinds
+part diagnose diagnose next/next_experiment
+part apply apply read_diagnosis read_machine text/json_text effect/effect_list
+part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/record fit/drive_noise model/linear_past model/sample_loss
+part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
+part case which/axis_case which/block_places where/places how_far/how_far how_far/closed_loop how_far/driven_loop
+part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start
+part controllers controller/kinds where/controller_box where/controller_mismatch
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
-set -- diagnose apply passes controllers binding
+set -- diagnose apply passes search case chain controllers binding
 printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
 cd "$build"
-em++ -O2 -fwasm-exceptions diagnose.o apply.o passes.o controllers.o binding.o -o quadrant.js --no-entry \
+em++ -O2 -fwasm-exceptions $(printf '%s.o ' "$@") -o quadrant.js --no-entry \
     -s MODULARIZE=1 -s EXPORT_NAME=quadrant_module -s ENVIRONMENT=worker -s ALLOW_MEMORY_GROWTH=1 -s FILESYSTEM=0 \
     -s DYNAMIC_EXECUTION=0 -s TOTAL_STACK=2MB -s "EXPORTED_FUNCTIONS=_malloc,_free" \
     -s "EXPORTED_RUNTIME_METHODS=UTF8ToString,stringToUTF8,lengthBytesUTF8"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "quadrant/diagnosis/effect/effects.hpp"
 #include "quadrant/diagnosis/which/causes.hpp"
 #include "workshop.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 
+#include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/next/next_experiment.hpp>
 
 using namespace workshop;

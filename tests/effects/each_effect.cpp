@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "diagnosis/claims.hpp"
 
+#include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/which/search.hpp>
 
 using namespace workshop;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/version.hpp"
 #include "machine/machine.hpp"
 #include "result/result.hpp"
-#include "text/separate_compilation.hpp"
 
 #include <nlohmann/json.hpp>
 

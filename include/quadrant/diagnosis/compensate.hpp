@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/version.hpp"
 #include "compensate/compensation_result.hpp"
 #include "log/log.hpp"
-#include "text/separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 

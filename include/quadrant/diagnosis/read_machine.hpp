@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/version.hpp"
 #include "machine/machine.hpp"
-#include "text/separate_compilation.hpp"
 
 #include <filesystem>
 #include <string_view>

@@ -1,88 +1,26 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../text/axis_words.hpp"
 #include "outcome.hpp"
 
 namespace quadrant::diagnosis::chain {
 
 /// Puts what was found on a link into the result of an axis.
-inline void join(axis_result& result, std::vector<cause>& causes, diagnosis_result& out, outcome&& o,
-                 const char* view) {
-    result.verdict = std::max(result.verdict, o.verdict);
-    for (place& p : o.places) {
-        if (p.view == "block" && std::string_view(view) != "block") {
-            if (p.block.empty()) continue;
-            p.basis.clear();
-            p.view = view;
-        }
-        result.where.push_back(std::move(p));
-    }
-    for (auto& p : o.calibrated) result.calibrated.push_back(std::move(p));
-    for (cause& c : o.causes) causes.push_back(std::move(c));
-    out.notes.insert(out.notes.end(), o.notes.begin(), o.notes.end());
-    if (o.verdict > verdict::explained)
-        out.remaining_structure += (out.remaining_structure.empty() ? "" : "; ") + o.structure;
-    out.share_unexplained = std::max(out.share_unexplained, o.share_left);
-}
+QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& causes, diagnosis_result& out,
+                                  outcome&& o, const char* view);
 
 /// A link, or bad_input where its record is too short.
-inline outcome link_or_refusal(const described_link& d, const axis_description& axis, const std::string& file,
-                               const std::vector<std::string>& excluded, const rules& limits) {
-    try {
-        return diagnose_link(d, axis, excluded, limits);
-    } catch (const std::length_error& e) {
-        throw bad_input(file, fmt::format("axis {}: {}", axis.name, e.what()));
-    }
-}
+QUADRANT_DIAGNOSIS_DECL outcome link_or_refusal(const described_link& d, const axis_description& axis,
+                                                const std::string& file,
+                                                const std::vector<std::string>& excluded, const rules& limits);
 
 /// Diagnoses an axis that is a chain of positions: asked, motor, scale, as far as they were recorded.
-inline axis_result diagnose_positions(diagnosis_result& out, std::vector<cause>& causes,
-                                      const axis_description& axis, const axis_log& log, double period,
-                                      const std::string& file, const std::vector<std::string>& excluded,
-                                      const rules& limits) {
-    axis_result result;
-    result.name = axis.name;
-    result.kind = axis.kind;
-    result.positions_only = true;
-    result.evaluated_on = "held-out pieces of " + file;
-    std::vector<described_link> links;
-    const double count = std::max(axis.encoder.resolution_m, observed_count(log.position, log.position_step));
-    if (!log.motor.empty()) {
-        if (log.has_reference) {
-            auto motor = motor_to_scale(axis, log, period, file).readings;
-            links.push_back(asked_to(axis, log, period, motor.first, motor.first_count, false));
-        }
-        links.push_back(motor_to_scale(axis, log, period, file));
-    } else {
-        links.push_back(asked_to(axis, log, period, log.position, count, true));
-    }
-    double largest = -1;
-    for (const described_link& d : links) {
-        outcome o = link_or_refusal(d, axis, file, excluded, limits);
-        if (links.size() > 1)
-            for (place& p : o.places)
-                if (p.view == "block") p.finding += fmt::format(" (between {} and {})", d.from, d.to);
-        if (o.gap.position_rms_m > largest || o.verdict > result.verdict) {
-            largest = std::max(largest, o.gap.position_rms_m);
-            result.gap = o.gap;
-            result.gap_after = o.gap_after;
-            result.signals.residual_before = o.difference;
-            result.signals.residual_after = o.left;
-        }
-        join(result, causes, out, std::move(o), "block");
-    }
-    if (links.size() > 1) // the shares are of two gaps
-        for (place& p : result.where) p.share = {p.share.value / 2, p.share.low / 2, p.share.high / 2};
-    std::stable_sort(result.where.begin(), result.where.end(), [](const place& a, const place& b) {
-        return a.block.empty() != b.block.empty() ? b.block.empty() : a.share.value > b.share.value;
-    });
-    auto& s = result.signals;
-    s.position = log.position;
-    s.reference = log.has_reference ? log.reference : scaled(log.motor, links.back().to_load);
-    s.velocity = derivative(zero_phase(s.position, 0.06 / period, period), period);
-    for (std::size_t k = 0; k < s.position.size(); ++k) s.t.push_back(static_cast<double>(k) * period);
-    return result;
-}
+QUADRANT_DIAGNOSIS_DECL axis_result diagnose_positions(diagnosis_result& out, std::vector<cause>& causes,
+                                                       const axis_description& axis, const axis_log& log,
+                                                       double period, const std::string& file,
+                                                       const std::vector<std::string>& excluded,
+                                                       const rules& limits);
 
 /// What two encoders of an axis with forces say of its transmission.
 struct two_encoders {
@@ -109,35 +47,13 @@ struct two_encoders {
                     e = {e.value - motor_coulomb, e.low - motor_coulomb, e.high - motor_coulomb};
     }
 };
-inline two_encoders diagnose_transmission(const axis_description& axis, const axis_log& log, double period,
-                                          const std::string& file, const std::vector<std::string>& excluded,
-                                          const rules& limits) {
-    two_encoders out;
-    auto d = motor_to_scale(axis, log, period, file);
-    give_force(d, axis, log);
-    out.found = link_or_refusal(d, axis, file, excluded, limits);
-    out.carried = log;
-    out.motor_coulomb = axis.transmission.motor_coulomb_N.value_or(0);
-    for (const cause& c : out.found.causes)
-        if (c.effect == "motor_friction" && c.probability >= 0.5)
-            out.motor_coulomb = c.parameters[0].values[0].value;
-    const auto& mass = axis.transmission.motor_mass_kg;
-    if (!mass) {
-        out.notes.push_back(
-            fmt::format("axis {}: transmission.{} is not described: taken for nothing; the stiffness that "
-                        "is found is too high by the share of the motor.",
-                        axis.name, key_of("motor_mass_kg", axis.kind)));
-        return out;
-    }
-    if (out.found.elastic.empty()) return out;
-    const double share = std::min(1.0, *mass / axis.plant.mass_kg);
-    out.carried.controller_reads = log.position;
-    // While the load sticks, the centre of mass moves with the motor.
-    out.carried.least_give =
-        share * (out.found.play / 2 + axis.plant.coulomb_N.value_or(0) * out.found.compliance);
-    for (std::size_t k = 0; k < log.position.size(); ++k)
-        out.carried.position[k] -= share * out.found.elastic[k];
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_description& axis, const axis_log& log,
+                                                           double period, const std::string& file,
+                                                           const std::vector<std::string>& excluded,
+                                                           const rules& limits);
 
 } // namespace quadrant::diagnosis::chain
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "diagnose_chain.ipp"
+#endif

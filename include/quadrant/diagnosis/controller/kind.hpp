@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../machine/machine.hpp"
-#include "../text/json_keys.hpp"
+#include "../text/number_rule.hpp"
 #include "running.hpp"
+
+#include <fmt/format.h>
 
 #include <array>
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../text/separate_compilation.hpp"
+#include "../../base/version.hpp"
 #include "kind.hpp"
 
 namespace quadrant::diagnosis {

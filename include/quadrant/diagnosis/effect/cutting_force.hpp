@@ -64,7 +64,7 @@ inline constexpr effect cutting_force{
                       m.set_untold("process.mean_N", {m.chance(0.3) ? 0.5 * size : 0});
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double duration = detail::duration(s),
+        const double duration = detail::recorded_time(s),
                      most = 10 * s.force_scale(); // the loop may be too slow to answer
         std::vector<double> time(s.residual.size());
         for (std::size_t k = 0; k < time.size(); ++k) time[k] = static_cast<double>(k) * s.record.period;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../text/separate_compilation.hpp"
+#include "../../base/version.hpp"
 #include "effect_record.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace quadrant::diagnosis {
 
 /// Every effect that a file may speak of, in the order of effects.hpp. The list costs no compile time here: it
-/// is made with the rest of the diagnosis (separate_compilation.hpp).
+/// is made with the rest of the diagnosis (base/version.hpp).
 QUADRANT_DIAGNOSIS_DECL std::span<const effect* const> every_effect();
 
 /// The effect of this name; null: none of the list.

@@ -105,15 +105,4 @@ inline constexpr std::array listed_effects{
 };
 // clang-format on
 
-/// Those of them that are found by a fit of the plant, in the same order. The controller is judged apart, by
-/// replay, and the encoder's count by what the positions are multiples of.
-inline constexpr auto plant_effects = [] {
-    constexpr auto fitted = [](const effect* e) { return e->starts != nullptr; };
-    std::array<const effect*,
-               static_cast<std::size_t>(std::count_if(listed_effects.begin(), listed_effects.end(), fitted))>
-        out{};
-    std::copy_if(listed_effects.begin(), listed_effects.end(), out.begin(), fitted);
-    return out;
-}();
-
 } // namespace quadrant::diagnosis

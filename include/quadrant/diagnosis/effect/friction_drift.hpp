@@ -43,7 +43,7 @@ inline constexpr effect friction_drift{
               .needs_coulomb = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
-        const double duration = detail::duration(s);
+        const double duration = detail::recorded_time(s);
         const auto level = [&](double from, double to) {
             const auto n = static_cast<double>(s.residual.size());
             double sum = 0, count = 0;

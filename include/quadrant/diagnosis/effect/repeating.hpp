@@ -120,7 +120,7 @@ inline double travel(const screening& s) {
     const auto [low, high] = std::minmax_element(s.record.position.begin(), s.record.position.end());
     return *high - *low;
 }
-inline double duration(const screening& s) {
+inline double recorded_time(const screening& s) {
     return s.record.period * static_cast<double>(s.record.position.size());
 }
 inline double largest_command(const screening& s) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -9,44 +11,18 @@ namespace quadrant::diagnosis {
 
 /// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so
 /// that no pivot depends on them.
-template <class Right> Right solved(const Eigen::MatrixXd& a, const Right& b) {
-    const Eigen::VectorXd size =
-        a.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
-    const Eigen::MatrixXd even = size.asDiagonal() * a * size.asDiagonal();
-    return size.asDiagonal() * even.ldlt().solve(size.asDiagonal() * b);
-}
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd solved(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+/// x for a b that is the unit matrix.
+QUADRANT_DIAGNOSIS_DECL Eigen::MatrixXd inverted(const Eigen::MatrixXd& a);
 
 /// The step d that minimizes g'd + d'a d / 2 between `low` and `high`, by projection: a component that would
 /// leave its bounds is set on the bound, and the others are solved again beside it. To clamp the components of
 /// the free solution would leave the others where they belong beside values that nothing has any more.
-inline Eigen::VectorXd bounded_step(const Eigen::MatrixXd& a, const Eigen::VectorXd& g,
-                                    const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
-    const Eigen::Index n = g.size();
-    std::vector<bool> fixed(static_cast<std::size_t>(n), false);
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index round = 0; round <= n; ++round) {
-        std::vector<Eigen::Index> open;
-        Eigen::VectorXd on_bounds = d;
-        for (Eigen::Index i = 0; i < n; ++i)
-            if (!fixed[static_cast<std::size_t>(i)]) {
-                open.push_back(i);
-                on_bounds[i] = 0;
-            }
-        if (open.empty()) break;
-        const Eigen::VectorXd right = -(g + a * on_bounds);
-        const Eigen::MatrixXd sub = a(open, open);
-        const Eigen::VectorXd free = solved(sub, Eigen::VectorXd(right(open)));
-        bool clipped = false;
-        for (std::size_t j = 0; j < open.size(); ++j) {
-            const auto i = open[j];
-            d[i] = free[static_cast<Eigen::Index>(j)];
-            if (d[i] >= low[i] && d[i] <= high[i]) continue;
-            d[i] = std::clamp(std::isfinite(d[i]) ? d[i] : 0.0, low[i], high[i]);
-            fixed[static_cast<std::size_t>(i)] = clipped = true;
-        }
-        if (!clipped) break;
-    }
-    return d;
-}
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd bounded_step(const Eigen::MatrixXd& a, const Eigen::VectorXd& g,
+                                                     const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "bounded_step.ipp"
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../log/signals.hpp"
 #include "../model/driven_motion.hpp"
 #include "../model/sample_loss.hpp"
@@ -15,22 +16,12 @@ namespace quadrant::diagnosis {
 
 /// The passes to use: those of this translation unit's instruction set; in a program that has more of them,
 /// those of the best set that the processor has.
-#ifdef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-const pass_table& passes();
-#else
-inline const pass_table& passes() { return passes_of<>; }
-#endif
+QUADRANT_DIAGNOSIS_DECL const pass_table& passes();
 
 /// Second difference of a reading around each row, without what a plant's encoder adds to it, over the square
 /// of the period [m/s^2]; 0 at both ends.
-inline std::vector<double> acceleration_of(const plant_model& plant, std::span<const double> position,
-                                           double period) {
-    std::vector<double> out(position.size(), 0.0);
-    const auto at = [&](std::size_t k) { return position[k] - plant.cyclic.at(position[k]); };
-    for (std::size_t k = 1; k + 1 < position.size(); ++k)
-        out[k] = (at(k + 1) - 2 * at(k) + at(k - 1)) / (period * period);
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<double> acceleration_of(const plant_model& plant,
+                                                            std::span<const double> position, double period);
 
 /// A motion that plants are led along instead of being corrected by its readings: what an expert's regression
 /// does.
@@ -50,13 +41,7 @@ struct led_motion {
 /// short.
 struct predictor {
     /// e'[k] = e[k] - e[k-1] + pole e'[k-1]: makes a drift of independent steps a signal of one size.
-    static void take_drift_out(std::vector<double>& e, double pole) {
-        double before = e.empty() ? 0 : e.front(), out = 0;
-        for (double& x : e) {
-            out = pole * out + x - before;
-            before = std::exchange(x, out);
-        }
-    }
+    static void take_drift_out(std::vector<double>& e, double pole);
 
     static constexpr std::size_t abreast = 8; ///< plants in one pass
     double period;                            ///< T [s]
@@ -85,66 +70,16 @@ struct predictor {
     /// model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the
     /// second difference of the model's positions around each row, over the square of the period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
-               std::vector<double>* acceleration = nullptr) const {
-        const std::span one(&plant, 1);
-        const std::span into(&innovation, 1);
-        if (plant.loss > 0) {
-            pass(one, command, into, nullptr);
-            const auto held =
-                commands_with_loss(plant, innovation, {.probability = plant.loss, .learned = true});
-            pass(one, held.applied, into, acceleration);
-            return held.choices;
-        }
-        pass(one, command, into, acceleration);
-        return 0;
-    }
+               std::vector<double>* acceleration = nullptr) const;
     /// The same for several plants, some at a time side by side: a third of the time and less. One list of
     /// innovations a plant, of accelerations where they are asked for, and of choices likewise.
     void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
-             std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const {
-        for (std::size_t i = 0; i < plants.size();) {
-            std::vector<double>* const a = acceleration.empty() ? nullptr : &acceleration[i];
-            std::size_t n = 0;
-            while (i + n < plants.size() && n < abreast && plants[i + n].loss == 0) ++n;
-            if (n > 0)
-                pass(plants.subspan(i, n), command, innovation.subspan(i, n), a);
-            else if (const double chosen = run(plants[i], innovation[i], a); !choices.empty())
-                choices[i] = chosen;
-            i += std::max<std::size_t>(1, n);
-        }
-    }
+             std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const;
 
     /// What the forces on each plant leave when it is led along a motion, in units of the command times the
     /// described force constant [N]; 0 where that motion does not count. At most `abreast` plants.
     void forces_beside(const led_motion& by, std::span<const plant_model> plants, std::span<const double> u,
-                       std::span<std::vector<double>> left) const {
-        constexpr double heavier = 1e4; // so heavy that no force moves it beside the way
-        std::vector<std::vector<double>> unused(plants.size());
-        pass(plants, u, unused, left.data(), {by.way.data(), 1, 1 / period, heavier});
-        for (std::size_t i = 0; i < plants.size(); ++i) {
-            const plant_model& p = plants[i];
-            const double base = p.moving_mass() - p.mode.mass,
-                         led_base = heavier * p.moving_mass() - p.mode.mass;
-            for (double& x : left[i]) x *= led_base;
-            left[i] = zero_phase(left[i], corner_Hz, period);
-            const auto needed = acceleration_of(p, by.way, period);
-            // Force that one volt more would make: a weak motor, or friction that takes its share, explains
-            // nothing by making all forces small.
-            const auto a_volt = [&](std::size_t k) {
-                const double of_motor = p.force_constant * (1 + p.ripple.at(by.way[k]));
-                const double through = of_motor * u[k] - p.static_force(by.way[k]);
-                const bool against = through * (by.way[k + 1] - by.way[k - 1]) > 0;
-                return of_motor * (1 - (against ? 1 : -1) * p.friction.load);
-            };
-            for (std::size_t k = 0; k < left[i].size(); ++k) {
-                if (k == 0 || k + 1 == left[i].size() || !by.counts[k]) {
-                    left[i][k] = 0;
-                    continue;
-                }
-                left[i][k] = by.force_constant / a_volt(k) * (left[i][k] - base * needed[k]);
-            }
-        }
-    }
+                       std::span<std::vector<double>> left) const;
 
     /// Rows of the innovations: those of the position, and behind them, where something was measured behind the
     /// drive, what the drive gives otherwise.
@@ -156,10 +91,7 @@ struct predictor {
     /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss
     /// tell it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
-                                      const loss_assumption& a) const {
-        return lost_commands::find(command, innovation, loss_response(plant), whole_periods(plant.delay),
-                                   resolution / std::sqrt(12.0), a);
-    }
+                                      const loss_assumption& a) const;
 
 private:
     /// How a pass is corrected: the position that leads it, its gains, and how much heavier the plants are.
@@ -169,170 +101,39 @@ private:
     };
     /// Innovations of a free mass on which these forces act, and the accelerations that say the same.
     void pass_led(std::span<const plant_model> plants, std::span<const double> u,
-                  std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
-        std::vector<std::vector<double>> left(plants.size());
-        forces_beside(*led, plants, u, left);
-        for (std::size_t i = 0; i < plants.size(); ++i) {
-            innovation[i].resize(rows());
-            double x = 0, v = 0;
-            for (std::size_t k = 0; k < left[i].size(); ++k) {
-                innovation[i][k] = x;
-                const double a = -left[i][k] / led->mass;
-                v -= l2() * x;
-                x += period * (v + period / 2 * a) - l1() * x;
-                v += period * a;
-            }
-            if (!acceleration) continue;
-            acceleration[i] = acceleration_of(plants[i], position, period);
-            for (std::size_t k = 1; k + 1 < position.size(); ++k)
-                acceleration[i][k] += left[i][k] / plants[i].mass;
-        }
-    }
+                  std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const;
     /// What each drive follows in each step of each row. Plants with one drive share it.
     struct followed {
         std::vector<double> set_point, its_velocity;
     };
-    followed set_points_of(const drive_model& d, std::size_t steps) const {
-        followed out;
-        set_point_clock clock(d, drive->set_point, period);
-        const double scale = drive->in_volts ? d.velocity_per_V : 1;
-        const auto all = position.size() * steps;
-        out.set_point.reserve(all);
-        out.its_velocity.reserve(all);
-        for (std::size_t j = 0; j < all; ++j) {
-            const double begin = static_cast<double>(j) / static_cast<double>(steps);
-            const auto r = clock.between(begin, begin + 1 / static_cast<double>(steps));
-            out.set_point.push_back(scale * r.value);
-            out.its_velocity.push_back(r.velocity / period);
-        }
-        return out;
-    }
+    followed set_points_of(const drive_model& d, std::size_t steps) const;
     /// The logged path beside that of each plant with its drive's loops closed on it; accelerations as where
     /// the readings correct it.
     void pass_closed(std::span<const plant_model> plants, std::span<const double> u,
-                     std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
-        if (acceleration) pass(plants, u, innovation, acceleration, {position.data(), l1(), l2(), 1});
-        std::array<std::vector<double>, abreast> own;
-        std::array<const double*, abreast> command_of{};
-        for (auto& rows_of : innovation) rows_of.resize(rows());
-        if (drive->tapped()) drive_each(plants, own, command_of, innovation);
-        std::size_t steps = 1;
-        for (const plant_model& p : plants)
-            steps = std::max(steps, static_cast<std::size_t>(steps_of_drive(p, period)));
-        std::array<followed, abreast> follows;
-        std::array<closed_input::plant, abreast> each;
-        std::array<double*, abreast> e{};
-        for (std::size_t i = 0; i < plants.size(); ++i) {
-            std::size_t same = 0;
-            while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
-            if (same == i) follows[i] = set_points_of(plants[i].drive, steps);
-            each[i] = {axis_parameters(plants[i]), loops_of(plants[i].drive, drive->constant),
-                       follows[same].set_point.data(), follows[same].its_velocity.data()};
-            e[i] = innovation[i].data();
-        }
-        passes().closed({.period = period,
-                         .rows = position.size(),
-                         .steps = steps,
-                         .position = position.data(),
-                         .velocity = *closed,
-                         .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
-                         .off = drive->off.empty() ? nullptr : drive->off.data(),
-                         .plants = plants.size(),
-                         .plant_of = each.data(),
-                         .innovation = e.data()});
-    }
-    std::size_t whole_periods(double delay) const {
-        return static_cast<std::size_t>(std::max(0.0, delay) / period);
-    }
+                     std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const;
+    std::size_t whole_periods(double delay) const;
     double l1() const { return 1 - pole() * pole(); }
     double l2() const { return (1 - pole()) * (1 - pole()) / period; }
 
     /// Innovations after one volt too much in one period, on a free axis, until the observer has forgotten it.
-    std::vector<double> loss_response(const plant_model& plant) const {
-        const double to_position = l1(), to_velocity = l2();
-        const double late =
-            std::max(0.0, plant.delay) - static_cast<double>(whole_periods(plant.delay)) * period;
-        const double per_volt = plant.force_constant / plant.moving_mass();
-        std::vector<double> out;
-        double x = 0, v = 0;
-        const auto rows = static_cast<std::size_t>(6 / (2 * std::numbers::pi * corner_Hz * period)) + 2;
-        for (std::size_t k = 0; k <= rows; ++k) {
-            if (k > 0) out.push_back(x);
-            const double e = x, length = k == 0   ? period - late
-                                         : k == 1 ? late
-                                                  : 0; // of the volt in this period
-            x -= to_position * e;
-            v -= to_velocity * e;
-            const double rise = per_volt * length;
-            x += period * v + (k == 0 ? 0.5 * length : period - 0.5 * length) * rise;
-            v += rise;
-        }
-        return out;
-    }
+    std::vector<double> loss_response(const plant_model& plant) const;
 
     /// The command of each plant's actuator, and its innovations behind the drive. Plants with one drive share
     /// its replay.
     void drive_each(std::span<const plant_model> plants, std::array<std::vector<double>, abreast>& own,
                     std::array<const double*, abreast>& command_of,
-                    std::span<std::vector<double>> innovation) const {
-        const auto n = static_cast<std::ptrdiff_t>(position.size());
-        for (std::size_t i = 0; i < plants.size(); ++i) {
-            std::size_t same = 0;
-            while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
-            if (same == i) {
-                auto replay = drive->run(plants[i].drive);
-                own[i] = std::move(replay.command);
-                for (std::size_t k = 0; k < replay.beside.size(); ++k)
-                    innovation[i][position.size() + k] = drive->to_position * replay.beside[k];
-            } else if (drive->tapped()) {
-                std::copy(innovation[same].begin() + n, innovation[same].end(), innovation[i].begin() + n);
-            }
-            command_of[i] = own[same].data();
-        }
-    }
+                    std::span<std::vector<double>> innovation) const;
 
     /// Several plants side by side in the lanes of one number.
     void pass(std::span<const plant_model> plants, std::span<const double> u,
-              std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const {
-        if (led) return pass_led(plants, u, innovation, acceleration);
-        if (closed) return pass_closed(plants, u, innovation, acceleration);
-        pass(plants, u, innovation, acceleration, {position.data(), l1(), l2(), 1});
-        if (drift_pole < 1)
-            for (std::size_t i = 0; i < plants.size(); ++i) take_drift_out(innovation[i], drift_pole);
-    }
+              std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const;
     void pass(std::span<const plant_model> plants, std::span<const double> u,
               std::span<std::vector<double>> innovation, std::vector<double>* acceleration,
-              const guidance& by) const {
-        std::array<double*, abreast> e{}, a{};
-        std::array<pass_input::plant, abreast> each;
-        for (std::size_t i = 0; i < plants.size(); ++i) {
-            each[i] = {axis_parameters(plants[i]), plants[i].delay};
-            each[i].axis.mass *= by.heavier;
-            each[i].axis.coupling /= by.heavier; // a share of the mass
-            innovation[i].resize(rows());
-            e[i] = innovation[i].data();
-            if (!acceleration) continue;
-            acceleration[i].resize(position.size());
-            a[i] = acceleration[i].data();
-        }
-        std::array<std::vector<double>, abreast> own;
-        std::array<const double*, abreast> command_of{};
-        if (drive) drive_each(plants, own, command_of, innovation);
-        pass_all({.period = period,
-                  .substeps = substeps,
-                  .rows = position.size(),
-                  .position = by.position,
-                  .command = u.data(),
-                  .command_of = drive ? command_of.data() : nullptr,
-                  .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
-                  .to_position = by.to_position,
-                  .to_velocity = by.to_velocity,
-                  .plants = plants.size(),
-                  .plant_of = each.data(),
-                  .innovation = e.data(),
-                  .acceleration = acceleration ? a.data() : nullptr},
-                 passes());
-    }
+              const guidance& by) const;
 };
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "predictor.ipp"
+#endif

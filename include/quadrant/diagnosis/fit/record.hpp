@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
 #include "drive_noise.hpp"
@@ -43,77 +44,32 @@ struct axis_record {
 /// Rows where one motion ends and the next begins: the velocity of the reference changes sign, starts or stops.
 /// Segments are at least five blocks long and at most thirty; they, not samples, are left out and resampled,
 /// because the samples inside one motion say the same thing again and again.
-inline std::vector<std::size_t> motion_segments(std::span<const double> motion, double period,
-                                                const record_scales& scale) {
-    const auto shortest = std::max<std::size_t>(1, static_cast<std::size_t>(5 * scale.block() / period));
-    const auto longest = static_cast<std::size_t>(30 * scale.block() / period);
-    const auto v = derivative(zero_phase(motion, scale.corner_Hz / 3, period), period);
-    double peak = 0;
-    for (double x : v) peak = std::max(peak, std::abs(x));
-    const auto sense = [&](double x) { return x > 1e-4 * peak ? 1 : x < -1e-4 * peak ? -1 : 0; };
-    std::vector<std::size_t> out(motion.size());
-    std::size_t current = 0, begun = 0;
-    for (std::size_t k = 1; k < motion.size(); ++k) {
-        const bool cut =
-            sense(v[k]) != sense(v[k - 1]) && k - begun >= shortest && motion.size() - k >= shortest;
-        if (cut || (k - begun >= longest && motion.size() - k >= shortest)) {
-            ++current;
-            begun = k;
-        }
-        out[k] = current;
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t> motion_segments(std::span<const double> motion, double period,
+                                                                 const record_scales& scale);
 
 /// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
 /// accelerations through the identical zero-phase filter. Both are second differences of positions, so that a
 /// right model leaves the encoder's rounding only. Rows that are left out (axis_record::left_out) count as if
 /// nothing were left there.
-inline std::vector<double> residual_force(const plant_model& plant, std::span<const double> position,
-                                          std::span<const double> model_acceleration, double period,
-                                          double bandwidth_Hz, std::span<const unsigned char> left_out = {}) {
-    const std::size_t n = position.size();
-    auto raw = acceleration_of(plant, position, period);
-    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = plant.mass * (model_acceleration[k] - raw[k]);
-    for (std::size_t k = 0; k < left_out.size(); ++k)
-        if (left_out[k]) raw[k] = 0;
-    return zero_phase(raw, bandwidth_Hz, period);
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& plant,
+                                                           std::span<const double> position,
+                                                           std::span<const double> model_acceleration,
+                                                           double period, double bandwidth_Hz,
+                                                           std::span<const unsigned char> left_out = {});
 
 /// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
 /// `reaction`: of a drive whose replay is fed the position.
-inline double residual_force_floor(double mass, double sigma, double period, double bandwidth_Hz,
-                                   std::span<const double> reaction = {}) {
-    std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
-    const std::size_t at = impulse.size() / 2;
-    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
-    impulse[at] = -2 * impulse[at + 1];
-    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
-    double sum = 0;
-    for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
-    return sigma * std::sqrt(sum);
-}
+QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
+                                                    double bandwidth_Hz, std::span<const double> reaction = {});
 
 /// White noise of the position in the innovations of a model, robust against what the model does not explain;
 /// not below the rounding of `resolution` [m].
-inline double position_noise(const std::vector<double>& innovation, const scoring& s, double resolution) {
-    std::vector<double> half_difference(innovation.size());
-    for (std::size_t k = 1; k < half_difference.size(); ++k)
-        half_difference[k] = (innovation[k] - innovation[k - 1]) * std::numbers::sqrt2 / 2;
-    const auto ms = detail::block_ms(half_difference, s.channels.front());
-    return std::sqrt(std::max(quantile(ms, 0.3), resolution * resolution / 12));
-}
+QUADRANT_DIAGNOSIS_DECL double position_noise(const std::vector<double>& innovation, const scoring& s,
+                                              double resolution);
 
 /// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in
 /// a sub-step, in ten at most. A contact of one spring, which stands for what no record shows, needs none.
-inline std::size_t substeps_of(const plant_model& described, double period) {
-    const auto& f = described.friction;
-    if (f.contact.elements < 2) return 1;
-    double stiffness = 0;
-    for (std::size_t i = 0; i < f.contact.elements; ++i) stiffness += f.stiffness(i);
-    return static_cast<std::size_t>(
-        std::clamp(std::ceil(10 * period * std::sqrt(stiffness / described.mass)), 1.0, 10.0));
-}
+QUADRANT_DIAGNOSIS_DECL std::size_t substeps_of(const plant_model& described, double period);
 
 /// Rows that are not judged: those of long gaps, and those in which the observer forgets the gap before.
 struct gap_rows {
@@ -123,118 +79,31 @@ struct gap_rows {
 /// The rows of gaps that last longer than the response of the observer. It follows what was filled into a
 /// shorter one (a missing row, a wrong reading) without harm. Behind a longer one its state is unknown, as at
 /// the start of a record, and as many rows go by before it is judged.
-inline gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows, std::size_t skip) {
-    gap_rows out;
-    const std::size_t n = left_out.size();
-    for (std::size_t first = 0; first < n;) {
-        std::size_t last = first;
-        while (last < n && left_out[last]) ++last;
-        if (static_cast<double>(last - first) > response_rows) {
-            out.gap.resize(n, 0);
-            out.settling.resize(n, 0);
-            std::fill(out.gap.begin() + static_cast<std::ptrdiff_t>(first),
-                      out.gap.begin() + static_cast<std::ptrdiff_t>(last), static_cast<unsigned char>(1));
-            std::fill(out.settling.begin() + static_cast<std::ptrdiff_t>(first),
-                      out.settling.begin() + static_cast<std::ptrdiff_t>(std::min(n, last + skip)),
-                      static_cast<unsigned char>(1));
-        }
-        first = last + 1;
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows,
+                                           std::size_t skip);
 
 /// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not
 /// judged.
-inline std::vector<std::size_t> lay_blocks(std::size_t block, std::size_t skip,
-                                           const std::vector<unsigned char>& settling, std::size_t rows) {
-    std::vector<std::size_t> out;
-    for (std::size_t first = skip; first + block <= rows;) {
-        std::size_t clear = first + block;
-        while (!settling.empty() && clear > first && !settling[clear - 1]) --clear;
-        if (!settling.empty() && clear > first) {
-            first = clear; // behind the last row of it that is not judged
-            continue;
-        }
-        out.push_back(first);
-        first += block;
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t>
+lay_blocks(std::size_t block, std::size_t skip, const std::vector<unsigned char>& settling, std::size_t rows);
 
 /// These rows and their neighbours: a second difference reaches over one row on each side.
-inline std::vector<unsigned char> around(const std::vector<unsigned char>& rows) {
-    std::vector<unsigned char> out = rows;
-    for (std::size_t k = 0; k < rows.size(); ++k)
-        if (rows[k]) {
-            if (k > 0) out[k - 1] = 1;
-            if (k + 1 < rows.size()) out[k + 1] = 1;
-        }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<unsigned char> around(const std::vector<unsigned char>& rows);
 
 /// residual_force() of a model on a record. Where something was measured behind the drive, what this drive
 /// would have made otherwise is part of it, unless only what lies behind the drive is asked for.
-inline std::vector<double> residual_of(const axis_record& r, const plant_model& plant,
-                                       std::span<const double> model_acceleration, bool behind_drive = false) {
-    auto out = residual_force(plant, r.position, model_acceleration, r.period, r.bandwidth_Hz, r.left_out);
-    const driven_motion* drive = r.observer.drive;
-    if (!drive || !drive->tapped() || behind_drive) return out;
-    auto beside = drive->force_beside_tap(plant.drive, plant.force_constant);
-    for (std::size_t k = 0; k < r.left_out.size(); ++k)
-        if (r.left_out[k]) beside[k] = 0;
-    beside = zero_phase(beside, r.bandwidth_Hz, r.period);
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] += beside[k];
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_of(const axis_record& r, const plant_model& plant,
+                                                        std::span<const double> model_acceleration,
+                                                        bool behind_drive = false);
 
 /// The smoothed motion of a record for plants to be led along. It counts where the axis surely moves, by three
 /// counts within the response of the observer, and where the record says something.
-inline std::shared_ptr<const led_motion> motion_to_lead(const axis_record& r, const plant_model& described) {
-    auto out = std::make_shared<led_motion>();
-    out->way = zero_phase(r.position, r.scale.corner_Hz, r.period);
-    out->mass = described.moving_mass();
-    out->force_constant = described.force_constant;
-    const double surely = 3 * r.resolution / r.scale.response();
-    for (std::size_t k = 0; k < r.velocity.size(); ++k)
-        out->counts.push_back(std::abs(r.velocity[k]) > surely && (r.left_out.empty() || !r.left_out[k]));
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const axis_record& r,
+                                                                         const plant_model& described);
 
 /// `scale`: of this log, or of the one that it is compared with.
-inline axis_record prepare(const axis_log& log, double period, double resolution, const record_scales& scale) {
-    axis_record r{.period = period,
-                  .reference = log.reference,
-                  .position = log.position,
-                  .command = log.command,
-                  .scale = scale,
-                  .observer = {.period = period,
-                               .corner_Hz = scale.corner_Hz,
-                               .position = log.position,
-                               .command = log.command,
-                               .other_acceleration = log.other_acceleration,
-                               .resolution = std::max({resolution, log.position_step, scale.count}),
-                               .drive = log.drive.get()}};
-    const auto smooth = zero_phase(log.position, scale.corner_Hz, period);
-    r.velocity = derivative(smooth, period);
-    r.acceleration = derivative(r.velocity, period);
-    r.segment = motion_segments(motion_of(log), period, scale);
-    r.segments = r.segment.empty() ? 0 : r.segment.back() + 1;
-    r.bandwidth_Hz = scale.bandwidth_Hz();
-    r.resolution = std::max({resolution, log.position_step, scale.count});
-    auto& s = r.score;
-    const auto mean =
-        std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
-    s.block = s.skip = 5 * mean;
-    const auto gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
-    s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
-        return lay_blocks(block, s.skip, gaps.settling, log.position.size());
-    });
-    if (log.drive && log.drive->tapped())
-        s.channels = detail::and_tap(std::move(s.channels), log.position.size());
-    r.left_out = around(gaps.gap);
-    s.segments = r.segments;
-    return r;
-}
+QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, double resolution,
+                                            const record_scales& scale);
 
 /// How models are held to a record: corrected by its readings, led along its motion, or with the drive's loops
 /// closed on them and nothing but their path compared.
@@ -242,70 +111,19 @@ enum class held_by { readings, motion, loop };
 
 /// Rows after which a signal has forgotten itself, for its mean square: sum of the squared correlation of its
 /// rows, up to where they are opposite for the first time.
-inline double rows_of_memory(std::span<const double> e) {
-    double all = 0;
-    for (double x : e) all += x * x;
-    double sum = 1;
-    for (std::size_t lag = 1; lag < e.size() / 2 && all > 0; ++lag) {
-        double product = 0;
-        for (std::size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
-        if (product <= 0) break;
-        sum += 2 * (product / all) * (product / all);
-    }
-    return sum;
-}
+QUADRANT_DIAGNOSIS_DECL double rows_of_memory(std::span<const double> e);
 
 /// One channel for the path of a closed loop: in blocks of five memories of what the described machine leaves,
 /// at most a fifth of the record, each worth as many readings as it has memories. What a corrected model leaves
 /// repeats itself from channel to channel; this does not, and counts in full.
-inline void judge_path(axis_record& r, const plant_model& described) {
-    std::vector<double> e;
-    r.observer.run(described, e);
-    const std::size_t rows = r.position.size();
-    const double memory = std::max(rows_of_memory(std::span(e).first(rows)), r.scale.block() / r.period);
-    auto& s = r.score;
-    channel path = s.channels.front();
-    path.mean = 1;
-    path.block =
-        std::clamp(static_cast<std::size_t>(5 * memory), s.block, std::max(s.block, (rows - s.skip) / 5));
-    path.nu = score_temperature * static_cast<double>(path.block) / memory;
-    path.noise_gain = path.rounding = 1;
-    path.floor = 0.4 * r.resolution;
-    path.first_of_block = lay_blocks(path.block, s.skip, r.left_out, rows);
-    path.segment_of_block.clear();
-    for (const std::size_t first : path.first_of_block)
-        path.segment_of_block.push_back(r.segment[first + path.block / 2]);
-    std::vector<channel> out{path};
-    for (const channel& c : s.channels) // and what was measured behind the drive
-        if (!c.first_of_block.empty() && c.first_of_block.front() >= rows) out.push_back(c);
-    s.channels = std::move(out);
-}
+QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described);
 
 /// The record with its observer stepping as finely as the described machine needs.
-inline axis_record for_machine(axis_record r, const axis_description& a, held_by how = held_by::readings) {
-    const plant_model described(a, r.scale.give());
-    if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
-    r.observer.substeps = substeps_of(described, r.period);
-    if (how == held_by::loop) r.observer.closed = r.velocity[0];
-    if (r.observer.drive && r.observer.drive->tapped()) {
-        const drive_model timed = r.observer.drive->with_timing(described.drive);
-        r.reading_age = timed.reading_age;
-        r.tap_lateness = timed.tap_lateness;
-    }
-    if (r.observer.drive && !r.observer.drive->tapped()) {
-        r.reaction = reaction_to_reading(described, *r.observer.drive);
-        r.observer.drift_pole = drift_pole_of(described, r.period);
-        auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
-        if (r.observer.drift_pole < 1) predictor::take_drift_out(e, r.observer.drift_pole);
-        for (channel& c : r.score.channels) {
-            const bool slow = 5 * c.mean > r.score.block;
-            detail::set_gains(c, e);
-            if (!slow) c.rounding = std::max(1.0, c.noise_gain);
-            c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
-        }
-    }
-    if (how == held_by::loop) judge_path(r, described);
-    return r;
-}
+QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
+                                                held_by how = held_by::readings);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "record.ipp"
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../where/places.hpp"
 #include "../which/causes.hpp"
 #include "driven_loop.hpp"
@@ -15,53 +16,7 @@ public:
         : case_(c), log_(c.holdout ? *c.holdout : c.log), judged_(c.second ? *c.second : c.record),
           draws_(segment_draws(judged_.segments)) {}
 
-    void measure(axis_result& result, std::vector<cause>& causes) const {
-        stage before = at(case_.models.given(), case_.axis.controller);
-        result.gap = numbers(before);
-        result.evaluated_on = case_.holdout ? "the hold-out log" : "held-out motion segments of the log";
-        result.signals.residual_before = before.force;
-        if (before.loop) result.signals.simulated_position_before = before.loop->position;
-
-        bool as_given = true;
-        std::size_t plant_effects_added = 0;
-        std::optional<controller_description> controller = case_.axis.controller;
-        for (cause& c : causes) {
-            const bool of_controller = c.effect == "controller_mismatch";
-            if (c.effect == "encoder_quantization") {
-                compare_rounding(c, before);
-                continue;
-            }
-            if (c.waveform) { // of this log: the hold-out log may have another, or none
-                const auto there = [&](const auto& x) {
-                    return segment_energy(x, case_.record.segment, case_.record.segments,
-                                          case_.record.score.skip);
-                };
-                compare(c, there(case_.command_left(false)), there(case_.command_left()),
-                        case_.record.segments);
-                continue;
-            }
-            if (of_controller)
-                controller = case_.mended();
-            else
-                ++plant_effects_added;
-            stage after = at(case_.path[plant_effects_added], controller);
-            // A controller's gap is not behind the command: its force is what it commands otherwise than
-            // logged.
-            if (of_controller)
-                compare(c, energy(case_.command_difference(log_, *case_.axis.controller)),
-                        energy(case_.command_difference(log_, *controller)));
-            else
-                compare(c, energy(before.force), energy(after.force));
-            if (before.loop && after.loop) compare(c, *before.loop, *after.loop);
-            before = std::move(after);
-            as_given = false;
-        }
-        if (as_given) before = at(case_.path.front(), controller); // calibration inside the tolerance alone
-        result.gap_after = numbers(before);
-        draw(result.signals, before);
-        if (case_.command_is_added() && !case_.holdout)
-            result.signals.command_added = case_.controller->added->waveform.values;
-    }
+    void measure(axis_result& result, std::vector<cause>& causes) const;
 
 private:
     struct stage {
@@ -69,100 +24,19 @@ private:
         std::optional<closed_loop_run> loop;
     };
 
-    stage at(const candidate& model, const std::optional<controller_description>& controller) const {
-        stage s;
-        plant_model plant = model.fit.plant;
-        if (case_.holdout) {
-            plant = restarted(plant, judged_);
-            std::vector<double> e, a;
-            judged_.observer.run(plant, e, &a);
-            s.force = residual_of(judged_, plant, a);
-        } else {
-            s.force = case_.models.held_out_residual(model);
-        }
-        if (case_.axis.drive.closes()) {
-            if (can_close(case_.axis, log_)) s.loop = simulate_driven(case_.axis, plant, judged_.period, log_);
-        } else if (controller && log_.has_reference)
-            s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
-        return s;
-    }
-    static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
-        std::vector<double> d(a.size());
-        for (std::size_t k = 0; k < a.size(); ++k) d[k] = a[k] - b[k];
-        return d;
-    }
-    segment_energy energy(const std::vector<double>& x) const {
-        return {x, judged_.segment, judged_.segments, judged_.score.skip};
-    }
-    estimate interval(const segment_energy& e) const {
-        return resampled(draws_, judged_.segments, [&](const auto& w) { return e.rms(w); });
-    }
-    void compare(cause& c, const segment_energy& before, const segment_energy& after) const {
-        compare(c, before, after, judged_.segments);
-    }
+    stage at(const candidate& model, const std::optional<controller_description>& controller) const;
+    static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b);
+    segment_energy energy(const std::vector<double>& x) const;
+    estimate interval(const segment_energy& e) const;
+    void compare(cause& c, const segment_energy& before, const segment_energy& after) const;
     static void compare(cause& c, const segment_energy& before, const segment_energy& after,
-                        std::size_t segments) {
-        const auto draws = segment_draws(segments);
-        const auto interval = [&](auto of) { return resampled(draws, segments, of); };
-        c.gap_before_force_rms_N = interval([&](const auto& w) { return before.rms(w); });
-        c.gap_after_force_rms_N = interval([&](const auto& w) { return after.rms(w); });
-        c.shrink = interval([&](const auto& w) {
-            const double b = before.rms(w);
-            return b > 0 ? 1 - after.rms(w) / b : 0;
-        });
-    }
-    void compare(cause& c, const closed_loop_run& before, const closed_loop_run& after) const {
-        c.gap_before_position_rms_m = interval(energy(difference(before.position, log_.position)));
-        c.gap_after_position_rms_m = interval(energy(difference(after.position, log_.position)));
-        c.gap_before_command_rms_V = interval(energy(difference(before.command, log_.command)));
-        c.gap_after_command_rms_V = interval(energy(difference(after.command, log_.command)));
-    }
+                        std::size_t segments);
+    void compare(cause& c, const closed_loop_run& before, const closed_loop_run& after) const;
     /// Where rounding falls no model can tell: its energy is taken off as a whole.
-    void compare_rounding(cause& c, const stage& s) const {
-        const segment_energy now = energy(s.force);
-        const std::vector<double> all(judged_.segments, 1.0);
-        const double whole = square(now.rms(all));
-        const double taken = square(rounding_force(case_, case_.count)) -
-                             square(rounding_force(case_, case_.axis.encoder.resolution_m));
-        const double share = whole > 0 ? std::clamp(1 - taken / whole, 0.0, 1.0) : 1;
-        std::vector<double> left = s.force;
-        for (double& f : left) f *= std::sqrt(share);
-        compare(c, now, energy(left));
-    }
+    void compare_rounding(cause& c, const stage& s) const;
     static double square(double x) { return x * x; }
-    gap_numbers numbers(const stage& s) const {
-        const std::vector<double> all(judged_.segments, 1.0);
-        gap_numbers g;
-        g.force_rms_N = energy(s.force).rms(all);
-        g.noise_floor_force_rms_N = case_.floor_force();
-        g.bandwidth_Hz = judged_.bandwidth_Hz;
-        if (s.loop) {
-            const auto d = difference(s.loop->position, log_.position);
-            g.position_rms_m = energy(d).rms(all);
-            for (std::size_t k = judged_.score.skip; k < d.size(); ++k)
-                g.position_peak_m = std::max(g.position_peak_m, std::abs(d[k]));
-            g.command_rms_V = energy(difference(s.loop->command, log_.command)).rms(all);
-        }
-        return g;
-    }
-    void draw(axis_signals& s, const stage& after) const {
-        for (std::size_t k = 0; k < log_.position.size(); ++k)
-            s.t.push_back(static_cast<double>(k) * judged_.period);
-        s.reference = log_.reference;
-        s.position = log_.position;
-        s.velocity = judged_.velocity;
-        s.command = log_.command;
-        s.residual_after = after.force;
-        if (after.loop) {
-            s.simulated_position_after = after.loop->position;
-            if (case_.axis.controller && !case_.axis.drive.closes())
-                s.command_replayed =
-                    replay_controller(*case_.axis.controller, case_.axis.actuator, judged_.period,
-                                      log_.reference, log_.position, log_.command);
-        }
-        spectrum(s.residual_before, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_before);
-        spectrum(s.residual_after, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_after);
-    }
+    gap_numbers numbers(const stage& s) const;
+    void draw(axis_signals& s, const stage& after) const;
 
     const axis_case& case_;
     const axis_log& log_;
@@ -171,3 +45,7 @@ private:
 };
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "how_far.ipp"
+#endif

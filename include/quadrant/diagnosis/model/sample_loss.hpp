@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../log/signals.hpp"
 #include "linear_past.hpp"
 
@@ -46,14 +47,7 @@ public:
     /// `reading_noise`: least standard deviation of the position [m].
     static lossy_commands find(std::span<const double> command, std::span<const double> innovation,
                                const std::vector<double>& response, std::size_t delay_rows,
-                               double reading_noise, const loss_assumption& a) {
-        lost_commands search(command, innovation, response, delay_rows, reading_noise, a);
-        for (int round = 0; round < 5 && search.end_ > search.from_; ++round) {
-            search.take_out_the_past();
-            search.follow();
-        }
-        return search.found();
-    }
+                               double reading_noise, const loss_assumption& a);
 
 private:
     static constexpr std::size_t window = 100, abreast = 16, lag = 24,
@@ -70,154 +64,30 @@ private:
 
     lost_commands(std::span<const double> command, std::span<const double> innovation,
                   const std::vector<double>& response, std::size_t delay_rows, double reading_noise,
-                  const loss_assumption& a)
-        : command_(command), innovation_(innovation), response_(response), first_(delay_rows + 1),
-          reading_noise_(reading_noise), a_(a), p_(a.probability),
-          from_(window + linear_past::first + delay_rows),
-          end_(command.size() > first_ + response.size() ? command.size() - first_ - response.size() : 0),
-          step_(command.size(), 0.0), pulse_(step_), held_(step_), left_(step_), gain_(step_),
-          weight_(command.size(), a.probability) {
-        for (std::size_t k = 1; k < step_.size(); ++k) step_[k] = command[k - 1] - command[k];
-        variance_ = neighbourhood(innovation_, square(reading_noise_));
-    }
+                  const loss_assumption& a);
 
     static double square(double x) { return x * x; }
     /// Of a normal, from the median of its square.
-    static std::vector<double> neighbourhood(std::span<const double> e, double least) {
-        std::vector<double> out, squares;
-        for (std::size_t from = 0; from < e.size(); from += window) {
-            squares.clear();
-            for (std::size_t k = from; k < std::min(e.size(), from + window); ++k)
-                squares.push_back(square(e[k]));
-            out.push_back(
-                std::max({least, quantile(squares, 0.5) / 0.455, std::numeric_limits<double>::min()}));
-        }
-        return out;
-    }
-    static double log_density(double x) {
-        constexpr double strangers = 0.02;
-        return std::log((1 - strangers) * std::exp(-x * x / 2) / std::sqrt(2 * std::numbers::pi) +
-                        strangers / (3 * std::numbers::pi * (1 + x * x / 9)));
-    }
+    static std::vector<double> neighbourhood(std::span<const double> e, double least);
+    static double log_density(double x);
 
-    void take_out_the_past() {
-        std::vector<double> cleared(innovation_.begin(), innovation_.end()), trust(left_.size());
-        for (std::size_t k = from_; k < end_; ++k)
-            for (std::size_t j = 0; pulse_[k] != 0 && j < response_.size(); ++j)
-                cleared[k + first_ + j] -= pulse_[k] * response_[j];
-        for (std::size_t k = 0; k < trust.size(); ++k)
-            trust[k] = 1 / (variance_[k / window] + square(left_[k]) / 9);
-        const auto past = linear_past::of(cleared, step_, trust, from_);
-        variance_ = neighbourhood(past.left(cleared, step_, from_), square(reading_noise_) * past.noise_gain());
-        left_ = past.left(innovation_, step_, from_);
-        shape_ = past.left(response_);
-        shape_.resize(std::min(shape_.size(), reach));
-        energy_ = std::inner_product(shape_.begin(), shape_.end(), shape_.begin(), 0.0);
-    }
+    void take_out_the_past();
 
-    bool shows(double step, std::size_t k) const {
-        return square(step) * energy_ > square(stands_out) * variance_[(k + first_) / window];
-    }
+    bool shows(double step, std::size_t k) const;
 
     /// The histories row by row; the weights of the rows that are `lag` behind.
-    void follow() {
-        std::vector<history> now(1), next;
-        now.front().applied = command_[from_ - 1];
-        double before = 0, alone = 0;
-        std::fill(gain_.begin(), gain_.end(), 0.0);
-        for (std::size_t k = from_; k < end_; ++k) {
-            next.clear();
-            for (const history& h : now) go_on(h, k, next);
-            const double seen = left_[k + first_], sigma = std::sqrt(variance_[(k + first_) / window]);
-            for (history& h : next) {
-                double& expected = h.to_come[k % reach];
-                h.score += log_density((seen - expected) / sigma);
-                expected = 0;
-            }
-            alone += log_density(seen / sigma);
-            keep_the_likeliest(next);
-            now.swap(next);
-            const double best = now.front().score;
-            double sum = 0;
-            for (const history& h : now) sum += std::exp(h.score - best);
-            const double ahead = best + std::log(sum) - alone;
-            gain_[k] = ahead - before;
-            before = ahead;
-            for (std::size_t back = k + 1 == end_ ? 0 : lag; back <= lag && k >= from_ + back; ++back) {
-                weight_[k - back] = 0;
-                for (const history& h : now)
-                    if ((h.lost >> back) & 1) weight_[k - back] += std::exp(h.score - best) / sum;
-            }
-        }
-        count();
-    }
+    void follow();
 
     /// One history becomes two where a loss would show.
-    void go_on(const history& h, std::size_t k, std::vector<history>& next) const {
-        const double step = a_.size * (h.applied - command_[k]);
-        history kept = h;
-        kept.lost <<= 1;
-        kept.applied = command_[k];
-        if (shows(step, k)) {
-            history lost = h;
-            lost.lost = kept.lost | 1;
-            for (std::size_t j = 0; j < shape_.size(); ++j) { // the mean of the losses is gone with the past
-                lost.to_come[(k + j) % reach] += (1 - p_) * step * shape_[j];
-                kept.to_come[(k + j) % reach] -= p_ * step * shape_[j];
-            }
-            lost.score += std::log(p_);
-            kept.score += std::log(1 - p_);
-            next.push_back(lost);
-        }
-        next.push_back(kept);
-    }
+    void go_on(const history& h, std::size_t k, std::vector<history>& next) const;
 
     /// The commands and pulses of the weights, and how many were lost of those whose loss would show.
-    void count() {
-        double lost = 0;
-        told_ = 0;
-        for (std::size_t k = from_; k < end_; ++k) {
-            const double step = a_.size * (held_[k - 1] + step_[k]);
-            const bool told = shows(step, k);
-            if (!told) weight_[k] = p_;
-            told_ += told;
-            lost += told * weight_[k];
-            pulse_[k] = (weight_[k] - p_) * step;
-            held_[k] = weight_[k] * step;
-        }
-        used_ = p_;
-        if (a_.learned && told_ > 0) p_ = std::clamp(lost / told_, 1e-4, 0.5);
-    }
+    void count();
 
     /// The likeliest first. Histories that agree for as long as a pulse lasts are one.
-    static void keep_the_likeliest(std::vector<history>& of) {
-        constexpr std::uint64_t lasting = (std::uint64_t(1) << reach) - 1;
-        std::sort(of.begin(), of.end(), [](const history& a, const history& b) { return a.score > b.score; });
-        std::size_t n = 0;
-        for (std::size_t i = 0; i < of.size() && n < abreast; ++i) {
-            bool known = false;
-            for (std::size_t j = 0; j < n && !known; ++j) known = ((of[i].lost ^ of[j].lost) & lasting) == 0;
-            if (!known) {
-                if (i != n) of[n] = of[i];
-                ++n;
-            }
-        }
-        of.resize(n);
-    }
+    static void keep_the_likeliest(std::vector<history>& of);
 
-    lossy_commands found() const {
-        lossy_commands out{.applied = {command_.begin(), command_.end()}, .probability = p_, .told = told_};
-        out.gain_by_place.assign(command_.size() / (5 * window) + 1, 0.0);
-        for (std::size_t k = from_; k < end_; ++k) {
-            out.applied[k] += held_[k];
-            out.gain += gain_[k];
-            out.gain_by_place[k / (5 * window)] += gain_[k];
-            const double q = weight_[k];
-            if (q > 1e-9) out.choices += q * std::log(q / used_);
-            if (q < 1 - 1e-9) out.choices += (1 - q) * std::log((1 - q) / (1 - used_));
-        }
-        return out;
-    }
+    lossy_commands found() const;
 
     std::span<const double> command_, innovation_;
     const std::vector<double>& response_;
@@ -232,3 +102,7 @@ private:
 };
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "sample_loss.ipp"
+#endif

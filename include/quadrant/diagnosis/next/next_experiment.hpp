@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "proving_ground.hpp"
 
 #include <numeric>
@@ -20,178 +21,38 @@ struct separation {
 /// Every motion gets a first look with a few steps of each fit; the most promising are then fitted to the end
 /// and from anew, until none of the others could do better. Costs n (n - 1) simulations and pairs of fits a
 /// motion for n names: for two names and 10 motions of 5 s at 2 kHz some 2 s on one core.
-inline separation best_motion(const proving_ground& ground, const std::vector<planned_motion>& motions,
-                              const std::vector<confusable>& names, std::size_t threads = 0) {
-    const std::size_t n = names.size(), pairs = n * (n - 1);
-    const auto pair = [&](std::size_t i) { // each as the truth against each other
-        const std::size_t truth = i / (n - 1), other = i % (n - 1);
-        return std::pair{truth, other < truth ? other : other + 1};
-    };
-    const auto gains_of = [&](const std::vector<std::size_t>& which, bool whole) {
-        std::vector<double> gains(which.size() * pairs);
-        on_all_cores(gains.size(), threads, [&](std::size_t i) {
-            const auto [truth, other] = pair(i % pairs);
-            gains[i] = ground.gain(motions[which[i / pairs]], names[truth], names[other], whole);
-        });
-        return gains;
-    };
-    std::vector<std::size_t> order(motions.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto look = gains_of(order, false);
-    const auto least = [&](const std::vector<double>& gains, std::size_t m) {
-        const auto first = gains.begin() + static_cast<std::ptrdiff_t>(m * pairs);
-        return *std::min_element(first, first + static_cast<std::ptrdiff_t>(pairs));
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](auto a, auto b) { return least(look, a) > least(look, b); });
-    separation best{.tried = motions.size()};
-    constexpr std::size_t finalists = 3;
-    for (std::size_t k = 0; k < std::min(finalists, order.size()) && least(look, order[k]) > best.gain; ++k)
-        if (const double found = least(gains_of({order[k]}, true), 0); found > best.gain) {
-            best.motion = order[k];
-            best.gain = found;
-        }
-    std::size_t most = 0; // of those where the truth can do what the other cannot
-    double largest = 0;
-    for (std::size_t i = 0; i < look.size(); ++i) {
-        const auto [truth, other] = pair(i % pairs);
-        const bool richer = names[truth].model.fit.x.size() > names[other].model.fit.x.size();
-        if (richer && look[i] > largest) largest = look[most = i];
-    }
-    if (largest > 0 && best.gain < 1) {
-        const auto [truth, other] = pair(most % pairs);
-        best.one_way_motion = most / pairs;
-        best.one_way_truth = truth;
-        best.one_way_gain = ground.gain(motions[best.one_way_motion], names[truth], names[other], true);
-    }
-    return best;
-}
+QUADRANT_DIAGNOSIS_DECL separation best_motion(const proving_ground& ground,
+                                               const std::vector<planned_motion>& motions,
+                                               const std::vector<confusable>& names, std::size_t threads = 0);
 
 namespace detail {
 
 /// The names of one group that are still in question, the most probable first, at most three: each costs its
 /// share of the simulations. Two names of one model (docs/formats.md) stand as one where a third name is in
 /// question. All are fitted to the end, which the search spares those that showed little at a first look.
-inline std::vector<confusable> readings_of(const std::vector<rival>& rivals, const axis_record& record) {
-    constexpr std::size_t most = 3;
-    std::vector<const rival*> others;
-    for (const rival& r : rivals)
-        if (r.same && &r != &rivals.front()) others.push_back(&r);
-    std::stable_sort(others.begin(), others.end(), [](auto a, auto b) { return a->weight > b->weight; });
-    constexpr double in_question = 0.05; // the most probable is in any case
-    while (others.size() > 1 && others.back()->weight < in_question) others.pop_back();
-    const auto equivalent = [&](const rival* r) { return may_be_one(*r->name, *rivals.front().name); };
-    if (!std::all_of(others.begin(), others.end(), equivalent)) std::erase_if(others, equivalent);
-    std::vector<confusable> out{{rivals.front().name, rivals.front().model}};
-    for (const rival* r : others)
-        if (out.size() < most) {
-            out.push_back({r->name, r->model});
-            finish(record, out.back().model);
-        }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<confusable> readings_of(const std::vector<rival>& rivals,
+                                                            const axis_record& record);
 
 /// The standard motions for these names. Where an axis hardly slips, the law of its contact shows first, and
 /// that of the models is a stand-in: such motions are for names that show there.
-inline std::vector<planned_motion> motions_for(const std::vector<confusable>& names,
-                                               std::vector<planned_motion> motions) {
-    constexpr std::array at_rest{&suspect::presliding_friction, &suspect::backlash, &suspect::stribeck_friction,
-                                 &suspect::actuator_dead_zone, &suspect::cutting_force};
-    const bool wanted = std::any_of(names.begin(), names.end(), [&](const confusable& n) {
-        return std::find(at_rest.begin(), at_rest.end(), n.name) != at_rest.end();
-    });
-    if (!wanted) std::erase_if(motions, [](const planned_motion& m) { return !m.slips; });
-    return motions;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<planned_motion> motions_for(const std::vector<confusable>& names,
+                                                                std::vector<planned_motion> motions);
 
-inline experiment simulated_experiment(const axis_case& c, const std::vector<confusable>& names) {
-    experiment out{.motion = "", .separates = {}, .axis = c.axis.name};
-    double log = std::numeric_limits<double>::infinity();
-    bool known = true;
-    std::string all;
-    for (const confusable& n : names) {
-        out.separates.emplace_back(n.name->name);
-        all += (all.empty() ? "" : &n == &names.back() ? " and " : ", ") + out.separates.back();
-        if (&n == &names.front()) continue;
-        log = std::min(log, names.front().model.total - n.model.total);
-        known = known && names.front().equivalent(n);
-    }
-    out.gain_of_log = std::max(0.0, log);
-    const double period = c.record.period;
-    const auto motions =
-        motions_for(names, standard_motions(shown_by(motion_of(c.log), period, c.record.scale.corner_Hz),
-                                            period, c.record.scale));
-    if (motions.empty()) {
-        out.motion = names.front().name->exciting_motion;
-        out.finding = "not simulated: the reference of this log shows no travel and speed to stay inside";
-        return out;
-    }
-    axis_description axis = c.axis;
-    if (axis.controller) axis.controller = c.mended();
-    const proving_ground ground(axis, period, c.resolution, c.noise, c.record.scale);
-    const separation best = best_motion(ground, motions, names, c.limits.threads);
-    const auto inside = worded("%zu motions inside the travel, speed and acceleration of this log", best.tried);
-    const auto take = [&](std::size_t motion) {
-        out.motion = motions[motion].words;
-        out.period_s = period;
-        out.reference = motions[motion].reference;
-    };
-    if (best.gain >= score_temperature) { // better than odds of e to 1
-        out.expected_gain = best.gain;
-        take(best.motion);
-        out.finding = "simulated beforehand, each name as the truth and the others fitted again: the best of " +
-                      inside + worded(", which itself separates them by %.1f", out.gain_of_log);
-        if (out.gain_of_log >= c.limits.margin && !c.settled)
-            out.finding +=
-                "; what keeps them together is the force that is left unexplained, which is larger than "
-                "their difference: find that first";
-        if (best.gain < c.limits.margin)
-            out.finding += worded("; below %.0f they stay undecided", c.limits.margin);
-    } else if (best.one_way_gain >= c.limits.margin) {
-        take(best.one_way_motion);
-        out.finding =
-            worded("it decides only if %s is true, by a log-score of %.0f in simulation, the best of ",
-                   out.separates[best.one_way_truth].c_str(), best.one_way_gain) +
-            inside + "; else they stay one group" +
-            (known ? ", for they are one model under two names but for that" : "");
-    } else {
-        out.motion = "none: no motion of this axis tells " + all + " apart";
-        out.finding =
-            inside + worded(" were simulated, and the best separates them by a log-score of %.1f", best.gain) +
-            (known ? ": a known equivalence, one model under two names; either corrects the simulation"
-                   : "; another load or another sensor would have to tell");
-    }
-    if (!axis.controller) out.finding += "; under a stand-in controller, as none is described";
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
+                                                        const std::vector<confusable>& names);
 
 /// The motion to record next, for the first group of names that the record does not tell apart, one that is
 /// claimed before one that is not. A name that is only a suspect and has no second reading has nothing to be
 /// simulated against: what else it may be has no model. The motion that shows it is then named and no gain is
 /// claimed.
-inline void propose(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes,
-                    const std::vector<std::vector<rival>>& rivals) {
-    if (out.next.expected_gain > 0) return; // of an earlier axis
-    const cause* group = nullptr;
-    const cause* suspect = nullptr;
-    for (const cause& x : causes) {
-        if (x.confusable_with.empty()) {
-            if (!suspect && x.probability < 0.5) suspect = &x;
-        } else if (!group || (group->group_probability < 0.5 && x.group_probability >= 0.5)) {
-            group = &x;
-        }
-    }
-    if (group) {
-        for (const auto& r : rivals)
-            if (r.front().name->name == group->effect)
-                out.next = simulated_experiment(c, readings_of(r, c.record));
-    } else if (suspect && out.next.motion.empty()) {
-        out.next = {.motion = suspect->exciting_motion, .separates = {}, .axis = c.axis.name};
-        out.next.finding = "to see whether " + suspect->effect +
-                           " is there; not simulated, for what else it may be has no model";
-    }
-}
+QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
+                                     const std::vector<cause>& causes,
+                                     const std::vector<std::vector<rival>>& rivals);
 
 } // namespace detail
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "next_experiment.ipp"
+#endif

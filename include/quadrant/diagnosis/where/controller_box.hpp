@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../controller/kinds.hpp"
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
@@ -27,14 +28,8 @@ struct own_loop {
 } // namespace detail
 
 /// The controller that is described, as new: of the machine file's kind, or the user's own.
-inline std::unique_ptr<running_controller> made(const controller_description& c, const actuator_description& a,
-                                                double period) {
-    if (c.own)
-        return std::make_unique<detail::positions_only<detail::own_loop>>(
-            detail::own_loop{c.own->made(), detail::stage_of(a)});
-    const controller_kind& kind = kind_of(c);
-    return kind.make(given_values(kind, c), a, period);
-}
+QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> made(const controller_description& c,
+                                                                 const actuator_description& a, double period);
 
 /// What a controller saw and did: columns of a log, of one length. Those that are empty are differences of the
 /// positions.
@@ -115,27 +110,8 @@ private:
 /// Puts a controller into the middle of a motion, as new: row 0 of a log is its past, and `command` is what it
 /// gave there. One that has to run first is run through an even motion that ends at row 0, twice: the second
 /// time with what the first missed.
-inline std::unique_ptr<running_controller> begun(const running_controller& fresh, const loop_inputs& in,
-                                                 double command) {
-    auto loop = fresh.copy();
-    if (loop->past() == 0) {
-        loop->settle(in.start(command));
-        return loop;
-    }
-    const auto ahead = static_cast<std::ptrdiff_t>(loop->lead());
-    const auto from = -static_cast<std::ptrdiff_t>(loop->past());
-    double asked = command;
-    for (int round = 0; round < 2; ++round) {
-        loop = fresh.copy();
-        const double x = in.measured(from).position.value();
-        loop->settle({.reference = x, .measured = x, .command = asked});
-        double last = asked;
-        for (std::ptrdiff_t k = from; k <= 0; ++k)
-            last = loop->show(in.asked(std::min(k + ahead, in.rows() - 1)), in.measured(k), asked);
-        if (std::isfinite(last)) asked += command - last;
-    }
-    return loop;
-}
+QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> begun(const running_controller& fresh,
+                                                                  const loop_inputs& in, double command);
 
 /// The controller box alone, one stretch of a record without gaps: fed the logged reference and position, it
 /// puts out what the described controller would have commanded. Row 0 is taken from the log. What went before
@@ -143,70 +119,24 @@ inline std::unique_ptr<running_controller> begun(const running_controller& fresh
 /// that leaves open of the initial integral is a constant offset of the replay, which a second pass takes from
 /// the whole record. A law that follows from what it applied is told so by the log. Rows that a controller is
 /// only shown, and those whose look-ahead ends behind the log, are the logged ones.
-inline std::vector<double> replay_stretch(const controller_description& c, const actuator_description& a,
-                                          double period, const loop_columns& log) {
-    const auto fresh = made(c, a, period);
-    const loop_inputs in(log, period);
-    const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
-    const std::size_t shown = fresh->past() > 0 ? fresh->past() - fresh->lead() : 0;
-    std::vector<double> out(log.command.begin(), log.command.end());
-    const auto pass = [&](double offset) {
-        const auto loop = begun(*fresh, in, log.command[0] + offset);
-        for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k) {
-            const auto row = static_cast<std::size_t>(k);
-            if (row < shown) {
-                const bool missing = row + 1 == shown || !loop->fixed_by_last_row();
-                loop->show(in.asked(k + ahead), in.measured(k), log.command[row] + (missing ? offset : 0));
-                continue;
-            }
-            out[row] = loop->step(in.asked(k + ahead), in.measured(k));
-            loop->applied(log.command[row]);
-        }
-    };
-    pass(0);
-    if (fresh->remembers()) {
-        std::vector<double> offset(out.size());
-        for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
-        pass(quantile(offset, 0.5));
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_description& c,
+                                                           const actuator_description& a, double period,
+                                                           const loop_columns& log);
 
 /// The controller box over a whole record: begun anew behind a gap, as at the start of a record. Rows that are
 /// left out, those behind them in which the controller forgets what was filled in, and stretches too short to
 /// begin in are the logged ones.
-inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
-                                             double period, const loop_columns& log) {
-    if (log.left_out.empty()) return replay_stretch(c, a, period, log);
-    constexpr std::size_t bridged = 4, forgets = 64, least = 8; // rows
-    std::vector<double> out(log.command.begin(), log.command.end());
-    const std::size_t rows = out.size();
-    const auto gap_from = [&](std::size_t k) { // how many rows are left out from here on
-        std::size_t end = k;
-        while (end < rows && log.left_out[end]) ++end;
-        return end - k;
-    };
-    for (std::size_t first = 0; first < rows;) {
-        std::size_t last = first, gap = 0;
-        while (last < rows && (gap = gap_from(last)) <= bridged) last += std::max<std::size_t>(1, gap);
-        last = std::min(last, rows);
-        if (last - first >= least) {
-            const auto replayed = replay_stretch(c, a, period, log.part(first, last - first));
-            std::copy(replayed.begin(), replayed.end(), out.begin() + static_cast<std::ptrdiff_t>(first));
-        }
-        first = last + std::max<std::size_t>(1, gap);
-    }
-    for (std::size_t k = 0, since = forgets; k < rows; ++k) {
-        since = log.left_out[k] ? 0 : since + 1;
-        if (since < forgets) out[k] = log.command[k];
-    }
-    return out;
-}
-inline std::vector<double> replay_controller(const controller_description& c, const actuator_description& a,
-                                             double period, std::span<const double> reference,
-                                             std::span<const double> position,
-                                             std::span<const double> command) {
-    return replay_controller(c, a, period, loop_columns{reference, position, command});
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,
+                                                              const actuator_description& a, double period,
+                                                              const loop_columns& log);
+QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,
+                                                              const actuator_description& a, double period,
+                                                              std::span<const double> reference,
+                                                              std::span<const double> position,
+                                                              std::span<const double> command);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "controller_box.ipp"
+#endif

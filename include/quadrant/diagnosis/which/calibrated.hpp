@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "axis_case.hpp"
 #include "interval.hpp"
 
@@ -42,22 +43,11 @@ inline constexpr effect described_values{
 /// What a model of an axis has moved inside the owner's tolerance, as machine keys. A key that a cause gives is
 /// that cause's; a value that the machine file does not describe stays undescribed, but for the give of its
 /// friction.
-inline std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
-                                                  const std::vector<cause>& causes) {
-    const auto before = detail::described_values.read(c.models.given().fit.plant);
-    std::vector<parameter_estimate> out;
-    for (auto& p : estimates(model, detail::described_values, c.record.score)) {
-        const bool of_a_cause = std::any_of(causes.begin(), causes.end(), [&](const cause& x) {
-            return std::any_of(x.parameters.begin(), x.parameters.end(),
-                               [&](const auto& q) { return q.key == p.key; });
-        });
-        const auto was =
-            std::find_if(before.begin(), before.end(), [&](const auto& b) { return b.key == p.key; });
-        const bool moved =
-            was == before.end() || p.key.starts_with("gms") || was->values[0] != p.values[0].value;
-        if (!of_a_cause && moved) out.push_back(std::move(p));
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
+                                                                   const std::vector<cause>& causes);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "calibrated.ipp"
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../effect/described_numbers.hpp"
 #include "../effect/effect.hpp"
 
@@ -20,23 +21,7 @@ inline parameter start_of_drive(const record_scales& scale) {
 /// When the position and what was measured behind the drive were read within a row: registers are read one
 /// after the other, before or after the drive takes the row's set-point. Each moment may be off by up to a row.
 /// They begin where the drive that is given has them.
-inline std::array<parameter, 2> timing_of_readings(const drive_model& d, double period) {
-    const auto within_a_row = [&](const char* key, double& (*of)(plant_model&), double start) {
-        return parameter{.key = key,
-                         .of = of,
-                         .start = start,
-                         .low = -period,
-                         .high = period,
-                         .step = 0.05 * period,
-                         .expected = 0,
-                         .spread = period / std::numbers::sqrt3};
-    };
-    return {
-        within_a_row(
-            "reading_age", [](plant_model& p) -> double& { return p.drive.reading_age; }, d.reading_age),
-        within_a_row(
-            "tap_lateness", [](plant_model& p) -> double& { return p.drive.tap_lateness; }, d.tap_lateness)};
-}
+QUADRANT_DIAGNOSIS_DECL std::array<parameter, 2> timing_of_readings(const drive_model& d, double period);
 /// Whether a fitted number belongs to the record, not to the machine.
 inline bool is_of_record(const parameter& p) {
     return p.key == "start_force" || p.key == "reading_age" || p.key == "tap_lateness";
@@ -47,72 +32,10 @@ inline bool is_of_record(const parameter& p) {
 /// also
 /// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis
 /// alike. `give`: of every contact, record_scales::give().
-inline std::vector<parameter> calibration(const axis_description& axis, double give) {
-    const plant_description& d = axis.plant;
-    const tolerance_description& tolerance = axis.tolerance;
-    std::vector<parameter> out;
-    const auto within = [&](std::string_view key, double& (*of)(plant_model&), double value, double relative) {
-        if (!(value > 0) || !(relative > 0)) return;
-        const double ratio = std::min(relative, 0.9);
-        out.push_back(
-            {.key = std::string(key),
-             .of = of,
-             .start = value,
-             .low = value * (1 - ratio),
-             .high = value * (1 + ratio),
-             .logarithmic = true,
-             .step = 1e-3,
-             .expected = std::log(value),
-             .spread = ratio / std::numbers::sqrt3}); // the standard deviation of a uniform inside the bounds
-    };
-    within(
-        "mass_kg", [](plant_model& p) -> double& { return p.mass; }, d.mass_kg, tolerance.of("mass"));
-    within(
-        "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },
-        d.force_constant_N_per_V, tolerance.of("force_constant"));
-    within(
-        "viscous_N_s_per_m", [](plant_model& p) -> double& { return p.friction.viscous_slope; },
-        d.viscous_N_s_per_m, tolerance.of("viscous"));
-    within(
-        "delay_s", [](plant_model& p) -> double& { return p.delay; }, d.delay_s, tolerance.of("delay"));
-    const double coulomb = d.coulomb_N.value_or(0), excess = d.static_N ? *d.static_N - coulomb : 0;
-    within(
-        "coulomb_N", [](plant_model& p) -> double& { return p.friction.coulomb; }, coulomb,
-        tolerance.of("coulomb"));
-    if (excess >
-        0) { // both levels move inside their tolerances, and the excess between them by what either lets it
-        within(
-            "static_N", [](plant_model& p) -> double& { return p.friction.excess; }, excess,
-            tolerance.of("static") * *d.static_N / excess);
-        if (!out.empty() && out.back().key == "static_N") {
-            const double play = tolerance.of("static") * *d.static_N + tolerance.of("coulomb") * coulomb;
-            out.back().low = std::max(0.01 * excess, excess - play);
-            out.back().high = excess + play;
-        }
-    }
-    within(
-        "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
-        d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
-    for (const effect* e : every_effect())
-        for (const machine_key& key : e->keys)
-            if (key.of && key.tolerance)
-                for (double value : numbers_of(axis, key, *e))
-                    within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
-    // Every contact gives way a little before it slips; up to ten times that it is no cause. One that is
-    // described as giving way further, or element by element, stays as described.
-    const double most = 10 * give;
-    const friction_contact contact = plant_model(d, give).friction.contact;
-    if (contact.elements == 1 && contact.length <= most)
-        out.push_back({.key = "presliding_length_m",
-                       .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
-                       .start = contact.length,
-                       .low = std::min(0.05 * give, contact.length),
-                       .high = most,
-                       .logarithmic = true,
-                       .step = 1e-2,
-                       .expected = std::log(contact.length),
-                       .spread = 1.5});
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "calibration.ipp"
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../result/resample.hpp"
 #include "axis_case.hpp"
 #include "interval.hpp"
@@ -27,402 +28,88 @@ inline constexpr double alike = 0.2;
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments
 /// (pseudo-BMA with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A
 /// hold-out log counts as it stands.
-inline void weigh(std::vector<rival>& rivals, const axis_case& c) {
-    const auto draws = segment_draws(c.record.segments);
-    std::vector<double> score(rivals.size()), second(rivals.size());
-    if (c.second) {
-        std::vector<const candidate*> models;
-        for (const rival& r : rivals) models.push_back(&r.model);
-        second = c.scores_on_second(models);
-    }
-    for (const auto& draw : draws) {
-        for (std::size_t j = 0; j < rivals.size(); ++j) {
-            score[j] = second[j] - rivals[j].model.penalty;
-            for (std::size_t s = 0; s < draw.size(); ++s) score[j] += draw[s] * rivals[j].model.held_out[s];
-        }
-        const double top = *std::max_element(score.begin(), score.end());
-        double sum = 0;
-        for (double& v : score) sum += v = std::exp((v - top) / score_temperature);
-        for (std::size_t j = 0; j < rivals.size(); ++j)
-            rivals[j].weight += score[j] / sum / static_cast<double>(draws.size());
-    }
-}
+QUADRANT_DIAGNOSIS_DECL void weigh(std::vector<rival>& rivals, const axis_case& c);
 
 /// Whether a model frees all that the effect `e` freed in another: it holds that effect and more.
-inline bool contains(const candidate& model, const candidate& other, const effect& e) {
-    for (const effect* in : model.effects)
-        if (in->holds == e.name) return true;
-    const auto frees = [](const candidate& m, const std::string& key) {
-        return std::any_of(m.fit.parameters.begin(), m.fit.parameters.end(),
-                           [&](const parameter& p) { return p.key == key && !(p.spread > 0); });
-    };
-    bool all = false;
-    for (const key_value& k : e.read(other.fit.plant))
-        if (frees(other, k.key)) {
-            if (!frees(model, k.key)) return false;
-            all = true;
-        }
-    return all;
-}
+QUADRANT_DIAGNOSIS_DECL bool contains(const candidate& model, const candidate& other, const effect& e);
 
 /// Force that takes `before` to `after`, in energy.
-inline double between(double before, double after) {
-    return std::sqrt(std::max(std::numeric_limits<double>::min(), square(before) - square(after)));
-}
+QUADRANT_DIAGNOSIS_DECL double between(double before, double after);
 /// What the cause number `which` explains, in force on held-out motion. Where the model without it stops at the
 /// end of a tolerance, calibration bent as far as it may to what the cause does, and hides some of it: there it
 /// is what the best model leaves when the cause's own numbers go back to what is described.
-inline double explained_by(const axis_case& c, std::size_t which) {
-    const double after = c.models.held_out_force(c.best());
-    const double found = between(c.models.held_out_force(c.path[which]), after);
-    if (!c.record.replayed() || !c.path[which].stops_at_a_tolerance()) return found;
-    return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
-}
+QUADRANT_DIAGNOSIS_DECL double explained_by(const axis_case& c, std::size_t which);
 /// The cause number `which` of the best model and its rivals: the model with this cause exchanged for each
 /// other suspect, the others kept. The first entry is the cause itself. A model that contains the cause is no
 /// other name for it.
-inline std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
-    const effect* own = c.best().effects[which];
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, own);
-    const candidate without = c.models.with(others);
-    std::vector<rival> out{{.model = c.best(), .name = own}};
-    for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
-        for (const effect* e : model.effects)
-            if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
-                out.push_back({.model = model, .name = e});
-                // The same model by another name is fitted as well as the first, whenever it was met.
-                if (!may_be_one(*e, *own) || c.models.over()) continue;
-                if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
-                    out.back().model = std::move(again);
-            }
-    // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and
-    // beside it the name is no longer needed. A polynomial in the velocity comes close to Coulomb friction, but
-    // the jump is missing in it.
-    if (!c.settled && !c.models.over()) {
-        const auto forms = c.models.forms();
-        const auto models = c.models.with_these(without, forms, c.limits.forms);
-        for (std::size_t i = 0; i < models.size(); ++i)
-            if (c.takes_off(models[i], c.best()) > 0.5 &&
-                !c.models.pays(c.models.with(models[i], own), models[i]))
-                out.push_back({.model = models[i], .name = forms[i]});
-    }
-    weigh(out, c);
-
-    const double energy = square(c.models.held_out_force(c.best()));
-    const double unexplained = c.settled ? 0 : std::max(0.0, energy - square(c.floor_force()));
-    const double there = c.second ? square(c.second_log(c.best()).force) : 0;
-    const double unexplained_there = there - square(c.floor_force());
-    const auto excess_on_second = [&](const candidate& m) {
-        if (!c.second || !c.record.replayed() || !(unexplained_there > 0)) return 0.0;
-        return std::max(0.0, square(c.second_log(m).force) - there) / unexplained_there;
-    };
-    const auto excess_of_own = [&](const candidate& m) {
-        const double here = std::max(0.0, energy - square(c.models.held_out_force(m))) / unexplained;
-        if (!c.second || !(unexplained_there > 0)) return here;
-        return here + std::max(0.0, there - square(c.second_log(m).force)) / unexplained_there;
-    };
-    for (auto& r : out) {
-        const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
-        // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
-        // unexplained are not told apart by it, nor are two that are one model (docs/formats.md) while their
-        // predictions agree.
-        const bool pays = r.model.total > without.total + c.limits.margin;
-        // Not told apart: by neither log.
-        const double more = excess() / unexplained + excess_on_second(r.model);
-        const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within = pays && leaner && !c.record.closed() && !r.unlisted() && unexplained > 0 &&
-                            more < 1; // more flexible and no better: no second reading
-        const bool equivalent = may_be_one(*r.name, *own) && !c.record.closed() &&
-                                excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
-        const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
-        if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
-        if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
-        // Two names of one model whose difference is small beside what both leave: the commoner one is
-        // likelier, whichever was found first.
-        if (equivalent && within && c.record.replayed()) {
-            const double commoner = r.name->prior.odds / own->prior.odds, less = excess_of_own(r.model);
-            r.weight = std::max(r.weight, commoner * std::exp(-more) * out.front().weight);
-            if (&r != &out.front())
-                out.front().weight = std::max(out.front().weight, std::exp(-less) / commoner * r.weight);
-        }
-        r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
-    }
-    double sum = 0;
-    for (const auto& r : out) sum += r.weight;
-    // A name that the search did not come to may be as good as the cause itself, as often as it is as common.
-    double all = 0, missed = 0;
-    for (const effect* e : c.models.suspects()) {
-        all += e->prior.odds;
-        if (c.models.missed().contains(e)) missed += e->prior.odds;
-    }
-    if (missed > 0) sum += out.front().weight * missed / all;
-    for (auto& r : out) r.weight /= sum;
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which);
 
 /// What is left above the noise beside it.
-inline double left_beside(const axis_case& c, std::size_t which) {
-    return c.excused ? 0 : between(c.models.held_out_force(c.best()), c.floor_force()) / explained_by(c, which);
-}
+QUADRANT_DIAGNOSIS_DECL double left_beside(const axis_case& c, std::size_t which);
 /// The same beside `explained` [N], with what the laws of the other causes may leave: none is better than some
 /// five per cent of what it explains. What does not matter to the owner counts against a cause that explains
 /// even less.
-inline double doubtful_beside(const axis_case& c, double explained) {
-    const double left = between(c.models.held_out_force(c.best()), c.floor_force());
-    if (c.excused && left < explained) return 0;
-    const double all = between(c.models.held_out_force(c.path.front()), c.models.held_out_force(c.best()));
-    return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
-}
+QUADRANT_DIAGNOSIS_DECL double doubtful_beside(const axis_case& c, double explained);
 
 /// Mean square of what is between the path of a plant and that of a log, where its drive's loops are closed on
 /// it.
-inline double beside_path(const axis_record& r, const plant_model& plant) {
-    std::vector<double> e;
-    r.observer.run(plant, e);
-    double sum = 0, rows = 0;
-    for (std::size_t k = r.score.skip; k < r.position.size(); ++k)
-        if (r.left_out.empty() || !r.left_out[k]) {
-            sum += square(e[k]);
-            ++rows;
-        }
-    return rows > 0 ? sum / rows : 0;
-}
+QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_model& plant);
 /// What the best model leaves of both logs' paths beside what the cause number `which` explains of them.
-inline double left_of_paths(const axis_case& c, std::size_t which) {
-    const plant_model with = c.best().fit.plant,
-                      without = c.models.plant_without(c.best(), *c.best().effects[which]);
-    double left = beside_path(c.record, with), before = beside_path(c.record, without);
-    if (c.second) {
-        left += beside_path(*c.second, restarted(with, *c.second));
-        before += beside_path(*c.second, restarted(without, *c.second));
-    }
-    return std::sqrt(left) / between(std::sqrt(before), std::sqrt(left));
-}
+QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t which);
 
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or
 /// there; on the hold-out log, where a gap stays open there, beside what it explains here and there. A name
 /// that makes that one worse was not the cause there.
-inline double unknown(const axis_case& c, std::size_t which) {
-    const std::size_t names = c.models.suspects().size();
-    if (!c.second)
-        return by_chance(names, c.record.closed() ? left_of_paths(c, which)
-                                                  : doubtful_beside(c, explained_by(c, which)));
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, c.best().effects[which]);
-    const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
-    const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
-    const auto with_gain = [&](double out) { return 1 / (1 + (1 - out) / out * std::exp(gain)); };
-    // What predicts another motion worse than the machine file does is no cause of both.
-    constexpr double doubt = 0.6;
-    if (c.record.closed() && beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
-                                 beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
-        return doubt;
-    if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_paths(c, which)));
-    const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
-    const double here = explained_by(c, which), there = between(std::min(before.force, machine), after.force);
-    double out = by_chance(names, doubtful_beside(c, std::max(here, there)));
-    if (!c.settled_on_second) // the motion there may show it less, but not nothing of it beside an open gap
-        out = std::max(out, by_chance(names, between(after.force, c.floor_force()) / std::sqrt(here * there)));
-    return with_gain(out);
-}
+QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which);
 
 /// The probability of the models that have the cause or one of its other names, against the best one tried that
 /// has
 /// none of them: two common effects may do what a rare one does.
-inline double against_others(const axis_case& c, const std::vector<rival>& names) {
-    std::vector<const effect*> same;
-    for (const rival& r : names)
-        if (r.same || &r == &names.front()) same.push_back(r.name);
-    return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(),
-                                                    [&](const candidate& m) { return c.worth(m); }) -
-                              c.worth(c.best())) /
-                             score_temperature));
-}
+QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vector<rival>& names);
 
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even
 /// ones alone repeat twice as often.
-inline void in_lowest_terms(std::vector<parameter_estimate>& values) {
-    parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
-    for (parameter_estimate& p : values) {
-        if (p.key.find("period") != p.key.npos || p.key == "process.fundamental_Hz") cycle = &p;
-        if (p.key.ends_with("phase_rad")) phases = &p;
-    }
-    for (parameter_estimate& p : values)
-        if (phases && &p != phases && p.values.size() == phases->values.size() && p.values.size() > 1)
-            sizes = &p;
-    if (!cycle || !sizes) return;
-    double odd = 0, all = 0;
-    for (std::size_t i = 0; i < sizes->values.size(); ++i) {
-        all += square(sizes->values[i].value);
-        if (i % 2 == 0) odd += square(sizes->values[i].value);
-    }
-    if (!(odd < 0.01 * all)) return;
-    for (parameter_estimate* p : {sizes, phases}) {
-        std::vector<estimate> even;
-        for (std::size_t i = 1; i < p->values.size(); i += 2) even.push_back(p->values[i]);
-        p->values = even;
-    }
-    const double factor = cycle->key.ends_with("_Hz") ? 2 : 0.5;
-    for (estimate& e : cycle->values) e = {factor * e.value, factor * e.low, factor * e.high};
-    in_lowest_terms(values);
-}
+QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values);
 
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per
 /// cent, none better than what is left beside what its effect explains (a pull as large as the rest, all of it
 /// along this value), no length better than half a count. An angle moves by as much in radian.
-inline void add_model_error(std::vector<parameter_estimate>& values, const effect& e, const axis_case& c,
-                            double left) {
-    in_lowest_terms(values);
-    const double relative = std::min(1.0, std::hypot(0.01, left));
-    for (auto& p : values)
-        for (estimate& v : p.values) {
-            const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
-            const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
-            v.low = v.value - std::hypot(v.value - v.low, error);
-            v.high = v.value + std::hypot(v.high - v.value, error);
-        }
-    for (estimate& v : values.front().values) v.high *= e.by_another_law;
-}
+QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
+                                             const axis_case& c, double left);
 
-inline void widen(std::vector<parameter_estimate>& mine, const std::vector<parameter_estimate>& other) {
-    for (auto& p : mine)
-        for (const auto& o : other)
-            if (o.key == p.key)
-                for (std::size_t k = 0; k < std::min(p.values.size(), o.values.size()); ++k) {
-                    p.values[k].low = std::min(p.values[k].low, o.values[k].low);
-                    p.values[k].high = std::max(p.values[k].high, o.values[k].high);
-                }
-}
+QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
+                                   const std::vector<parameter_estimate>& other);
 
 /// Whether a number of a drive's loops, found outside the owner's tolerance, has an interval that reaches into
 /// it. A replay is so sensitive to
 /// these gains that they are fitted outside a narrow tolerance by what a law is wrong by: such a value is a
 /// suspect, no claim.
-inline bool may_be_inside_its_tolerance(const axis_case& c, const std::vector<parameter_estimate>& found) {
-    if (!c.axis.drive.closes() || c.record.closed() || found.empty() ||
-        !found.front().key.starts_with("drive."))
-        return false;
-    for (const parameter& p : c.path.front().fit.parameters)
-        if (p.key == found.front().key && p.spread > 0) {
-            const estimate& e = found.front().values.front();
-            return e.low <= p.high && e.high >= p.low;
-        }
-    return false;
-}
+QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
+                                                         const std::vector<parameter_estimate>& found);
 
 } // namespace detail
 
 /// The causes behind the command wire, in the order of the path, with probabilities, intervals and second
 /// readings. `rivals`: of each, the models that it is weighed against (detail::rivals_of).
-inline std::vector<cause> plant_causes(const axis_case& c,
-                                       const std::vector<std::vector<detail::rival>>& rivals) {
-    const auto& effects = c.best().effects;
-    std::vector<cause> out;
-    for (std::size_t i = 0; i < effects.size(); ++i) {
-        const effect& e = *effects[i];
-        cause named;
-        named.axis = c.axis.name;
-        named.effect = e.name;
-        named.exciting_motion = e.exciting_motion;
-        named.parameters = estimates(c.best(), e, c.record.score);
-        plant_model as_given = c.models.given().fit.plant, nothing_described;
-        nothing_described.friction.contact.length = c.record.scale.give();
-        for (const parameter& p : c.best().fit.parameters)
-            if (p.key == named.parameters.front().key && p.of(as_given) != p.of(nothing_described))
-                named.described = true;
-        for (const auto& r : rivals[i]) {
-            if (r.name == &e) {
-                named.probability = r.weight;
-                named.group_probability += r.weight;
-            } else if (r.same) {
-                named.confusable_with.emplace_back(r.name->name);
-                named.group_probability += r.weight;
-                auto values = estimates(r.model, *r.name, c.record.score);
-                detail::add_model_error(values, *r.name, c, detail::left_beside(c, i));
-                named.readings.push_back({std::string(r.name->name), std::move(values)});
-            } else if (r.unlisted() && r.weight > 0.5) {
-                named.better_form = r.name->name;
-            }
-        }
-        // Where another cause has a second reading, this one's values under that reading belong to its
-        // interval.
-        for (std::size_t j = 0; j < rivals.size(); ++j)
-            for (const auto& r : rivals[j])
-                if (j != i && r.same && r.name != effects[j])
-                    detail::widen(named.parameters, estimates(r.model, e, c.record.score));
-        detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
-        // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
-        // for it (docs/trial.md).
-        constexpr double least = 0.08;
-        const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]);
-        named.probability = std::max(least, named.probability * known);
-        named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (detail::may_be_inside_its_tolerance(c, named.parameters)) {
-            constexpr double guess = 0.4;
-            named.probability = std::min(named.probability, guess);
-            named.group_probability = std::min(named.group_probability, guess);
-        }
-        out.push_back(std::move(named));
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
+                                                        const std::vector<std::vector<detail::rival>>& rivals);
 
 /// What rounding to a count alone leaves in the residual force [N].
-inline double rounding_force(const axis_case& c, double count) {
-    return residual_force_floor(c.axis.plant.mass_kg, count / std::sqrt(12.0), c.record.period,
-                                c.record.bandwidth_Hz);
-}
+QUADRANT_DIAGNOSIS_DECL double rounding_force(const axis_case& c, double count);
 
 /// An encoder that counts in coarser steps than described: the positions are multiples of the coarser count,
 /// which needs no dynamics to see.
-inline std::optional<cause> count_cause(const axis_case& c) {
-    if (!c.coarse() || c.count_unnamed) return {};
-    cause out;
-    out.axis = c.axis.name;
-    out.effect = "encoder_quantization";
-    out.exciting_motion = "any: the steps of the reading are counted";
-    out.described = true;
-    out.probability = out.group_probability = 0.97;
-    out.parameters.push_back({"encoder.resolution_m", {{c.count, c.count, c.count}}});
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::optional<cause> count_cause(const axis_case& c);
 
 /// A signal that is added to the command, where that is more probable than another controller.
-inline cause added_cause(const axis_case& c) {
-    const added_finding& found = *c.controller->added;
-    cause out;
-    out.axis = c.axis.name;
-    out.effect = "added_command";
-    out.exciting_motion = "any: the controller is replayed from the log";
-    out.probability = out.group_probability = found.probability;
-    out.waveform = found.waveform;
-    if (found.of_controller > 0.01) {
-        out.confusable_with = {"controller_mismatch"};
-        out.group_probability += found.of_controller;
-        const double value = c.controller->value;
-        out.readings.push_back({out.confusable_with.front(), {{c.controller->key, {{value, value, value}}}}});
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL cause added_cause(const axis_case& c);
 
 /// The controller, when it is not the one described. Replay is deterministic: a key that brings it back to
 /// rounding is the cause; one that does not is a guess.
-inline std::optional<cause> controller_cause(const axis_case& c) {
-    if (!c.controller_differs() || c.controller_unnamed) return {};
-    if (c.command_is_added()) return added_cause(c);
-    cause out;
-    out.axis = c.axis.name;
-    out.effect = "controller_mismatch";
-    out.exciting_motion = "any: the controller is replayed from the log";
-    out.described = true;
-    out.probability = out.group_probability = c.controller->mended ? 0.97 : 0.4;
-    if (!c.controller->key.empty())
-        out.parameters.push_back(
-            {c.controller->key, {{c.controller->value, c.controller->low, c.controller->high}}});
-    for (const auto& other : c.controller->alternatives)
-        out.readings.push_back({out.effect, {{other.key, {{other.value, other.value, other.value}}}}});
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::optional<cause> controller_cause(const axis_case& c);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "causes.ipp"
+#endif

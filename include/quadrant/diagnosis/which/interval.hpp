@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/version.hpp"
 #include "../result/result.hpp"
 #include "candidate.hpp"
 
@@ -8,63 +9,17 @@ namespace quadrant::diagnosis {
 /// Covariance of the fitted parameters, in fit coordinates: H^-1 (S + P) H^-1 with H the curvature of the
 /// score, S the scatter of the gradient between motion segments and P the owner's tolerance. Segments, not
 /// samples, carry the scatter, so that correlated residuals and what the model lacks widen it.
-inline Eigen::MatrixXd covariance(const candidate& c, const scoring& s) {
-    const auto n = c.fit.x.size();
-    Eigen::MatrixXd h = c.curvature, scatter = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(n);
-    for (const auto& g : c.gradient.colwise()) mean += g / static_cast<double>(s.segments);
-    for (const auto& g : c.gradient.colwise()) scatter += (g - mean) * (g - mean).transpose();
-    if (s.segments > 1) scatter *= static_cast<double>(s.segments) / static_cast<double>(s.segments - 1);
-    for (Eigen::Index i = 0; i < n; ++i)
-        if (const auto& p = c.fit.parameters[static_cast<std::size_t>(i)]; p.spread > 0) {
-            h(i, i) += 1 / (p.spread * p.spread);
-            scatter(i, i) += 1 / (p.spread * p.spread);
-        }
-    h.diagonal() *= 1 + 1e-9;
-    const Eigen::MatrixXd inverse = solved<Eigen::MatrixXd>(h, Eigen::MatrixXd::Identity(n, n));
-    return inverse * scatter * inverse;
-}
+QUADRANT_DIAGNOSIS_DECL Eigen::MatrixXd covariance(const candidate& c, const scoring& s);
 
 /// The machine file's keys of one effect with 95 % intervals, through the effect's own reading of the plant.
-inline std::vector<parameter_estimate> estimates(const candidate& c, const effect& e, const scoring& s) {
-    const auto n = c.fit.x.size();
-    const Eigen::MatrixXd cov = covariance(c, s);
-    const auto here = e.read(c.fit.plant);
-    std::vector<std::vector<Eigen::VectorXd>> slope(here.size());
-    for (std::size_t i = 0; i < here.size(); ++i)
-        slope[i].assign(here[i].values.size(), Eigen::VectorXd::Zero(n));
-    for (Eigen::Index j = 0; j < n; ++j) {
-        const auto& p = c.fit.parameters[static_cast<std::size_t>(j)];
-        plant_model moved = c.fit.plant;
-        p.of(moved) = p.from_fit(c.fit.x[j] + p.step);
-        const auto there = e.read(moved);
-        for (std::size_t i = 0; i < here.size(); ++i)
-            for (std::size_t k = 0; k < here[i].values.size(); ++k)
-                slope[i][k][j] = (there[i].values[k] - here[i].values[k]) / p.step;
-    }
-    const double t =
-        1.96 + 2.4 / std::max(1.0, static_cast<double>(s.segments) - 1); // Student's factor, two terms
-    std::vector<parameter_estimate> out;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-        parameter_estimate p{.key = here[i].key, .values = {}};
-        for (std::size_t k = 0; k < here[i].values.size(); ++k) {
-            const double half = t * std::sqrt(std::max(0.0, slope[i][k].dot(cov * slope[i][k])));
-            p.values.push_back({here[i].values[k], here[i].values[k] - half, here[i].values[k] + half});
-        }
-        out.push_back(p);
-    }
-    return out;
-}
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> estimates(const candidate& c, const effect& e,
+                                                                  const scoring& s);
 
 /// Marks the values that stopped at the end of what they were allowed: the fit would have gone on.
-inline void mark_bounds(const candidate& c, std::vector<parameter_estimate>& estimates) {
-    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
-        const parameter& p = c.fit.parameters[i];
-        const double x = c.fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low), high = p.to_fit(p.high);
-        const bool at_end = x <= low + 1e-6 * (high - low) || x >= high - 1e-6 * (high - low);
-        for (parameter_estimate& e : estimates)
-            if (at_end && e.key == p.key) e.on_bound = true;
-    }
-}
+QUADRANT_DIAGNOSIS_DECL void mark_bounds(const candidate& c, std::vector<parameter_estimate>& estimates);
 
 } // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "interval.ipp"
+#endif

@@ -5,7 +5,16 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::diagnosis {
+
+/// That a signal is added to the command, beside the other readings of the same difference.
+struct added_finding {
+    added_waveform waveform;
+    double probability = 0;   ///< that it is this, and no other controller
+    double of_controller = 0; ///< that it is the best key of the described controller
+};
+
+namespace detail {
 
 /// What the log commands beyond the replay.
 struct added_signal {
@@ -25,4 +34,5 @@ struct waveform_candidate {
     std::size_t numbers = 0; ///< that were chosen beside the sizes of the columns
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace detail
+} // namespace quadrant::diagnosis

@@ -85,7 +85,7 @@ private:
         a = scale.asDiagonal() * a * scale.asDiagonal();
         a.diagonal().array() += 1e-10;
         b = scale.asDiagonal() * b;
-        return scale.asDiagonal() * solved<Eigen::VectorXd>(a, b);
+        return scale.asDiagonal() * solved(a, b);
     }
 
     std::span<const double> signal_;

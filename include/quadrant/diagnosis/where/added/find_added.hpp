@@ -8,13 +8,6 @@
 
 namespace quadrant::diagnosis {
 
-/// That a signal is added to the command, beside the other readings of the same difference.
-struct added_finding {
-    added_waveform waveform;
-    double probability = 0;   ///< that it is this, and no other controller
-    double of_controller = 0; ///< that it is the best key of the described controller
-};
-
 namespace detail {
 
 /// Weighs what a replay that differs may come from, where no key brings it back to rounding. Each reading is

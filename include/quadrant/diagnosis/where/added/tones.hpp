@@ -101,7 +101,7 @@ private:
                 g += column * (s_.values[k] - t.at(time));
             }
             h.diagonal().array() += 1e-9 * h.diagonal().maxCoeff();
-            return Eigen::VectorXd(solved<Eigen::VectorXd>(h, g));
+            return solved(h, g);
         };
         column.setZero();
         Eigen::VectorXd step = sum([&](double, double c, double s) { column.head(3) << c, s, 1; });

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""usage: compile_files.py BUILD: processor seconds and memory of compiling each file of the diagnosis with g++ -O2, as rows of a table.
+
+BUILD was configured with CMAKE_EXPORT_COMPILE_COMMANDS. Exit code 1: a file takes more than 15 s or 600 MB, in the best of three
+runs; other programs make a compiler slower. No compiler cache is asked."""
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+
+most_seconds, most_megabytes, runs = 15, 600, 3
+
+
+def measured(command, folder):
+    """Seconds of the processor and megabytes of one compilation."""
+    process = subprocess.Popen(command, cwd=folder)
+    _, status, used = os.wait4(process.pid, 0)
+    if status:
+        raise SystemExit(f"does not compile: {shlex.join(command)}")
+    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+
+
+def own_command(entry, out):
+    """The compiler's command for one file of the build, at -O2, without a launcher before it."""
+    words = shlex.split(entry["command"])
+    words = words[next(i for i, word in enumerate(words) if os.path.basename(word).startswith("g++")):]
+    words[words.index("-o") + 1] = out
+    return [*words, "-O2"]
+
+
+def main(build):
+    with open(os.path.join(build, "compile_commands.json")) as file:
+        entries = [e for e in json.load(file) if "/quadrant_diagnosis_once.dir/" in e["command"]]
+    if not entries:
+        raise SystemExit(f"{build} makes no file of the diagnosis with g++")
+    too_much = []
+    with tempfile.TemporaryDirectory() as folder:
+        for entry in sorted(entries, key=lambda e: e["file"]):
+            command = own_command(entry, os.path.join(folder, "object"))
+            seconds, megabytes = measured(command, entry["directory"])
+            for _ in range(runs - 1):
+                if seconds > most_seconds:
+                    seconds = min(seconds, measured(command, entry["directory"])[0])
+            name = os.path.basename(entry["file"])
+            print(f"| {name} | {seconds:.1f} | {megabytes:.0f} |", flush=True)
+            if seconds > most_seconds or megabytes > most_megabytes:
+                too_much.append(name)
+    if too_much:
+        print(f"above {most_seconds} s or {most_megabytes} MB: {', '.join(too_much)}", file=sys.stderr)
+    return 1 if too_much else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis::chain {
+
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd solved_normal(Eigen::MatrixXd a, const Eigen::VectorXd& b,
+                                                      const Eigen::VectorXd& unit) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) a(j, j) += 1e-10 * unit[j];
+    return a.ldlt().solve(b);
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& m) {
+    const equations q = r.of_model(m);
+    const auto n = static_cast<std::size_t>(q.difference.size());
+    const auto width = q.columns.cols();
+    const auto piece_of = [&](std::size_t i) { return i * pieces / n; };
+    std::vector<normal_equations> piece(pieces,
+                                        {Eigen::MatrixXd::Zero(width, width), Eigen::VectorXd::Zero(width)});
+    for (std::size_t p = 0; p < pieces; ++p) {
+        const std::size_t from = (p * n + pieces - 1) / pieces, to = ((p + 1) * n + pieces - 1) / pieces;
+        const auto rows = static_cast<Eigen::Index>(to - from);
+        if (rows == 0) continue;
+        const auto c = q.columns.middleRows(static_cast<Eigen::Index>(from), rows);
+        piece[p].a = c.transpose() * c;
+        piece[p].b = c.transpose() * q.difference.segment(static_cast<Eigen::Index>(from), rows);
+    }
+    normal_equations all{Eigen::MatrixXd::Zero(width, width), Eigen::VectorXd::Zero(width)};
+    for (const auto& p : piece) {
+        all.a += p.a;
+        all.b += p.b;
+    }
+    const Eigen::VectorXd unit = all.a.diagonal().cwiseMax(1e-300);
+    fitted out{.model = m,
+               .of = q.of,
+               .values = solved_normal(all.a, all.b, unit),
+               .covariance = {},
+               .left = {},
+               .columns = q.columns};
+    out.left = q.difference - q.columns * out.values;
+    out.rms = std::sqrt(out.left.squaredNorm() / static_cast<double>(n));
+
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(width, width);
+    for (const auto& p : piece) {
+        const Eigen::VectorXd g = p.b - p.a * out.values;
+        scatter += g * g.transpose();
+    }
+    Eigen::MatrixXd inverse = all.a;
+    for (Eigen::Index j = 0; j < width; ++j) inverse(j, j) += 1e-10 * unit[j];
+    inverse = inverse.ldlt().solve(Eigen::MatrixXd::Identity(width, width)).eval();
+    out.covariance =
+        inverse * scatter * inverse * (static_cast<double>(pieces) / (static_cast<double>(pieces) - 1));
+
+    std::array<Eigen::VectorXd, folds_of> without;
+    for (std::size_t f = 0; f < folds_of; ++f) {
+        normal_equations others = all;
+        for (std::size_t p = f; p < pieces; p += folds_of) {
+            others.a -= piece[p].a;
+            others.b -= piece[p].b;
+        }
+        without[f] = solved_normal(others.a, others.b, unit);
+    }
+    const std::size_t blocks = std::clamp<std::size_t>(n / rows_of_block, 1, most_blocks);
+    std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);
+    double total = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double e = q.difference[row] - q.columns.row(row).dot(without[piece_of(i) % folds_of]);
+        sum[i * blocks / n] += e * e;
+        count[i * blocks / n] += 1;
+        total += e * e;
+    }
+    out.held_out = std::sqrt(total / static_cast<double>(n));
+    for (std::size_t b = 0; b < blocks; ++b)
+        out.score -= samples_of_block / 2 * std::log(sum[b] / count[b] + r.noise() * r.noise());
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
+    for (int round = 0; round < 8; ++round) {
+        link_model next = f.model;
+        double change = 0;
+        for (std::size_t j = 0; j < f.of.size(); ++j) {
+            const double by = f.values[static_cast<Eigen::Index>(j)];
+            const bool first_of_its_term = j == 0 || f.of[j] != f.of[j - 1];
+            if (f.of[j] == term::play && first_of_its_term) {
+                next.play = std::max(next.play + by, 0.05 * next.play);
+                change = std::max(change, std::abs(by) / std::max(next.play, 1e-300));
+            }
+            if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
+                next.lag = std::max(next.lag + by, 0.05 * next.lag);
+                change = std::max(change, std::abs(by) / std::max(next.lag, 1e-300));
+            }
+        }
+        if (change < 1e-7) break;
+        fitted moved = fit_columns(r, next);
+        if (!(moved.rms <= f.rms * (1 + 1e-6))) break; // where the columns are exact the rms stays
+
+        f = std::move(moved);
+    }
+    return f;
+}
+
+} // namespace quadrant::diagnosis::chain

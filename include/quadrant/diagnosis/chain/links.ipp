@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis::chain {
+
+QUADRANT_DIAGNOSIS_DECL double slope(std::span<const double> x, std::span<const double> y) {
+    double mx = 0, my = 0, xx = 0, xy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        mx += x[k] / static_cast<double>(x.size());
+        my += y[k] / static_cast<double>(x.size());
+    }
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        xx += (x[k] - mx) * (x[k] - mx);
+        xy += (x[k] - mx) * (y[k] - my);
+    }
+    return xx > 0 ? xy / xx : 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL link_model described_gears(const axis_description& axis) {
+    const transmission_description& t = axis.transmission;
+    link_model m;
+    m.play = t.backlash_m.value_or(axis.plant.backlash_m.value_or(0));
+    m.compliance = t.stiffness_N_per_m ? 1 / *t.stiffness_N_per_m : 0;
+    m.motor_coulomb = t.motor_coulomb_N.value_or(0);
+    m.pitch_period = t.pitch_period_m.value_or(t.travel_per_turn_m.value_or(0));
+    m.pitch = t.pitch_error_m;
+    m.pitch_phase = t.pitch_phase_rad;
+    if (!t.travel_error_m.empty() && t.travel_error_from_m && t.travel_error_to_m) {
+        m.smooth = t.travel_error_m;
+        m.smooth_from = *t.travel_error_from_m;
+        m.smooth_to = *t.travel_error_to_m;
+    }
+    return m;
+}
+
+QUADRANT_DIAGNOSIS_DECL double of_a_counted_metre(const transmission_description& t) {
+    return t.counted_per_turn_m && t.travel_per_turn_m ? *t.travel_per_turn_m / *t.counted_per_turn_m : 1;
+}
+
+QUADRANT_DIAGNOSIS_DECL double motor_to_load(const axis_description& axis, const axis_log& log,
+                                             const std::string& file) {
+    const transmission_description& t = axis.transmission;
+    const double measured = slope(log.motor, log.position);
+    const std::string m = key_of("m", axis.kind);
+    double to_load = of_a_counted_metre(t);
+    if (log.motor_unit == "rad" && t.travel_per_turn_m) to_load = *t.travel_per_turn_m / (2 * std::numbers::pi);
+    const bool unknown = log.motor_unit == "rad" && !t.travel_per_turn_m;
+    const double turn = measured * 2 * std::numbers::pi;
+    if (unknown)
+        throw bad_input(file,
+                        fmt::format("axis {0}: axes.{0}.transmission.travel_per_turn_{1} is missing; the scale "
+                                    "moves {2:.4g} {1} a turn of the motor's encoder",
+                                    axis.name, m, turn));
+    const double ratio = measured / to_load;
+    if (std::abs(ratio - 1) <= tolerance_description::unstated) return to_load;
+    const std::string what =
+        log.motor_unit == "rad"
+            ? fmt::format("travel_per_turn_{} {:.4g}, not {:.5g}", m, std::abs(turn), *t.travel_per_turn_m)
+            : fmt::format("{}_motor_pos_{} times {:.5g}", axis.name, m, std::abs(measured));
+    throw bad_input(file,
+                    fmt::format("axis {}: the scale moves {:.4g} times as far as the motor's encoder says{}: "
+                                "{}",
+                                axis.name, ratio, ratio < 0 ? " (in the other direction)" : "",
+                                std::abs(std::abs(ratio) - 1) <= tolerance_description::unstated
+                                    ? fmt::format("turn the sign of one of them")
+                                    : fmt::format("it would fit {}", what)));
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> scaled(std::span<const double> x, double by) {
+    std::vector<double> out(x.begin(), x.end());
+    for (double& v : out) v *= by;
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL described_link motor_to_scale(const axis_description& axis, const axis_log& log,
+                                                      double period, const std::string& file) {
+    described_link out{.readings = {.period = period, .left_out = log.left_out},
+                       .described = described_gears(axis)};
+    auto& l = out.readings;
+    out.from = "the motor's encoder";
+    out.to = "the scale";
+    out.motor_turns = log.motor_unit == "rad";
+    out.to_load = motor_to_load(axis, log, file);
+    l.first = scaled(log.motor, out.to_load);
+    l.last = log.position;
+    const double described = axis.motor_encoder.resolution_m.value_or(
+        out.motor_turns ? axis.motor_encoder.resolution_rad.value_or(0) * out.to_load : 0);
+    l.first_count = std::max(described, out.to_load * observed_count(log.motor, log.motor_step));
+    l.last_count = std::max(axis.encoder.resolution_m, observed_count(log.position, log.position_step));
+    l.turn = axis.transmission.travel_per_turn_m.value_or(0);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL described_link asked_to(const axis_description& axis, const axis_log& log,
+                                                double period, const std::vector<double>& reached, double count,
+                                                bool geared) {
+    described_link out{.readings = {.period = period, .left_out = log.left_out}, .described = {}};
+    auto& l = out.readings;
+    if (geared) out.described = described_gears(axis);
+    out.from = "what was asked";
+    out.to = geared ? "the scale" : "the motor's encoder";
+    out.to_load = of_a_counted_metre(axis.transmission);
+    l.asked = true;
+    l.geared = geared;
+    l.first = scaled(log.reference, geared ? out.to_load : 1);
+    l.last = reached;
+    l.first_count = observed_count(log.reference, log.reference_step);
+    l.last_count = count;
+    l.turn = axis.transmission.travel_per_turn_m.value_or(0);
+    if (const auto& gain = axis.drive.position_gain_per_s) {
+        out.described.how = following::first_order;
+        out.described.lag = 1 / *gain;
+    } else if (const auto& delay = axis.drive.command_delay_s) {
+        out.described.how = following::delayed;
+        out.described.lag = *delay;
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_description& axis, const axis_log& log) {
+    auto& l = d.readings;
+    if (log.command.size() != l.rows() || !(axis.plant.mass_kg > 0)) return;
+    l.force_band_Hz =
+        scales_of(axis.plant, log, l.period, std::max(axis.encoder.resolution_m, l.last_count)).bandwidth_Hz();
+    // The command of a row acts from its delay on, for one period.
+    const double late = log.drive ? 0 : axis.plant.delay_s + l.period / 2;
+    const auto acting =
+        zero_phase(followed(log.command, l.period, following::delayed, late), l.force_band_Hz, l.period);
+    const auto smooth = zero_phase(l.first, l.force_band_Hz, l.period);
+    const auto velocity = derivative(smooth, l.period), acceleration = derivative(velocity, l.period);
+    const double mass = axis.transmission.motor_mass_kg.value_or(0);
+    std::vector<double> sign(l.rows());
+    l.force.resize(l.rows());
+    for (std::size_t k = 0; k < l.rows(); ++k) {
+        l.force[k] = axis.plant.force_constant_N_per_V * acting[k] - mass * acceleration[k];
+        sign[k] = velocity[k] > 0 ? 1 : velocity[k] < 0 ? -1 : 0;
+    }
+    l.motor_direction = zero_phase(sign, l.force_band_Hz, l.period);
+}
+
+} // namespace quadrant::diagnosis::chain

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis::chain {
+
+QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key) {
+    for (const effect* e : every_effect())
+        for (const machine_key& k : e->keys)
+            if (k.name == key)
+                if (const auto values = numbers_of(axis, k, *e); !values.empty()) return values[0];
+    return 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p) {
+    const machine_key* key = key_named(p.key);
+    const double described = described_value(axis, p.key);
+    return key && key->tolerance && described != 0 &&
+           std::abs(p.values[0].value / described - 1) <= axis.tolerance.of(std::string(key->tolerance_name()));
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> apart(const readings& r, const fitted& f) {
+    const auto& l = r.of();
+    const auto velocity = derivative(zero_phase(l.first, 0.06 / l.period, l.period), l.period);
+    std::vector<double> out(l.rows());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        out[k] = l.last[k] - l.first[k];
+        for (std::size_t j = 0; j < f.of.size(); ++j)
+            if (!f.of[j]) out[k] -= f.values[static_cast<Eigen::Index>(j)] * (j == 0 ? 1 : velocity[k]);
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL void give_signals(outcome& out, const readings& r, const fitted& f) {
+    const std::size_t n = r.of().rows();
+    out.difference.assign(n, 0.0);
+    out.left.assign(n, 0.0);
+    double mean = 0;
+    for (std::size_t k : r.rows())
+        mean += (r.of().last[k] - r.of().first[k]) / static_cast<double>(r.rows().size());
+    for (std::size_t i = 0; i < r.rows().size(); ++i) {
+        const std::size_t k = r.rows()[i];
+        out.difference[k] = r.of().last[k] - r.of().first[k] - mean;
+        out.left[k] = f.left[static_cast<Eigen::Index>(i)];
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL cause cause_of(const described_link& d, const answer& a, const axis_description& axis,
+                                       const finding& f) {
+    cause c;
+    c.axis = axis.name;
+    c.effect = name_of(f.what);
+    c.probability = f.probability;
+    c.group_probability = f.group_probability;
+    const term_values values(d, a.best, axis);
+    c.parameters = values.of(f.what);
+    c.described = !c.parameters.empty() && described_value(axis, c.parameters[0].key) != 0;
+    for (term t : f.same) c.confusable_with.emplace_back(name_of(t));
+    c.gap_before_position_rms_m = {f.before, f.before, f.before};
+    c.gap_after_position_rms_m = {f.after, f.after, f.after};
+    const double shrink = f.before > 0 ? 1 - f.after / f.before : 0;
+    c.shrink = {shrink, shrink, shrink};
+    if (const effect* e = effect_named(c.effect)) c.exciting_motion = e->exciting_motion;
+    return c;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::string note_without_name(const described_link& d, const answer& a,
+                                                      const axis_description& axis, term what) {
+    if (what != term::drift)
+        return fmt::format("axis {}: {} is read {:.3g} ms later than {}.", axis.name, d.to,
+                           1e3 * a.best.model.lag, d.from);
+    const auto part = a.best.part(what);
+    return fmt::format(
+        "axis {}: the difference of {} and {} drifts by {:.3g} um over the record: warmth, or something "
+        "that is in no list.",
+        axis.name, d.to, d.from, 1e6 * (part.maxCoeff() - part.minCoeff()));
+}
+
+QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axis_description& axis,
+                                              const std::vector<std::string>& excluded, const rules& limits) {
+    std::vector<term> left_out;
+    for (term t : all_terms)
+        if (std::find(excluded.begin(), excluded.end(), name_of(t)) != excluded.end() && !name_of(t).empty())
+            left_out.push_back(t);
+    const readings r(d.readings);
+    if (r.rows().size() < 4 * pieces)
+        throw std::length_error(fmt::format("{} rows that count; a comparison of two positions needs {}",
+                                            r.rows().size(), 4 * pieces));
+    const answer a = seeker(r, d.described, left_out, limits).find();
+    outcome out;
+    out.gap = {.position_rms_m = a.given.rms, .position_peak_m = a.given.left.cwiseAbs().maxCoeff()};
+    out.gap_after = {.position_rms_m = a.best.held_out, .position_peak_m = a.best.left.cwiseAbs().maxCoeff()};
+    out.gap.noise_floor_position_rms_m = out.gap_after.noise_floor_position_rms_m = r.noise();
+    const double whole = std::max(a.given.held_out * a.given.held_out, 1e-300);
+    const auto share_of = [&](const finding& f) {
+        return std::clamp((f.before * f.before - f.after * f.after) / whole, 0.0, 1.0);
+    };
+    bool all_claimed = true, drifts = false;
+    for (const finding& f : a.findings) {
+        if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
+            drifts |= f.what == term::drift;
+            out.notes.push_back(note_without_name(d, a, axis, f.what));
+            continue;
+        }
+        cause c = cause_of(d, a, axis, f);
+        if (!c.parameters.empty() && inside_tolerance(axis, c.parameters[0])) {
+            out.calibrated.push_back(c.parameters[0]);
+            continue;
+        }
+        const effect* e = effect_named(c.effect);
+        const double share = share_of(f);
+        out.places.push_back({"block",
+                              std::string(e->box),
+                              std::string(e->label) + " takes this share off",
+                              {share, share, share},
+                              "causes"});
+        if (f.what == term::play) {
+            const auto more = places_of_reversals(r, a.best, share);
+            out.places.insert(out.places.end(), more.begin(), more.end());
+        }
+        all_claimed &= c.group_probability >= 0.5;
+        out.causes.push_back(std::move(c));
+    }
+    const double floor = r.noise() * r.noise(), after = a.best.held_out * a.best.held_out;
+    const bool at_floor = !drifts && (a.at_floor || after - floor < law_error * law_error * (whole - floor));
+    double unnamed = 0;
+    for (const finding& f : a.findings)
+        if (f.what == term::drift) unnamed = share_of(f);
+    out.share_left = at_floor ? 0 : std::clamp(unnamed + (after - floor) / whole, 0.0, 1.0);
+    const double rest = std::clamp(unnamed + after / whole, 0.0, 1.0);
+    out.places.push_back({"block",
+                          "",
+                          at_floor ? "noise and rounding of the two readings"
+                                   : fmt::format("between {} and {}: no cause tells which", d.from, d.to),
+                          {rest, rest, rest},
+                          "replay"});
+    const bool claims = std::any_of(out.causes.begin(), out.causes.end(),
+                                    [](const cause& c) { return c.group_probability >= 0.5; });
+    out.verdict = at_floor ? out.causes.empty()
+                                 ? (out.calibrated.empty() ? verdict::no_gap : verdict::within_tolerance)
+                             : all_claimed ? verdict::explained
+                                           : verdict::partly_explained
+                  : claims ? verdict::partly_explained
+                           : verdict::unexplained;
+    out.structure = fmt::format("axis {}: {:.3g} um rms between {} and {} (floor {:.3g} um)", axis.name,
+                                1e6 * a.best.held_out, d.from, d.to, 1e6 * r.noise());
+    give_signals(out, r, a.best);
+    out.play = a.best.model.play;
+    out.compliance = term_values(d, a.best, axis).compliance();
+    const link_model& m = a.best.model;
+    const bool moves = m.play > 0 || out.compliance > 0 || !m.pitch.empty() || !m.smooth.empty() ||
+                       m.has(term::pitch) || m.has(term::smooth);
+    if (moves && !d.readings.force.empty()) out.elastic = apart(r, a.best);
+    return out;
+}
+
+} // namespace quadrant::diagnosis::chain

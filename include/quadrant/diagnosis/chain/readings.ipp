@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis::chain {
+
+QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
+    const std::size_t n = link_.rows();
+    std::vector<unsigned char> out(n, 0);
+    for (std::size_t k = 0; k < link_.left_out.size(); ++k) out[k] |= link_.left_out[k];
+    double low = first_[0], high = low;
+    for (std::size_t k = 0; k < n && high - low < 0.1 * travel_; ++k) {
+        low = std::min(low, first_[k]);
+        high = std::max(high, first_[k]);
+        out[k] = 1;
+    }
+    if (!link_.force.empty()) {
+        const double sure = 0.15 * rms(link_.force);
+        const auto around = static_cast<std::size_t>(1 + 1 / (link_.force_band_Hz * link_.period));
+        std::size_t since = n;
+        for (std::size_t k = 0; k < n; ++k) {
+            const bool doubt =
+                std::abs(link_.force[k]) < sure || (k > 0 && link_.force[k] * link_.force[k - 1] < 0);
+            since = doubt ? 0 : since == n ? n : since + 1;
+            if (since <= around) out[k] = 1;
+        }
+        std::size_t until = n;
+        for (std::size_t k = n; k-- > 0;) {
+            const bool doubt = std::abs(link_.force[k]) < sure;
+            until = doubt ? 0 : until == n ? n : until + 1;
+            if (until <= around) out[k] = 1;
+        }
+    }
+    for (std::size_t k = 0; k < n; ++k)
+        if (!out[k]) rows_.push_back(k);
+    const std::size_t stride = 1 + rows_.size() / most_rows;
+    if (stride > 1) {
+        std::vector<std::size_t> some;
+        for (std::size_t i = 0; i < rows_.size(); i += stride) some.push_back(rows_[i]);
+        rows_ = std::move(some);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<Eigen::VectorXd>
+readings::columns_of(const link_model& m, term t, std::span<const double> driven) const {
+    const auto by_row = [&](auto value) {
+        Eigen::VectorXd c(static_cast<Eigen::Index>(rows_.size()));
+        for (std::size_t i = 0; i < rows_.size(); ++i) c[static_cast<Eigen::Index>(i)] = value(rows_[i]);
+        return c;
+    };
+    // What repeats along the travel is as smooth as the readings that it is compared with.
+    const auto wave = [&](double period, int harmonics) {
+        std::vector<Eigen::VectorXd> out;
+        for (int j = 1; j <= harmonics; ++j)
+            for (const double turned : {0.0, std::numbers::pi / 2}) {
+                const auto each = along_travel(
+                    m, [&](double x) { return std::sin(2 * std::numbers::pi * j * x / period + turned); });
+                out.push_back(by_row([&](std::size_t k) { return each[k]; }));
+            }
+        return out;
+    };
+    switch (t) {
+    case term::delay:
+    case term::first_order: {
+        const double more = 0.05 * link_.period;
+        const auto later = followed(first_, link_.period, m.how, m.lag + more);
+        const auto speed = derivative(driven, link_.period);
+        const Eigen::VectorXd by_lag = by_row([&](std::size_t k) { return (later[k] - driven[k]) / more; });
+        if (t == term::delay) return {by_lag};
+        return {by_lag, by_row([&](std::size_t k) { return speed[k]; })}; // and read a little earlier or later
+    }
+    case term::scale:
+        return {by_row([&](std::size_t k) { return driven[k] - middle_; })};
+    case term::play: {
+        const double more = std::max(1e-3 * m.play, 1e-2 * noise_);
+        const auto now = offset(m, driven, m.play), wider = offset(m, driven, m.play + more);
+        const auto by_width = [&](std::size_t k) { return (wider[k] - now[k]) / more; };
+        return {by_row(by_width), by_row([&](std::size_t k) { return by_width(k) * along(driven[k]); })};
+    }
+    case term::pitch:
+        return wave(m.pitch_period, m.pitch_harmonics);
+    case term::cyclic:
+        return wave(m.cyclic_period, 1);
+    case term::smooth: {
+        std::vector<Eigen::VectorXd> out;
+        for (int order = 2; order < 2 + smooth_terms; ++order)
+            out.push_back(by_row([&](std::size_t k) { return legendre(order, along(driven[k])); }));
+        return out;
+    }
+    case term::spring:
+        return {by_row([&](std::size_t k) { return -passed(m, k); })};
+    case term::motor_friction:
+        return {by_row([&](std::size_t k) { return link_.motor_direction[k]; })};
+    case term::steps: {
+        std::vector<Eigen::VectorXd> out;
+        for (std::size_t step : m.steps)
+            out.push_back(by_row([&](std::size_t k) { return k >= step ? 1.0 : 0.0; }));
+        return out;
+    }
+    default: {
+        const auto last = static_cast<double>(link_.rows() - 1);
+        return {by_row([&](std::size_t k) { return static_cast<double>(k) / last; }),
+                by_row([&](std::size_t k) { return legendre(2, 2 * static_cast<double>(k) / last - 1); })};
+    }
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL equations readings::of_model(const link_model& m) const {
+    equations out{.rows = rows_, .difference = {}, .columns = {}, .of = {}};
+    const auto driven = followed(first_, link_.period, m.how, m.lag);
+    const auto behind = m.play > 0 ? offset(m, driven, m.play) : std::vector<double>(driven.size(), 0.0);
+    const auto n = static_cast<Eigen::Index>(rows_.size());
+    const harmonics pitch(m.pitch_period, m.pitch, m.pitch_phase);
+    const auto errors = m.pitch.empty() ? std::vector<double>(driven.size(), 0.0)
+                                        : along_travel(m, [&](double x) { return pitch.at(x); });
+    out.difference.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const std::size_t k = rows_[static_cast<std::size_t>(i)];
+        double d = last_[k] - driven[k] - behind[k];
+        d -= errors[k];
+        if (!m.smooth.empty()) d -= smooth_curve(m, driven[k]);
+        if (m.compliance > 0 && !link_.force.empty()) d += m.compliance * passed(m, k);
+        out.difference[i] = d;
+    }
+    std::vector<Eigen::VectorXd> columns{Eigen::VectorXd::Ones(n)};
+    out.of.push_back({});
+    if (!link_.asked) { // the two readings are not of the same moment
+        Eigen::VectorXd age(n);
+        for (Eigen::Index i = 0; i < n; ++i) age[i] = velocity_[rows_[static_cast<std::size_t>(i)]];
+        columns.push_back(std::move(age));
+        out.of.push_back({});
+    }
+    for (term t : m.freed)
+        for (Eigen::VectorXd& c : columns_of(m, t, driven)) {
+            columns.push_back(std::move(c));
+            out.of.push_back(t);
+        }
+    out.columns.resize(n, static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) out.columns.col(static_cast<Eigen::Index>(j)) = columns[j];
+    return out;
+}
+
+} // namespace quadrant::diagnosis::chain

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis::chain {
+
+QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l) {
+    std::vector<term> out;
+    if (l.asked) out.insert(out.end(), {term::delay, term::first_order, term::steps});
+    if (l.geared) {
+        out.insert(out.end(), {term::scale, term::play, term::pitch, term::smooth});
+        if (l.turn > 0) out.push_back(term::cyclic); // else it is told as a pitch error
+        if (!l.force.empty()) out.insert(out.end(), {term::spring, term::motor_friction});
+        if (!l.asked) out.push_back(term::steps);
+        if (!l.asked && l.force.empty()) out.push_back(term::delay); // two registers, read one after the other
+    }
+    out.push_back(term::drift);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r) {
+    std::vector<double> out;
+    for (std::size_t k : r.rows()) out.push_back(r.first()[k]);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double turn) {
+    for (int h = 1; turn > 0 && h <= 6; ++h)
+        if (std::abs(r.travel() * (1 / p - h / turn)) < 1.5) return true;
+    return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but) {
+    const auto z = places(r);
+    const std::vector<double> left(from.left.data(), from.left.data() + from.left.size());
+    const double longest = r.travel() / 2, shortest = std::max(8 * r.of().count(), r.travel() / 4000);
+    for (double p : spatial_peaks(left, z, longest, shortest, 12))
+        if (!is_fraction(r, p, but)) return p;
+    return 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::pair<std::size_t, double> best_cut(const Eigen::VectorXd& left) {
+    const auto n = static_cast<double>(left.size());
+    const double mean = left.mean();
+    double sum = 0, best = 0;
+    std::size_t at = 0;
+    for (Eigen::Index i = 1; i < left.size(); ++i) {
+        sum += left[i - 1] - mean;
+        const double k = static_cast<double>(i), energy = sum * sum * n / (k * (n - k));
+        if (energy > best) best = energy, at = static_cast<std::size_t>(i);
+    }
+    return {at, best};
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from, double margin) {
+    fitted best = from;
+    link_model m = from.model;
+    constexpr std::size_t most = 12;
+    while (m.steps.size() < most) {
+        const auto cut = best_cut(best.left);
+        m.steps.push_back(r.rows()[cut.first]);
+        std::sort(m.steps.begin(), m.steps.end());
+        if (!m.has(term::steps)) m.freed.push_back(term::steps);
+        fitted next = settled(r, fit_columns(r, m));
+        double smallest = std::numeric_limits<double>::max();
+        for (std::size_t j = 0; j < next.of.size(); ++j)
+            if (next.of[j] == term::steps)
+                smallest = std::min(smallest, std::abs(next.values[static_cast<Eigen::Index>(j)]));
+        // A step that is missed is one of the counter at least.
+        if (!(next.score > best.score + margin) || smallest < std::max(r.of().first_count, r.of().last_count))
+            break;
+        m = next.model;
+        best = std::move(next);
+    }
+    return best;
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, term t, double margin) {
+    link_model m = from.model;
+    const auto freed = [&](link_model& x) {
+        if (!x.has(t)) x.freed.push_back(t);
+    };
+    switch (t) {
+    case term::delay:
+    case term::first_order: {
+        const auto other = t == term::delay ? term::first_order : term::delay;
+        if (m.has(other)) return from;
+        m.how = t == term::delay ? following::delayed : following::first_order;
+        const double seconds = r.of().period * static_cast<double>(r.of().rows());
+        m.lag = least(
+            [&](double lag) {
+                m.lag = lag;
+                return fit_columns(r, m).rms;
+            },
+            0.05 * r.of().period, seconds / 20, 16, 12);
+        freed(m);
+        return settled(r, fit_columns(r, m));
+    }
+    case term::play:
+        m.play = least(
+            [&](double width) {
+                m.play = width;
+                return fit_columns(r, m).rms;
+            },
+            std::max(0.25 * r.of().count(), 0.5 * r.noise()), r.travel() / 12, 16, 10);
+        freed(m);
+        return settled(r, fit_columns(r, m));
+    case term::pitch: {
+        const double known = m.pitch_period > 0 ? m.pitch_period : r.of().turn;
+        freed(m);
+        m.pitch_harmonics = 1;
+        const bool passed = known > 0 && r.travel() >= 1.5 * known;
+        if (known > 0 && !passed) return from;
+        const double p = known > 0 ? known : repeating_period(r, from, 0);
+        if (!(p > 0)) return from;
+        m.pitch_period = p;
+        fitted best = known > 0 ? fit_columns(r, m)
+                                : refined_period(r, m, p, [](link_model& x, double y) { x.pitch_period = y; });
+        for (int h = 2; h <= 4; ++h) {
+            link_model more = best.model;
+            more.pitch_harmonics = h;
+            if (known > 0 && m.pitch.size() > static_cast<std::size_t>(h)) continue;
+            fitted next = fit_columns(r, more);
+            if (next.score > best.score + 5) best = std::move(next);
+        }
+        return settled(r, std::move(best));
+    }
+    case term::cyclic: {
+        const double p = repeating_period(r, from, r.of().turn);
+        if (!(p > 0)) return from;
+        freed(m);
+        m.cyclic_period = p;
+        fitted best = refined_period(r, m, p, [](link_model& x, double y) { x.cyclic_period = y; });
+        return is_fraction(r, best.model.cyclic_period, r.of().turn) ? from : settled(r, std::move(best));
+    }
+    case term::motor_friction:
+        if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
+        break;
+    case term::steps:
+        return with_steps(r, from, margin);
+    default:
+        break;
+    }
+    freed(m);
+    return settled(r, fit_columns(r, m));
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& from, term t,
+                                            const link_model& described) {
+    link_model m = from.model;
+    std::erase(m.freed, t);
+    if (t == term::play) m.play = described.play;
+    if (t == term::delay || t == term::first_order) m.how = described.how, m.lag = described.lag;
+    if (t == term::steps) m.steps.clear();
+    return settled(r, fit_columns(r, m));
+}
+
+} // namespace quadrant::diagnosis::chain

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL void fitter::put(plant_model& plant, const std::vector<parameter>& ps,
+                                         const Eigen::VectorXd& x) {
+    for (std::size_t i = 0; i < ps.size(); ++i)
+        ps[i].of(plant) = ps[i].from_fit(x[static_cast<Eigen::Index>(i)]);
+}
+
+QUADRANT_DIAGNOSIS_DECL double fitter::score_ms(const std::vector<std::vector<double>>& ms) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < ms.size(); ++i) {
+        const channel& c = scoring_.channels[i];
+        for (double m : ms[i]) sum += 0.5 * c.nu * std::log(m + square(c.floor));
+    }
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL shared_slopes fitter::slopes(fit_result& r) const {
+    put(r.plant, r.parameters, r.x);
+    std::vector<double> step;
+    std::vector<plant_model> plants = moved(r, 0, step);
+    plants.insert(plants.begin(), r.plant);
+    std::vector<std::vector<double>> e(plants.size());
+    predictor_.run(plants, e);
+    r.innovation = {std::move(e.front()), scoring_};
+    e.erase(e.begin());
+    for (std::size_t j = 0; j < e.size(); ++j) to_slope(e[j], r, step[j]);
+    return {std::move(e), scoring_};
+}
+
+QUADRANT_DIAGNOSIS_DECL void fitter::evaluate(fit_result& r) const {
+    put(r.plant, r.parameters, r.x);
+    const double choices = predictor_.run(r.plant, r.innovation.rows);
+    judge(r, choices);
+}
+
+QUADRANT_DIAGNOSIS_DECL void fitter::judge(fit_result& r, double choices) const {
+    // As many of a block's rows are independent as its score says.
+    double independent = 0;
+    r.ms.clear();
+    r.innovation.look(scoring_);
+    for (std::size_t i = 0; i < scoring_.channels.size(); ++i) {
+        independent += scoring_.channels[i].nu / static_cast<double>(scoring_.channels[i].block);
+        r.ms.push_back(r.innovation.block_ms(scoring_, i));
+    }
+    r.choices = choices * independent;
+    r.objective = score_ms(r.ms) + prior(r) + r.choices;
+    if (!std::isfinite(r.objective)) r.objective = std::numeric_limits<double>::infinity();
+}
+
+QUADRANT_DIAGNOSIS_DECL double fitter::prior(const fit_result& r) {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < r.x.size(); ++i)
+        if (const auto& q = p(r.parameters, i); q.spread > 0)
+            sum += 0.5 * square((r.x[i] - q.expected) / q.spread);
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL const parameter& fitter::p(const std::vector<parameter>& ps, Eigen::Index i) {
+    return ps[static_cast<std::size_t>(i)];
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<plant_model> fitter::moved(const fit_result& r, std::size_t first,
+                                                               std::vector<double>& step) {
+    std::vector<plant_model> plants;
+    step.clear();
+    for (std::size_t i = first; i < r.parameters.size(); ++i) {
+        const auto& q = r.parameters[i];
+        const double x = r.x[static_cast<Eigen::Index>(i)];
+        step.push_back(x + q.step > q.to_fit(q.high) ? -q.step : q.step);
+        plants.push_back(r.plant);
+        q.of(plants.back()) = q.from_fit(x + step.back());
+    }
+    return plants;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fitter::to_slope(std::vector<double>& moved, const fit_result& r, double step) {
+    const double inverse = 1 / step;
+    for (std::size_t k = 0; k < moved.size(); ++k) moved[k] = (moved[k] - r.innovation.rows[k]) * inverse;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fitter::quadratics(fit_result& r, const std::vector<viewed_signal>& own,
+                                                const known_slopes& known, bool curvature) const {
+    r.quadratic.resize(scoring_.channels.size());
+    for (std::size_t i = 0; i < scoring_.channels.size(); ++i)
+        find_quadratics(r.quadratic[i], r.innovation, own, known, scoring_.channels[i], i, curvature);
+}
+
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd fitter::step(const fit_result& r, double damping, double& gain) const {
+    const auto n = r.x.size();
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n);
+    for (std::size_t i = 0; i < r.quadratic.size(); ++i) add(r.quadratic[i], scoring_.channels[i], a, g);
+    for (Eigen::Index i = 0; i < n; ++i)
+        if (const auto& q = p(r.parameters, i); q.spread > 0) {
+            a(i, i) += 1 / square(q.spread);
+            g[i] += (r.x[i] - q.expected) / square(q.spread);
+        }
+    const Eigen::MatrixXd curvature = a;
+    for (Eigen::Index i = 0; i < n; ++i) a(i, i) *= 1 + damping;
+    Eigen::VectorXd low(n), high(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        low[i] = p(r.parameters, i).to_fit(p(r.parameters, i).low) - r.x[i];
+        high[i] = p(r.parameters, i).to_fit(p(r.parameters, i).high) - r.x[i];
+    }
+    const Eigen::VectorXd d = bounded_step(a, g, low, high);
+    gain = -(g.dot(d) + 0.5 * d.dot(curvature * d));
+    return r.x + d;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fitter::add(const block_quadratics& q, const channel& c, Eigen::MatrixXd& a,
+                                         Eigen::VectorXd& g) {
+    for (std::size_t b = 0; b < q.size(); ++b) {
+        const double w = c.nu / (q.ms[b] + square(c.floor));
+        a += w * q.curvature(b);
+        g += w * q.gradient(b);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL fit_course::fit_course(const fitter& f, const plant_model& start,
+                                               const std::vector<parameter>& ps, int iterations,
+                                               known_slopes known, int chords)
+    : fitter_(&f), known_(std::move(known)), iterations_(iterations),
+      chords_(chords), best_{.plant = start,
+                             .parameters = ps,
+                             .x = Eigen::VectorXd(static_cast<Eigen::Index>(ps.size()))} {
+    for (std::size_t i = 0; i < ps.size(); ++i)
+        best_.x[static_cast<Eigen::Index>(i)] = ps[i].to_fit(ps[i].start);
+    fitter::put(best_.plant, ps, best_.x);
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
+    if (stage_ == stage::done) return;
+    if (stage_ == stage::begin) plants.push_back(best_.plant);
+    if (stage_ == stage::trial) plants.push_back(trial_.plant);
+    if (stage_ != stage::trial) {
+        auto each = fitter::moved(best_, known_.count(), step_);
+        plants.insert(plants.end(), std::make_move_iterator(each.begin()), std::make_move_iterator(each.end()));
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::take(std::span<std::vector<double>> innovation,
+                                                     std::span<const double> choices) {
+    switch (stage_) {
+    case stage::begin:
+        best_.innovation.rows.swap(innovation[0]);
+        fitter_->judge(best_, choices[0]);
+        take_slopes(innovation.subspan(1));
+        next();
+        return 1 + step_.size();
+    case stage::slopes:
+        take_slopes(innovation);
+        since_ = 0;
+        old_ = 0;
+        if (!better_) damping_ = damping_before_;
+        next();
+        return step_.size();
+    case stage::trial:
+        trial_.innovation.rows.swap(innovation[0]);
+        fitter_->judge(trial_, choices[0]);
+        compare();
+        return 1;
+    case stage::done:
+        break;
+    }
+    return 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::take_slopes(std::span<std::vector<double>> moved) {
+    slopes_.resize(step_.size());
+    for (std::size_t j = 0; j < step_.size(); ++j) {
+        fitter::to_slope(moved[j], best_, step_[j]);
+        slopes_[j].rows.swap(moved[j]);
+        slopes_[j].look(fitter_->scoring_);
+    }
+    fitter_->quadratics(best_, slopes_, known_, true);
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::next() {
+    if (++iteration_ > iterations_ || best_.x.size() == 0) {
+        stage_ = stage::done;
+        return;
+    }
+    better_ = false;
+    gain_ = 0;
+    damping_before_ = damping_;
+    attempt_ = 0;
+    try_step();
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::try_step() {
+    double promised = 0;
+    trial_.x = fitter_->step(best_, damping_, promised);
+    if (!(promised > least_promise)) return conclude();
+    trial_.plant = best_.plant;
+    trial_.parameters = best_.parameters;
+    fitter::put(trial_.plant, trial_.parameters, trial_.x);
+    stage_ = stage::trial;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::compare() {
+    if (trial_.objective < best_.objective) {
+        gain_ = best_.objective - trial_.objective;
+        trial_.quadratic = std::move(best_.quadratic);
+        std::swap(best_, trial_);
+        better_ = true;
+        damping_ = std::max(1e-6, damping_ / 24);
+    }
+    damping_ *= 8;
+    if (!better_ && ++attempt_ < 6) return try_step();
+    conclude();
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::conclude() {
+    since_ += gain_;
+    const bool settled = gain_ < hair;
+    if ((settled && since_ < 1) || iteration_ == iterations_) {
+        if (better_) fitter_->quadratics(best_, slopes_, known_, false);
+        stage_ = stage::done;
+    } else if (settled || ++old_ > chords_) {
+        stage_ = stage::slopes;
+    } else {
+        fitter_->quadratics(best_, slopes_, known_, false);
+        next();
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL fit_result fitter::fit(const plant_model& start, const std::vector<parameter>& ps,
+                                               int iterations) const {
+    fit_course course(*this, start, ps, iterations);
+    run(std::span(&course, 1));
+    return std::move(course.result());
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> fitter::objectives(std::span<const plant_model> plants) const {
+    std::vector<double> out;
+    for (std::size_t first = 0; first < plants.size(); first += predictor::abreast) {
+        std::vector<fit_course> looks;
+        for (const plant_model& p : plants.subspan(first, std::min(predictor::abreast, plants.size() - first)))
+            looks.emplace_back(*this, p, std::vector<parameter>{}, 0);
+        run(std::span(looks));
+        for (fit_course& c : looks) out.push_back(c.result().objective);
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+QUADRANT_DIAGNOSIS_DECL double noise_gain(double band_Hz, double period) {
+    std::vector<double> impulse(2001, 0.0);
+    impulse[1000] = 1;
+    double sum = 0;
+    for (double a : derivative(derivative(zero_phase(impulse, band_Hz, period), period), period)) sum += a * a;
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL double mean_square(const std::vector<double>& x) {
+    double sum = 0;
+    for (double v : x) sum += v * v / static_cast<double>(x.size());
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double period) {
+    constexpr double finer = 0.8, share = 0.01, motion = 0.98;
+    const double noise = reading_noise(log.position, log.position_step);
+    const double least = 8 / (period * static_cast<double>(log.position.size()));
+    const auto velocity = [&](double band) {
+        return derivative(zero_phase(log.position, band, period), period);
+    };
+    double band = 0.1 / period;
+    const auto drowned = [&](double f) {
+        return noise * noise * noise_gain(f, period) > share * mean_square(derivative(velocity(f), period));
+    };
+    while (band > least && drowned(band)) band *= finer;
+    if (!(band > least)) return 0;
+    const double all = mean_square(velocity(band));
+    double slowest = band;
+    while (slowest * finer > least && mean_square(velocity(slowest * finer)) > motion * all) slowest *= finer;
+    return std::min(band, 3 * slowest);
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period) {
+    axis_regression out;
+    out.band_Hz = detail::regression_band(log, period);
+    if (!(out.band_Hz > 0)) return out;
+    const auto q = zero_phase(log.position, out.band_Hz, period), v = derivative(q, period),
+               a = derivative(v, period), u = zero_phase(log.command, out.band_Hz, period);
+    const auto largest = [](const std::vector<double>& x) {
+        return std::max(std::abs(*std::max_element(x.begin(), x.end())),
+                        std::abs(*std::min_element(x.begin(), x.end())));
+    };
+    const double fastest = largest(v), strongest = largest(a);
+    const auto filtered = [&](const std::vector<double>& of, auto term) {
+        std::vector<double> x;
+        for (const double z : of) x.push_back(term(z));
+        return zero_phase(x, out.band_Hz, period);
+    };
+    const auto direction = filtered(v, [](double z) { return z > 0   ? 1.0
+                                                             : z < 0 ? -1.0
+                                                                     : 0.0; }),
+               sine = filtered(log.position, [](double z) { return std::sin(z); }),
+               cosine = filtered(log.position, [](double z) { return std::cos(z); });
+    constexpr std::size_t parts = 16;
+    const std::size_t rows = q.size() / parts;
+    if (rows < 8 || !(strongest > 0)) return {};
+    const Eigen::Index n = log.kind == axis_kind::rotary ? 6 : 4;
+    std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+    for (std::size_t k = 0; k < parts * rows; ++k) {
+        if (std::abs(v[k]) < 0.03 * fastest) continue;
+        Eigen::VectorXd row(n);
+        row.head<4>() << a[k], v[k], direction[k], 1;
+        if (n == 6) row.tail<2>() << sine[k], cosine[k];
+        sums[k / rows].left += row * row.transpose();
+        sums[k / rows].right += u[k] * row;
+    }
+    const auto solution = [&](std::size_t without) {
+        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+        for (std::size_t i = 0; i < parts; ++i) {
+            if (i == without) continue;
+            left += sums[i].left;
+            right += sums[i].right;
+        }
+        left.diagonal() *= 1 + 1e-9;
+        return solved(left, right);
+    };
+    const Eigen::VectorXd whole = solution(parts);
+    Eigen::VectorXd square = Eigen::VectorXd::Zero(n); // jackknife over the parts
+    for (std::size_t i = 0; i < parts; ++i)
+        square += (solution(i) - whole).cwiseAbs2() * (parts - 1.0) / static_cast<double>(parts);
+    const auto number = [&](Eigen::Index i) { return regressed{whole[i], std::sqrt(square[i])}; };
+    out.acceleration = number(0);
+    out.speed = number(1);
+    out.direction = number(2);
+    out.mean = number(3);
+    if (n == 6) {
+        out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};
+        out.phase = std::atan2(-whole[5], whole[4]);
+    }
+    return out;
+}
+
+} // namespace quadrant::diagnosis

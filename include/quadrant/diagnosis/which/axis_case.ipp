@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
+                                             const axis_log* other, double period,
+                                             const std::vector<std::string>& excluded, const rules& r,
+                                             const progress& tell, held_by how)
+    : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
+      resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
+      record(for_machine(
+          in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions), a,
+          how)),
+      models(record, a, excluded, r, tell) {
+    const auto is_excluded = [&](const char* effect) {
+        return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
+    };
+    // A velocity drive's controller commands set-points; how far a difference there moves the axis no force
+    // tells. What was measured behind an amplifier is not what the controller asked for.
+    if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
+        axis.actuator.command_is == command_origin::asked)
+        controller = judge_controller(*axis.controller, axis.actuator, log, record,
+                                      coarse() ? count : axis.encoder.resolution_m);
+    if (controller && is_excluded("added_command")) controller->added.reset();
+    controller_unnamed = controller_differs() && !command_is_added() && is_excluded("controller_mismatch");
+    if (controller_unnamed) controller->mended = false;
+    if (holdout)
+        second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
+                             axis, how);
+    count_unnamed = coarse() && is_excluded("encoder_quantization");
+    follow(models.run());
+    if (!second || !record.replayed() || best().effects.empty()) return;
+    const auto worth_of = [&](const candidate& m) { return worth(m); };
+    if (auto more = models.most_worth(best(), least_score(), worth_of); !search::same(more, best()))
+        follow(models.path_to(more));
+}
+
+QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
+    path = std::move(way);
+    claims = path.size() - 1;
+    noise = models.noise(best());
+    settled = models.settled(best().fit.ms, record.score, noise) &&
+              (best().effects.empty() || models.near_its_laws(best()));
+    excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
+    if (second) settled_on_second = second_log(best()).settled;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_tolerances() const {
+    const candidate& m = path.front();
+    if (m.stops_at_a_tolerance()) return false; // it would have left them
+    if (!models.within_tolerances(m.fit.ms, record.score, noise)) return false;
+    if (!second) return true;
+    fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
+    fitter(second->observer, second->score).evaluate(there);
+    return models.within_tolerances(there.ms, second->score, noise);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
+    const candidate& m = applied();
+    return claims > 0 && models.settled(m) && models.near_its_laws(m);
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
+    const std::array plants{best().fit.plant, path.front().fit.plant};
+    std::array<std::vector<double>, 2> left;
+    const auto by = motion_to_lead(record, plant_model(axis, record.scale.give()));
+    record.observer.forces_beside(*by, plants, record.command, left);
+    return rms(left[0]) / rms(left[1]);
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const candidate& from) const {
+    const auto energy = [&](const candidate& m) {
+        const double force = models.held_out_force(m);
+        return force * force;
+    };
+    const double left = energy(from), floor = floor_force() * floor_force();
+    return left > floor ? (left - energy(to)) / (left - floor) : 0;
+}
+
+QUADRANT_DIAGNOSIS_DECL axis_case::on_second axis_case::second_log(const candidate& m) const {
+    fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
+    std::vector<double> a;
+    const double choices = second->observer.run(there.plant, there.innovation.rows, &a);
+    fitter(second->observer, second->score).judge(there, choices);
+    return {-there.objective, models.settled(there.ms, second->score, noise),
+            rms(residual_of(*second, there.plant, a))};
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double>
+axis_case::scores_on_second(const std::vector<const candidate*>& some) const {
+    std::vector<plant_model> plants;
+    for (const candidate* m : some) plants.push_back(restarted(m->fit.plant, *second));
+    auto out = fitter(second->observer, second->score).objectives(plants);
+    for (double& score : out) score = -score;
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_case::worth(const candidate& m) const {
+    return m.total + (second && record.replayed() ? second_log(m).score : 0);
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_case::least_score() const {
+    return record.replayed() ? best().total - 5 * score_temperature : -std::numeric_limits<double>::infinity();
+}
+
+QUADRANT_DIAGNOSIS_DECL controller_description axis_case::mended() const {
+    controller_description c = *axis.controller;
+    if (controller->mended)
+        for (const auto& key : detail::searched_keys(c))
+            if (controller->key == key.key) key.of(c) = controller->value;
+    return c;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_case::command_left(bool without_added) const {
+    auto d = command_difference(log, mended());
+    if (!command_is_added()) return d;
+    std::vector<double> left = d;
+    for (std::size_t k = 0; k < d.size(); ++k)
+        left[k] += controller->added->waveform.values[k] * axis.plant.force_constant_N_per_V;
+    const double constant = quantile(left, 0.5);
+    if (without_added) d = std::move(left);
+    for (double& x : d) x -= constant;
+    return d;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double>
+axis_case::command_difference(const axis_log& l, const controller_description& c) const {
+    auto d = replay_controller(c, axis.actuator, record.period, loop_columns::of(l));
+    for (std::size_t k = 0; k < d.size(); ++k) d[k] = (d[k] - l.command[k]) * axis.plant.force_constant_N_per_V;
+    return d;
+}
+
+} // namespace quadrant::diagnosis

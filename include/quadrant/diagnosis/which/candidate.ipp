@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+QUADRANT_DIAGNOSIS_DECL double flexibility(const fit_result& f) {
+    const auto free = std::count_if(f.parameters.begin(), f.parameters.end(),
+                                    [](const parameter& p) { return !(p.spread > 0); });
+    return 0.5 * static_cast<double>(free) *
+           std::log(static_cast<double>(std::max<std::size_t>(2, f.ms.empty() ? 0 : f.ms.front().size())));
+}
+
+QUADRANT_DIAGNOSIS_DECL double rarity(const std::vector<const effect*>& effects) {
+    double sum = 0;
+    for (const effect* e : effects) sum -= score_temperature * std::log(e->prior.odds);
+    return sum;
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool replayed, bool closed) {
+    const auto n = c.fit.x.size();
+    std::array<detail::fold_sum, folds> sums;
+    detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+    for (auto& f : sums) f = all;
+    c.curvature = Eigen::MatrixXd::Zero(n, n);
+    c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
+    detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const double w = view.nu / (blocks.ms[b] + view.floor * view.floor);
+            auto& f = sums[fold_of(view.segment_of_block[b])];
+            f.a += w * blocks.curvature(b);
+            f.g += w * blocks.gradient(b);
+            c.curvature += w * blocks.curvature(b);
+            c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
+        }
+    });
+    for (const auto& f : sums) {
+        all.a += f.a;
+        all.g += f.g;
+    }
+    Eigen::VectorXd low(n), high(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
+        const double x = c.fit.x[i];
+        low[i] = std::min(p.to_fit(p.low) - x, 0.0);
+        high[i] = std::max(p.to_fit(p.high) - x, 0.0);
+        if (!(p.spread > 0)) continue;
+        all.a(i, i) += 1 / (p.spread * p.spread);
+        all.g[i] += (x - p.expected) / (p.spread * p.spread);
+    }
+    c.held_out.assign(s.segments, 0.0);
+    c.leave.clear();
+    std::array<Eigen::VectorXd, folds> step;
+    for (std::size_t f = 0; f < folds; ++f) {
+        Eigen::MatrixXd a = all.a - sums[f].a;
+        a.diagonal() *= 1 + 1e-9;
+        if (replayed)
+            step[f] = bounded_step(a, all.g - sums[f].g, low, high);
+        else // at the optimum, where nothing presses against a bound
+            step[f] = solved(a, sums[f].g)
+                          .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
+                          .cwiseMax(low)
+                          .cwiseMin(high);
+        c.leave.push_back(c.fit.x + step[f]);
+    }
+    detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const auto segment = view.segment_of_block[b];
+            c.held_out[segment] -=
+                0.5 * view.nu * std::log(blocks.at(b, step[fold_of(segment)]) + view.floor * view.floor);
+        }
+    });
+    c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
+    if (closed) c.penalty += fitter::prior(c.fit); // a machine far from its description has to be worth it
+    c.total = -c.penalty;
+    for (double v : c.held_out) c.total += v;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> resumed(const fit_result& f) {
+    std::vector<parameter> ps = f.parameters;
+    for (std::size_t i = 0; i < ps.size(); ++i) ps[i].start = ps[i].from_fit(f.x[static_cast<Eigen::Index>(i)]);
+    return ps;
+}
+
+QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidate& from, const effect& added,
+                                               const screening& look, const shared_slopes& slopes, int steps) {
+    const auto resumed_from = resumed(from.fit);
+    for (const auto& start : added.starts(look)) {
+        plant_model plant = from.fit.plant;
+        added.join(plant, look);
+        std::vector<parameter> ps;
+        known_slopes known{.from = &slopes};
+        for (std::size_t i = 0; i < resumed_from.size(); ++i) {
+            // The effect's own parameters replace the described ones.
+            const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
+                return &q.of(plant) == &resumed_from[i].of(plant);
+            });
+            if (replaced) continue;
+            ps.push_back(resumed_from[i]);
+            known.which.push_back(i);
+        }
+        ps.insert(ps.end(), start.begin(), start.end());
+        courses_.emplace_back(fit, plant, ps, steps, std::move(known), 0);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL fit_result first_look::best() {
+    fit_result best;
+    double least = std::numeric_limits<double>::infinity(); // a start that frees more must earn it
+    for (fit_course& c : courses_)
+        if (const double cost = c.result().objective + detail::flexibility(c.result()); cost < least) {
+            least = cost;
+            best = std::move(c.result());
+        }
+    return best;
+}
+
+QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
+    if (!std::isfinite(c.fit.objective)) return;
+    cross_validate(c, record.score, record.replayed(), record.closed());
+    c.held_out_force = std::make_shared<std::optional<double>>();
+    c.noise = std::make_shared<std::optional<double>>();
+    c.fit.innovation = {};
+    c.fit.quadratic = {};
+}
+
+QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, std::span<candidate* const> sketches) {
+    const fitter fit(record.observer, record.score);
+    std::vector<fit_course> courses;
+    std::vector<candidate*> fitted;
+    for (candidate* c : sketches) {
+        if (!std::isfinite(c->fit.objective)) continue;
+        courses.emplace_back(fit, c->fit.plant, resumed(c->fit), 30);
+        fitted.push_back(c);
+    }
+    fit.run(std::span(courses));
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+        fitted[i]->fit = std::move(courses[i].result());
+        judge(record, *fitted[i]);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, candidate& c) {
+    candidate* const one = &c;
+    finish(record, std::span(&one, 1));
+}
+
+} // namespace quadrant::diagnosis
