@@ -2,6 +2,8 @@
 #pragma once
 #include "apply.hpp"
 #include "apply.ipp"
+#include "compare.hpp"
+#include "compare.ipp"
 #include "compensate.hpp"
 #include "compensate.ipp"
 #include "controller/kinds.hpp"
