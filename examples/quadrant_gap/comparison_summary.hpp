@@ -81,15 +81,24 @@ inline std::string sentence(const comparison_result& c, const compared_axis& a) 
         return fmt::format("Whether the two logs of axis {} differ cannot be said: the one shows {}, and the "
                            "other neither shows nor excludes it.",
                            a.name, listed(open));
-    case likeness::differ:
+    case likeness::differ: {
+        // Of what is named, the largest gap before and the smallest after.
+        const difference *most = nullptr, *least = nullptr;
+        for (const difference& d : c.differences) {
+            if (d.axis != a.name || !(d.gap_before_force_rms_N.value > 0)) continue;
+            if (!most || d.gap_before_force_rms_N.value > most->gap_before_force_rms_N.value) most = &d;
+            if (!least || d.gap_after_force_rms_N.value < least->gap_after_force_rms_N.value) least = &d;
+        }
         return fmt::format("The two logs of axis {} differ by {}{}.", a.name, listed(names),
-                           a.force_before_N > 0
-                               ? fmt::format(": the model of the {} log leaves {} of force in the {} one, "
-                                             "with {} {}",
-                                             reference, quantity(a.force_before_N, force), other,
-                                             names.size() > 1 ? "these" : "this",
-                                             quantity(a.force_after_N, force))
-                               : "");
+                           most ? fmt::format(": the force gap of the {} log to the machine of the {} is {}, "
+                                              "and {} with {}",
+                                              most->found_in_second ? "second" : "first",
+                                              most->found_in_second ? "first" : "second",
+                                              quantity(most->gap_before_force_rms_N.value, force),
+                                              quantity(least->gap_after_force_rms_N.value, force),
+                                              names.size() > 1 ? "these" : "this")
+                                : "");
+    }
     default:
         return fmt::format("The two logs of axis {} differ, and no known effect is the cause: the model of the "
                            "{} log leaves {} of force in the {} one, whose own model leaves {}.",

@@ -33,15 +33,16 @@ part() { # NAME HEADER...
     for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
 }
 part diagnose diagnose
+part compare compare
 part apply apply read_diagnosis read_machine effect/effect_list
 part passes simulate fit/predictor
 part controllers controller/kinds
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
-set -- diagnose apply passes controllers binding
+set -- diagnose compare apply passes controllers binding
 printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
 cd "$build"
-em++ -O2 -fwasm-exceptions diagnose.o apply.o passes.o controllers.o binding.o -o quadrant.js --no-entry \
+em++ -O2 -fwasm-exceptions diagnose.o compare.o apply.o passes.o controllers.o binding.o -o quadrant.js --no-entry \
     -s MODULARIZE=1 -s EXPORT_NAME=quadrant_module -s ENVIRONMENT=worker -s ALLOW_MEMORY_GROWTH=1 -s FILESYSTEM=0 \
     -s DYNAMIC_EXECUTION=0 -s TOTAL_STACK=2MB -s "EXPORTED_FUNCTIONS=_malloc,_free" \
     -s "EXPORTED_RUNTIME_METHODS=UTF8ToString,stringToUTF8,lengthBytesUTF8"

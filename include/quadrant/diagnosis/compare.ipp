@@ -70,11 +70,13 @@ private:
     axis_record record_;
 };
 
-/// What belongs to a record, not to a machine: it is in no description, and each log shows its own.
+/// What no machine file has a key for: it happened in one record.
 inline bool is_of_record(const std::string& effect) {
     const quadrant::diagnosis::effect* known = effect_named(effect);
-    return effect == "cutting_force" || (known && known->keys.empty() && effect != "controller_mismatch");
+    return known && known->keys.empty() && effect != "controller_mismatch";
 }
+/// A process runs when its log is recorded; where in its cycle it begins is that log's own.
+inline bool is_process(const std::string& effect) { return effect == "cutting_force"; }
 /// What a replay of the controller or the steps of the reading show, whatever the model of the plant.
 inline bool is_replayed(const std::string& effect) {
     return effect == "controller_mismatch" || effect == "added_command" || effect == "encoder_quantization";
@@ -88,9 +90,11 @@ inline const cause* cause_in(const diagnosis_result& d, const std::string& axis,
 }
 
 /// The machine with what a diagnosis found: every cause that `keep` picks, claims and suspects. Values that
-/// moved inside the owner's tolerance stay as described: either log may move them anew.
+/// moved inside the owner's tolerance stay as described: either log may move them anew. Nothing where these
+/// causes alone make no machine, as a static friction whose Coulomb level is another cause.
 template <class Keep>
-machine_description with_causes(const machine_description& machine, diagnosis_result d, const Keep& keep) {
+std::optional<machine_description> with_some(const machine_description& machine, diagnosis_result d,
+                                             const Keep& keep) {
     std::erase_if(d.causes, [&](const cause& c) {
         return is_of_record(c.effect) || (c.effect == "controller_mismatch" && !is_claimed(c)) || !keep(c);
     });
@@ -98,10 +102,17 @@ machine_description with_causes(const machine_description& machine, diagnosis_re
         a.calibrated.clear();
         a.calibrated_with_suspects.clear();
     }
-    return apply(machine, std::move(d), 0);
+    try {
+        return apply(machine, std::move(d), 0);
+    } catch (const bad_input&) {
+        return {};
+    }
 }
+/// With all of them, or with the claims where the suspects make no machine, or as described.
 inline machine_description with_causes(const machine_description& machine, const diagnosis_result& d) {
-    return with_causes(machine, d, [](const cause&) { return true; });
+    auto all = with_some(machine, d, [](const cause&) { return true; });
+    if (!all) all = with_some(machine, d, is_claimed);
+    return all ? std::move(*all) : machine;
 }
 
 /// What a description says under the keys of these values, as numbers without an interval; empty: nothing.
@@ -156,13 +167,50 @@ inline bool same_size(const std::vector<parameter_estimate>& a, const std::vecto
     return true;
 }
 
+/// The values of an effect in a diagnosis, as a cause or as the other reading of one; empty: it is in none.
+inline std::vector<parameter_estimate> values_in(const diagnosis_result& d, const std::string& axis,
+                                                 const std::string& effect) {
+    if (const cause* c = cause_in(d, axis, effect)) return c->parameters;
+    for (const cause& c : d.causes)
+        for (const reading& r : c.readings)
+            if (c.axis == axis && r.effect == effect) return r.parameters;
+    return {};
+}
+/// Whether a cause, or the other reading of it, is in another diagnosis with the same size.
+inline bool is_in(const diagnosis_result& d, const cause& c) {
+    const auto same = [&](const std::string& effect, const std::vector<parameter_estimate>& values) {
+        const auto there = values_in(d, c.axis, effect);
+        return !there.empty() && same_size(there, values);
+    };
+    return same(c.effect, c.parameters) ||
+           std::any_of(c.readings.begin(), c.readings.end(),
+                       [&](const auto& r) { return same(r.effect, r.parameters); });
+}
+/// What one log shows, with the values of the other log where both show an effect in the same size: as good a
+/// description of the first, within its intervals, and no difference for the other. The process is that of the
+/// other log.
+inline diagnosis_result lent(diagnosis_result d, const diagnosis_result& to) {
+    std::erase_if(d.causes, [](const cause& c) { return is_process(c.effect); });
+    std::copy_if(to.causes.begin(), to.causes.end(), std::back_inserter(d.causes),
+                 [](const cause& c) { return is_process(c.effect); });
+    for (cause& c : d.causes) {
+        const cause* there = cause_in(to, c.axis, c.effect);
+        const auto values = values_in(to, c.axis, c.effect);
+        if (values.empty() || !same_size(c.parameters, values)) continue;
+        c.parameters = values;
+        c.with_suspects = there ? there->with_suspects : std::vector<parameter_estimate>{};
+    }
+    return d;
+}
+
 /// One log explained by the machine that the other shows.
 struct direction {
     bool found_in_second = true;
     const diagnosis_result* reference = nullptr; ///< the log whose machine is the description
     const diagnosis_result* own = nullptr;       ///< the log that is explained
     machine_description of_reference{}, of_own{};
-    diagnosis_result across{}; ///< the latter against the former
+    machine_description for_own{}, for_reference{}; ///< what the one shows, as it is lent to the other
+    diagnosis_result across{};                      ///< the log that is explained against for_own
 };
 
 /// What a direction says of one axis.
@@ -180,7 +228,9 @@ inline difference difference_of(const direction& d, const cause& c) {
     out.confusable_with = c.confusable_with;
     out.found_in_second = d.found_in_second;
     const cause* there = cause_in(*d.reference, c.axis, c.effect);
-    auto reference = there && !is_of_record(c.effect) ? there->parameters : described(d.of_reference, c);
+    auto reference = there                  ? there->parameters
+                     : is_process(c.effect) ? std::vector<parameter_estimate>{}
+                                            : described(d.for_own, c);
     out.first = d.found_in_second ? std::move(reference) : c.parameters;
     out.second = d.found_in_second ? c.parameters : std::move(reference);
     out.gap_before_force_rms_N = c.gap_before_force_rms_N;
@@ -203,28 +253,34 @@ inline finding by_scores(const direction& d, const std::string& axis, log_of_axi
     };
     finding out;
     out.reference = reference.explained_by(of(d.of_reference));
-    out.before = own.explained_by(of(d.of_reference));
+    out.before = own.explained_by(of(d.for_own));
     out.own = own.explained_by(of(d.of_own));
-    const fit_of_log reference_by_own = reference.explained_by(of(d.of_own));
+    const fit_of_log reference_by_own = reference.explained_by(of(d.for_reference));
     const double common =
         std::max(out.reference.total + out.before.total, reference_by_own.total + out.own.total);
-    const auto of_axis = [&](const cause& c) { return c.axis == axis && !is_replayed(c.effect); };
-    const auto whole = with_causes(d.of_reference, d.across, of_axis);
+    const auto of_axis = [&](const cause& c) {
+        return c.axis == axis && !is_replayed(c.effect) && !is_process(c.effect);
+    };
     out.after = out.before;
-    const fit_of_log all = own.explained_by(of(whole));
+    const auto whole = with_some(d.for_own, d.across, of_axis);
+    const fit_of_log all = whole ? own.explained_by(of(*whole)) : out.before;
     for (const cause& c : d.across.causes) {
         if (!of_axis(c) || !is_claimed(c)) continue;
-        const cause* there = cause_in(*d.reference, axis, c.effect);
-        if (there && same_size(there->parameters, c.parameters)) continue;
+        if (is_in(*d.reference, c)) continue;
         difference found = difference_of(d, c);
-        if (is_of_record(c.effect)) {
-            (there ? out.undecided : out.named).push_back(std::move(found));
+        if (!found.first.empty() && !found.second.empty() && same_size(found.first, found.second)) continue;
+        if (is_of_record(c.effect)) { // the record of the one shows it, or not
+            (cause_in(*d.reference, axis, c.effect) ? out.undecided : out.named).push_back(std::move(found));
             continue;
         }
         const auto is_this = [&](const cause& x) { return of_axis(x) && x.effect == c.effect; };
         const auto is_other = [&](const cause& x) { return of_axis(x) && x.effect != c.effect; };
-        const auto without = own.explained_by(of(with_causes(d.of_reference, d.across, is_other)));
-        const auto joined = reference.explained_by(of(with_causes(d.of_reference, d.across, is_this)));
+        // What makes no machine alone is asked together with the others.
+        const auto others = with_some(d.for_own, d.across, is_other),
+                   alone = with_some(d.of_reference, d.across, is_this),
+                   with_others = alone ? alone : with_some(d.of_reference, d.across, of_axis);
+        const fit_of_log without = others ? own.explained_by(of(*others)) : out.before,
+                         joined = with_others ? reference.explained_by(of(*with_others)) : out.reference;
         found.gain = all.total - without.total;
         found.loss = out.reference.total - joined.total;
         if (found.gain < r.margin || !shrinks(all, without, r)) continue;
@@ -238,11 +294,11 @@ inline finding by_scores(const direction& d, const std::string& axis, log_of_axi
         if (found.probability >= 0.5) (asked_of_both ? out.named : out.undecided).push_back(std::move(found));
     }
     const auto score_with = [&](const std::vector<difference>& some) {
-        const auto machine = with_causes(d.of_reference, d.across, [&](const cause& c) {
+        const auto machine = with_some(d.for_own, d.across, [&](const cause& c) {
             return of_axis(c) && std::any_of(some.begin(), some.end(),
                                              [&](const difference& x) { return x.effect == c.effect; });
         });
-        out.after = own.explained_by(of(machine));
+        out.after = some.empty() ? out.before : machine ? own.explained_by(of(*machine)) : all;
         return out.reference.total + out.after.total - r.margin * static_cast<double>(some.size());
     };
     out.score = score_with(out.named);
@@ -261,8 +317,8 @@ inline finding by_names(const direction& d, const std::string& axis) {
     finding out;
     for (const cause& c : d.across.causes) {
         if (c.axis != axis || is_replayed(c.effect) || !is_claimed(c)) continue;
-        const cause *there = cause_in(*d.reference, axis, c.effect), *here = cause_in(*d.own, axis, c.effect);
-        if (!here || !is_claimed(*here) || (there && same_size(there->parameters, c.parameters))) continue;
+        const cause* here = cause_in(*d.own, axis, c.effect);
+        if (!here || !is_claimed(*here) || is_in(*d.reference, c)) continue;
         out.named.push_back(difference_of(d, c));
         out.score += out.named.back().probability;
     }
@@ -286,6 +342,13 @@ inline void add_replayed(std::vector<difference>& to, const direction& d, const 
         const auto has = [&](const difference& x) { return x.effect == c.effect; };
         if (std::none_of(to.begin(), to.end(), has)) to.push_back(difference_of(d, c));
     }
+}
+
+/// A process that runs in one log, and not in the other.
+inline void add_process(std::vector<difference>& to, const direction& d, const std::string& axis) {
+    for (const cause& c : d.own->causes)
+        if (c.axis == axis && is_process(c.effect) && is_claimed(c) && !cause_in(*d.reference, axis, c.effect))
+            to.push_back(difference_of(d, c));
 }
 
 /// Whether the two logs differ by more than what neither machine explains in its own log, and than laws are
@@ -324,8 +387,10 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         d.own = to_second ? &out.second : &out.first;
         d.of_reference = beside::with_causes(machine, *d.reference);
         d.of_own = beside::with_causes(machine, *d.own);
+        d.for_own = beside::with_causes(machine, beside::lent(*d.reference, *d.own));
+        d.for_reference = beside::with_causes(machine, beside::lent(*d.own, *d.reference));
         d.across = diagnose(
-            d.of_reference, to_second ? second : first, nullptr,
+            d.for_own, to_second ? second : first, nullptr,
             in(to_second ? "second log by the machine of the first" : "first log by the machine of the second"),
             r);
     }
@@ -363,6 +428,7 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         beside::finding& f = found[k][way];
         beside::add_replayed(f.named, d, back, a.name);
         beside::add_replayed(f.named, back, d, a.name);
+        for (const beside::direction* one : {&d, &back}) beside::add_process(f.named, *one, a.name);
         a.found_in_second = d.found_in_second;
         a.force_before_N = f.before.force;
         a.force_after_N = f.after.force;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage: pair_logs FOLDER SEED NUMBER...     FOLDER/NUMBER/a.csv, b.csv and machine.json of each, and truth.json
-// Pairs of machines of the trial's simulator with one description: numbers 0 to 29 are two that differ by one effect,
-// 30 to 59 two that do not. Of either thirty, ten have nothing else, ten another effect in common, ten a force in
-// common that is in no list. Every machine lies anew inside the tolerances of the description; the two logs have
-// motions, lengths and noise of their own, in every third pair the same motion.
+// Pairs of machines of the trial's simulator with one description. 0 to 29 differ by one effect: twenty have nothing else,
+// ten another effect in common. 30 to 59 are equal: ten have nothing, ten an effect in common, ten a force in common that
+// is in no list. 60 to 69 differ by one effect beside such a force. Every machine lies anew inside the tolerances of the
+// description; the two logs have motions, lengths and noise of their own, in every third pair the same motion.
 #include "quadrant_gap/trial/files.hpp"
 
 #include <cstdio>
@@ -13,7 +13,8 @@
 namespace {
 
 using namespace quadrant_gap::trial;
-constexpr std::size_t different = 30, most_draws = 60;
+constexpr std::size_t different = 30, equal = 30, most_draws = 60;
+enum class common { nothing, effect, no_name };
 
 /// Puts an effect into a machine at so many tolerance clouds.
 void put(drawn_machine& m, const std::string& name, double clouds, std::uint64_t seed) {
@@ -49,19 +50,22 @@ ordered_json make(const std::filesystem::path& folder, std::uint64_t seed, std::
         turn.shuffle(bag);
         names.insert(names.end(), bag.begin(), bag.end());
     }
-    const bool differ = number < different;
+    const bool differ = number < different || number >= different + equal;
     const std::string effect = names[number % different];
-    const std::size_t beside = number % 3; // nothing, an effect, a force in no list
+    const common beside = number >= different + equal              ? common::no_name
+                          : number % 3 == 1                        ? common::effect
+                          : number % 3 == 2 && number >= different ? common::no_name
+                                                                   : common::nothing;
     dice random(seed * 1000 + number, 22);
     for (std::size_t draws = 0; draws < most_draws; ++draws) {
-        std::string common;
-        while (beside == 1 && (common.empty() || near_relatives(common, effect)))
-            common = random.one_of(withheld)->name;
+        std::string both;
+        while (beside == common::effect && (both.empty() || near_relatives(both, effect)))
+            both = random.one_of(withheld)->name;
         planned p;
-        p.what = beside == 2 ? kind::unknown : kind::none;
-        p.two_axes = effect == "cross_coupling" || common == "cross_coupling";
+        p.what = beside == common::no_name ? kind::unknown : kind::none;
+        p.two_axes = effect == "cross_coupling" || both == "cross_coupling";
         drawn_machine a = draw(seed * 1000 + number, 100 * number + draws, p);
-        if (!takes(a.described[0], effect) || (!common.empty() && !takes(a.described[0], common))) continue;
+        if (!takes(a.described[0], effect) || (!both.empty() && !takes(a.described[0], both))) continue;
         const axis_truth drawn = a.truth[0];
         a.truth = a.described;
         a.truth[0].unknown = drawn.unknown;
@@ -69,7 +73,7 @@ ordered_json make(const std::filesystem::path& folder, std::uint64_t seed, std::
         a.truth[0].actuator.soft_limit = drawn.actuator.soft_limit;
         a.excluded.clear();
         a.effects.clear();
-        if (!common.empty()) put(a, common, random.log_uniform(3, 12), a.noise_seed + 1);
+        if (!both.empty()) put(a, both, random.log_uniform(3, 12), a.noise_seed + 1);
         drawn_machine b = a;
         b.noise_seed += 17;
         const bool in_second = random.chance(0.5);
@@ -95,7 +99,7 @@ ordered_json make(const std::filesystem::path& folder, std::uint64_t seed, std::
                 {"in", !differ     ? ""
                        : in_second ? "second"
                                    : "first"},
-                {"common", beside == 2 ? "a force in no list" : common}};
+                {"common", beside == common::no_name ? "a force in no list" : both}};
     }
     throw std::runtime_error("no machine with " + effect + " was drawn");
 }
