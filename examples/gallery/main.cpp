@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage: gallery FOLDER
-// Writes the pictures of docs/gallery.md, one an effect: an axis of the library's own plant that has the effect, in
-// closed loop, beside a machine file that does not have it. Three panels: the residual force in time, over velocity and
-// over position.
+// Writes the pictures of docs/gallery.md, one an effect: an axis of the library's own plant that has the
+// effect, in closed loop, beside a machine file that does not have it. Three panels: the residual force in
+// time, over velocity and over position.
 #include "block_pictures/svg_file.hpp"
 
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>

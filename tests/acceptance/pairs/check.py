@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""Pairs of simulated sisters, compared (make_pairs.cpp): of those that differ by one effect this is named, and nothing
-else; of those that are equal nothing is named. A name counts as right where it is that of a difference, or one that the
-comparison calls confusable with it. Beside a force in no list the difference may stay without a name, but not get a wrong one.
+"""Pairs of simulated sisters, compared (make_pairs.cpp): of those that differ by one effect this is named,
+and nothing else; of those that are equal nothing is named. A name counts as right where it is that of a difference,
+or one that the comparison calls confusable with it. Beside a force in no list the difference may stay without a
+name, but not get a wrong one.
 usage: check.py PAIR_LOGS QUADRANT_GAP FOLDER [SEED [NUMBER...]]
-NUMBER: 0 to 29 differ, 30 to 59 are equal, 60 to 69 differ beside a force in no list; default six of each of the first, all
-with QUADRANT_TESTS=all. Passes where nine of ten of those that differ are right, and no pair gets a wrong name."""
+NUMBER: 0 to 29 differ, 30 to 59 are equal, 60 to 69 differ beside a force in no list; default six of each of the
+first two, all with QUADRANT_TESTS=all. Passes where nine of ten of those that differ are right, no equal pair is
+blamed, and none of the last gets a wrong name.
+"""
 import json, os, subprocess, sys, time
 from concurrent.futures import ThreadPoolExecutor
 

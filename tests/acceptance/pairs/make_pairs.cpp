@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: pair_logs FOLDER SEED NUMBER...     FOLDER/NUMBER/a.csv, b.csv and machine.json of each, and truth.json
-// Pairs of machines of the trial's simulator with one description. 0 to 29 differ by one effect: twenty have nothing else,
-// ten another effect in common. 30 to 59 are equal: ten have nothing, ten an effect in common, ten a force in common that
-// is in no list. 60 to 69 differ by one effect beside such a force. Every machine lies anew inside the tolerances of the
-// description; the two logs have motions, lengths and noise of their own, in every third pair the same motion.
+// usage: pair_logs FOLDER SEED NUMBER...     FOLDER/NUMBER/a.csv, b.csv and machine.json of each, and
+//                                            FOLDER/truth.json
+// Pairs of machines of the trial's simulator with one description. 0 to 29 differ by one effect: twenty have
+// nothing else, ten another effect in common. 30 to 59 are equal: ten have nothing, ten an effect in common,
+// ten a force in common that is in no list. 60 to 69 differ by one effect beside such a force. Every machine
+// lies anew inside the tolerances of the description; the two logs have motions, lengths and noise of their
+// own, in every third pair the same motion.
 #include "quadrant_gap/trial/files.hpp"
 
 #include <cstdio>
