@@ -56,7 +56,7 @@ inline std::string html_report(const comparison_result& c) {
         overviews += fmt::format(
             "<section data-axis-name=\"{0}\"><h2>Axis {0}</h2>{1}<table class=\"gap\"><caption>{2}</caption>"
             "<tbody>\n{3}</tbody></table>{4}</section>\n",
-            escape(a.name), paragraph(sentence(c, a)),
+            escape(a.name), c.axes.size() > 1 ? paragraph(sentence(c, a)) : "",
             rows.empty() ? "Compared by name: the forces of this axis are not in the log."
                          : voice_of(a)("Residual force, rms"),
             rows, inside.empty() ? "" : "<h3>Inside the tolerances of the machine file</h3>" + inside);
@@ -68,7 +68,11 @@ inline std::string html_report(const comparison_result& c) {
          {std::pair{"Machine", c.machine_file}, {"First log", c.first_file}, {"Second log", c.second_file}})
         files += fmt::format("<dt>{}</dt><dd>{}</dd>", name, escape(file));
     return report_page(
-        {{"title", escape(file_name(c.first_file) + " beside " + file_name(c.second_file))},
+        {{"kind", "Two logs of a servo axis, beside each other"},
+         {"causes_title", "Differences"},
+         {"remaining_title", "Each log alone"},
+         {"next_title", "Not decided"},
+         {"title", escape(file_name(c.first_file) + " beside " + file_name(c.second_file))},
          {"badge", fmt::format("<span class=\"badge {}\">{}</span>", name_of(c.likeness), name_of(c.likeness))},
          {"sentence", escape(sentence(c))},
          {"overview", overviews},

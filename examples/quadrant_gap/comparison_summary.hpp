@@ -148,6 +148,8 @@ inline std::vector<std::string> calibrated_lines(const compared_axis& a) {
     difference values;
     values.first = a.first;
     values.second = a.second;
+    for (auto* log : {&values.first, &values.second}) // how a contact that gives way is written says nothing
+        std::erase_if(*log, [](const parameter_estimate& p) { return p.key.starts_with("gms"); });
     return lines_of(values, voice_of(a));
 }
 

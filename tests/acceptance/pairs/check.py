@@ -12,7 +12,7 @@ blamed, and none of the last gets a wrong name.
 import json, os, subprocess, sys, time
 from concurrent.futures import ThreadPoolExecutor
 
-DEFAULT = [0, 1, 2, 5, 7, 9, 30, 31, 32, 36, 37, 38]
+DEFAULT = [0, 1, 2, 3, 12, 14, 30, 31, 33, 35, 36, 37]
 pair_logs, gap, folder = sys.argv[1:4]
 seed = sys.argv[4] if len(sys.argv) > 4 else "1"
 numbers = [int(n) for n in sys.argv[5:]]
