@@ -101,9 +101,9 @@ inline std::string sentence(const comparison_result& c, const compared_axis& a) 
     }
     default:
         return fmt::format("The two logs of axis {} differ, and no known effect is the cause: the model of the "
-                           "{} log leaves {} of force in the {} one, whose own model leaves {}.",
-                           a.name, reference, quantity(a.force_before_N, force), other,
-                           quantity(a.force_own_N, force));
+                           "{} log leaves {} of force there and {} in the {} one, whose own model leaves {}.",
+                           a.name, reference, quantity(a.force_common_N, force),
+                           quantity(a.force_before_N, force), other, quantity(a.force_own_N, force));
     }
 }
 

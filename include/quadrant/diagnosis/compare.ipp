@@ -351,14 +351,25 @@ inline void add_process(std::vector<difference>& to, const direction& d, const s
             to.push_back(difference_of(d, c));
 }
 
+inline verdict verdict_of(const diagnosis_result& d, const std::string& axis) {
+    return named(d.axes, axis)->verdict;
+}
 /// Whether the two logs differ by more than what neither machine explains in its own log, and than laws are
 /// right to, whatever the name.
-inline bool differ_without_a_name(const finding& f, const direction& d, const rules& r) {
+inline bool differ_without_a_name(const finding& f, const direction& d, const std::string& axis,
+                                  const rules& r) {
     const double rest = std::hypot(f.reference.above_floor(), f.own.above_floor());
-    const bool settled = d.reference->verdict <= verdict::explained && d.own->verdict <= verdict::explained;
+    const bool settled =
+        verdict_of(*d.reference, axis) <= verdict::explained && verdict_of(*d.own, axis) <= verdict::explained;
     return f.own.total > f.after.total + r.margin && shrinks(f.own, f.after, r) &&
            taken_off(f.after, f.own) > (settled ? r.near_floor * f.own.floor : rest) &&
-           d.across.verdict > verdict::within_tolerance;
+           verdict_of(d.across, axis) > verdict::within_tolerance;
+}
+/// Whether the log that is explained holds a force that no name explains, and the other nothing like it.
+inline bool holds_more(const finding& f, const direction& d, const std::string& axis, const rules& r) {
+    return verdict_of(*d.reference, axis) <= verdict::explained &&
+           verdict_of(d.across, axis) > verdict::explained &&
+           f.after.above_floor() > r.near_floor * f.reference.above_floor();
 }
 
 } // namespace detail::beside
@@ -435,11 +446,13 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         a.force_own_N = f.own.force;
         a.force_common_N = f.reference.force;
         a.floor_N = f.before.floor;
-        const bool both_ways =
-            beside::differ_without_a_name(f, d, r) && beside::differ_without_a_name(found[k][1 - way], back, r);
+        const beside::finding& g = found[k][1 - way];
+        const bool unnamed = beside::holds_more(f, d, a.name, r) || beside::holds_more(g, back, a.name, r) ||
+                             (beside::differ_without_a_name(f, d, a.name, r) &&
+                              beside::differ_without_a_name(g, back, a.name, r));
         a.likeness = !f.named.empty()       ? likeness::differ
                      : !f.undecided.empty() ? likeness::undecided
-                     : both_ways            ? likeness::unnamed
+                     : unnamed              ? likeness::unnamed
                                             : likeness::alike;
         out.likeness = std::max(out.likeness, a.likeness);
         std::move(f.named.begin(), f.named.end(), std::back_inserter(out.differences));
