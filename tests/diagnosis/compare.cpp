@@ -26,8 +26,7 @@ workshop::machine worn() {
 
 TEST_CASE("compare: two logs of one machine are alike, whatever its description lacks") {
     const auto description = workshop::described(workshop::machine{});
-    const auto found =
-        compare(description, log_of(worn(), workshop::strokes, 1), log_of(worn(), workshop::three_strokes, 2));
+    const auto found = compare(description, log_of(worn(), 8.15, 1), log_of(worn(), workshop::strokes, 2));
     CHECK(found.first.verdict == verdict::explained); // cogging, in both
     CHECK(found.likeness == likeness::alike);
     CHECK(found.differences.empty());
@@ -37,7 +36,7 @@ TEST_CASE("compare: what one of two machines has is named, whichever comes first
     const auto description = workshop::described(workshop::machine{});
     auto sister = worn();
     sister.viscous *= 2;
-    const auto one = log_of(worn(), workshop::strokes, 1), other = log_of(sister, workshop::three_strokes, 2);
+    const auto one = log_of(worn(), workshop::strokes, 1), other = log_of(sister, 8.15, 2);
     for (const bool turned : {false, true}) {
         const auto found = turned ? compare(description, other, one) : compare(description, one, other);
         CHECK(found.likeness == likeness::differ);
