@@ -43,6 +43,7 @@ void add_compensate(CLI::App& app);
 void add_init(CLI::App& app);
 void add_import(CLI::App& app);
 void add_trial(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_circle(CLI::App& app);
 void add_fleet(CLI::App& app);
 

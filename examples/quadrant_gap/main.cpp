@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
     quadrant_gap::add_simulate(app);
     quadrant_gap::add_forecast(app);
     quadrant_gap::add_compensate(app);
+    quadrant_gap::add_compare(app);
     quadrant_gap::add_init(app);
     quadrant_gap::add_import(app);
     quadrant_gap::add_trial(app);

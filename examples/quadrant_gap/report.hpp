@@ -8,8 +8,13 @@
 /// A diagnosis as one HTML file that needs no network.
 namespace quadrant_gap {
 
-/// What diagnose and simulate put into the template, beside the style and the scripts.
+/// What diagnose, simulate and compare put into the template, beside the style and the scripts. Titles that are
+/// not given are those of a diagnosis.
 inline std::string report_page(std::map<std::string_view, std::string> values) {
+    values.insert({{"kind", "Sim-to-real gap of a servo axis"},
+                   {"causes_title", "Causes"},
+                   {"remaining_title", "What is left"},
+                   {"next_title", "Next experiment"}});
     values.insert({{"dygraph_js", joined(files::dygraph_min_js)},
                    {"dygraph_css", joined(files::dygraph_min_css)},
                    {"css", joined(files::report_css)},

@@ -74,6 +74,7 @@ function draw_time(figure) {
         highlightCallback: (event, x) => link(graph, other => other.setSelection(nearest(other, x))),
         unhighlightCallback: () => link(graph, other => other.clearSelection()),
     });
+    for (const handle of plot.querySelectorAll('img')) handle.alt = ''; // of the range below the first chart
     graph.axis = c.axis;
     (graphs[c.axis] ||= []).push(graph);
     return () => { graph.updateOptions(theme(c.names)); graph.resize(); };

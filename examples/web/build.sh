@@ -33,6 +33,7 @@ part() { # NAME HEADER...
     for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
 }
 part diagnose diagnose next/next_experiment
+part compare compare
 part apply apply read_diagnosis read_machine text/json_text effect/effect_list
 part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/record fit/drive_noise model/linear_past model/sample_loss
 part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
@@ -41,7 +42,7 @@ part chain chain/diagnose_chain chain/links chain/search chain/values chain/outc
 part controllers controller/kinds where/controller_box where/controller_mismatch
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
-set -- diagnose apply passes search case chain controllers binding
+set -- diagnose compare apply passes search case chain controllers binding
 printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
 cd "$build"
 em++ -O2 -fwasm-exceptions $(printf '%s.o ' "$@") -o quadrant.js --no-entry \

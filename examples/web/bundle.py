@@ -6,8 +6,11 @@ SOURCES holds page.html and its parts; BUILD holds quadrant.js and quadrant.wasm
 """
 import base64
 import gzip
+import html
 import pathlib
+import re
 import sys
+import urllib.parse
 
 sources, build = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 version, out = sys.argv[3], pathlib.Path(sys.argv[4])
@@ -19,9 +22,27 @@ def script(*parts):
     return "\n".join(p.read_text() for p in parts).replace("</script", "<\\/script")
 
 
+def gallery(docs):
+    """docs/gallery.md as HTML: headings, paragraphs and pictures; its tables and the last line stay there."""
+    parts = []
+    for block in (docs / "gallery.md").read_text().split("## ")[1:]:
+        title, *paragraphs = (" ".join(p.split()) for p in block.split("\n\n") if p.strip())
+        parts.append(f"<section><h3>{html.escape(title)}</h3>")
+        for text in paragraphs:
+            picture = re.fullmatch(r"!\[(.*)\]\((.*)\)", text)
+            if picture:
+                uri = "data:image/svg+xml," + urllib.parse.quote((docs / picture[2]).read_text(), safe=" =:/,;()'")
+                parts.append(f'<img alt="{html.escape(picture[1])}" width="560" loading="lazy" src="{uri}">')
+                break
+            parts.append(f"<p>{html.escape(text)}</p>")
+        parts.append("</section>")
+    return "\n".join(parts)
+
+
 wasm = gzip.compress((build / "quadrant.wasm").read_bytes(), 9, mtime=0)
 values = {
     "version": version,
+    "gallery": gallery(sources / "../../docs"),
     "report_css": (sources / "../quadrant_gap/report.css").read_text(),
     "page_css": (sources / "page.css").read_text(),
     "wasm": base64.b64encode(wasm).decode(),

@@ -21,7 +21,7 @@ async function ask_machine() {
     }
     begun = answer.ready ? answer.machine : null;
     the('machine').querySelector('.fault').textContent = answer.message || '';
-    the('go').disabled = !begun;
+    follow_choice();
 }
 
 function lay_out(fields) {

@@ -21,16 +21,22 @@ on_files = () => {
     if (!logs.length) return;
     choose(the('log'), logs, undefined, logs[0]);
     choose(the('holdout'), logs, 'none', logs[1]);
+    choose(the('beside'), logs, 'nothing');
     choose(the('with'), machines, 'from the form above', machines.at(-1));
     follow_choice();
     if (machines.length && !running && !result && !of_kind('table').length) diagnose();
 };
 
 function follow_choice() {
-    const by_form = the('with').value === '';
+    const by_form = the('with').value === '', beside = to_compare();
     show_form(by_form ? the('log').value : '');
-    the('go').disabled = running || (by_form && !begun);
+    the('holdout').disabled = beside !== '';
+    the('go').textContent = beside ? 'Find what differs' : 'Find the cause';
+    the('go').disabled = running || (by_form && !begun && !beside);
 }
+
+// The log to compare with; none where it is the same.
+const to_compare = () => the('beside').value === the('log').value ? '' : the('beside').value;
 
 const fault_of_start = text => { the('start').querySelector('.fault').textContent = text; };
 
@@ -43,7 +49,7 @@ function run_state(on) {
 
 async function diagnose() {
     if (running) return;
-    const log = the('log').value, holdout = the('holdout').value === log ? '' : the('holdout').value, by_form = the('with').value === '';
+    const beside = to_compare(), log = the('log').value, holdout = the('holdout').value === log ? '' : the('holdout').value, by_form = the('with').value === '';
     run_state(true);
     fault_of_start('');
     for (const id of ['verdict', 'what-if', 'report']) the(id).hidden = true;
@@ -51,8 +57,8 @@ async function diagnose() {
     const since = () => `${((performance.now() - began) / 1000).toFixed(1)} s`;
     on_tell = line => { the('progress').textContent = `${since()}: ${line}`; };
     on_tell('reading');
-    const answer = await call({do: 'diagnose', log, holdout, machine: by_form ? 'the form' : the('with').value,
-        ...(by_form ? {machine_text: begun} : {}), fast: the('fast').checked});
+    const known = !by_form || begun, machine = {machine: !known ? '' : by_form ? 'the form' : the('with').value, ...(by_form && begun ? {machine_text: begun} : {})};
+    const answer = await call({...(beside ? {do: 'compare', beside} : {do: 'diagnose', holdout}), log, ...machine, fast: the('fast').checked});
     run_state(false);
     if (answer.cancelled) { the('progress').textContent = 'Cancelled.'; return; }
     the('progress').textContent = answer.error ? '' : `Done in ${since()}.`;
@@ -68,7 +74,7 @@ function show_result() {
     the('sentence').textContent = result.sentence;
     the('verdict').hidden = false;
     the('sentence').focus({preventScroll: true});
-    show_what_if(result);
+    if (result.causes) show_what_if(result);
     const frame = the('report');
     frame.hidden = false;
     frame.onload = () => {
@@ -81,7 +87,7 @@ function show_result() {
 
 the('go').addEventListener('click', diagnose);
 the('cancel').addEventListener('click', () => restart([...dropped.values()].map(f => f.request)));
-for (const id of ['log', 'holdout', 'with']) the(id).addEventListener('change', follow_choice);
+for (const id of ['log', 'holdout', 'with', 'beside']) the(id).addEventListener('change', follow_choice);
 form.addEventListener('change', () => setTimeout(follow_choice));
 the('save-report').addEventListener('click', () => save('report.html', result.report, 'text/html'));
-the('save-diagnosis').addEventListener('click', () => save('diagnosis.json', result.diagnosis, 'application/json'));
+the('save-diagnosis').addEventListener('click', () => save(result.causes ? 'diagnosis.json' : 'comparison.json', result.diagnosis, 'application/json'));

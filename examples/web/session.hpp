@@ -4,11 +4,13 @@
 #include "form.hpp"
 #include "what_if.hpp"
 
+#include "quadrant_gap/comparison_report.hpp"
 #include "quadrant_gap/make_match.hpp"
 #include "quadrant_gap/report.hpp"
 #include "quadrant_gap/summary.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/write_comparison.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <map>
@@ -47,6 +49,7 @@ private:
         if (what == "import") return import(request);
         if (what == "form") return begun_machine(log(request.at("log").get<std::string>()), request);
         if (what == "diagnose") return diagnosed(request);
+        if (what == "compare") return compared(request);
         if (what == "what_if") return what_if(request);
         throw std::invalid_argument("no such request: " + what);
     }
@@ -130,6 +133,30 @@ private:
                                  {"before", drawn(simulate(machine_, log_), log_)}};
         if (holdout_) answer["before_holdout"] = drawn(simulate(machine_, *holdout_), *holdout_);
         return answer;
+    }
+
+    /// Two logs beside each other. Without a machine, what the first says of its own.
+    nlohmann::json compared(const nlohmann::json& request) const {
+        const std::string one = request.at("log").get<std::string>(),
+                          other = request.at("beside").get<std::string>();
+        machine_log first = log(one), second = log(other);
+        const std::string file = request.value("machine", std::string());
+        const auto machine = file.empty() ? quadrant_gap::described_by(first)
+                             : request.contains("machine_text")
+                                 ? read_machine(request["machine_text"].get<std::string>(), file)
+                                 : read_machine(text(file), file);
+        quadrant_gap::make_match(machine, first, &second);
+        auto result =
+            compare(machine, first, second, tell_, request.value("fast", false) ? fast_rules() : rules{});
+        result.first_sha256 = files_.at(one).sha256;
+        result.second_sha256 = files_.at(other).sha256;
+        if (!file.empty() && !request.contains("machine_text")) result.machine_sha256 = files_.at(file).sha256;
+        const auto replace = nlohmann::json::error_handler_t::replace;
+        return {{"verdict", name_of(result.likeness)},
+                {"sentence", quadrant_gap::sentence(result)},
+                {"summary", quadrant_gap::summary(result)},
+                {"diagnosis", to_json(result).dump(2, ' ', false, replace) + "\n"},
+                {"report", quadrant_gap::html_report(result)}};
     }
 
     /// The machine file with the causes as they are set, and what it predicts.

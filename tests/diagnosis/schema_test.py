@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 """Validates files against docs/schema with python3-jsonschema.
 usage: schema_test.py [--practice DIR] [--simulation FILE ...] [--forecast FILE ...] [--circle FILE ...] [--compensation FILE ...]
-                      [DIAGNOSIS.json ...]
+                      [--comparison FILE ...] [DIAGNOSIS.json ...]
 Always: the schemas themselves, every machine file, map, diagnosis and log under examples/ and tests/, and small files that each schema
 must refuse. With --practice: the machines and log headers of the practice set. Then every diagnosis that is given."""
 import argparse
@@ -80,11 +80,12 @@ arguments.add_argument("--simulation", type=pathlib.Path, action="append", defau
 arguments.add_argument("--forecast", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("--circle", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("--compensation", type=pathlib.Path, action="append", default=[])
+arguments.add_argument("--comparison", type=pathlib.Path, action="append", default=[])
 arguments.add_argument("diagnoses", nargs="*", type=pathlib.Path)
 given = arguments.parse_args()
 machine, log, diagnosis, simulation, forecast, import_map = map(
     validator, ("machine", "log", "diagnosis", "simulation", "forecast", "import"))
-compensation = validator("compensation")
+compensation, comparison = map(validator, ("compensation", "comparison"))
 
 for box, keys in keys_of_the_reader().items():
     checked += 1
@@ -124,6 +125,8 @@ for path in given.circle:
         refuse(circle, changed(content, way, to), f"circle with {way} = {to}")
 for path in given.compensation:
     accept(compensation, load(path), path)
+for path in given.comparison:
+    accept(comparison, load(path), path)
 if not given.diagnoses:
     print("SKIPPED: no diagnosis file was given", file=sys.stderr)
 
@@ -277,6 +280,20 @@ good_forecast = {"schema": "quadrant.forecast/1", "notes": [], "axes": {"x": {"k
 accept(forecast, good_forecast, "the forecast of this test")
 for path, to in [(["axes", "x", "gap_after"], ...), (["axes", "x", "shrink"], 1.1), (["schema"], "1"), (["colour"], 1)]:
     refuse(forecast, changed(good_forecast, path, to), f"forecast with {path} = {to}")
+
+coulomb = {"coulomb_N": {"value": 20, "ci95": [19, 21]}}
+good_comparison = {
+    "schema": "quadrant.comparison/1", "likeness": "differ", "verdict_first": "no_gap", "verdict_second": "explained", "notes": [],
+    "axes": {"x": {"likeness": "differ", "kind": "linear", "explained": "second", "force_before_N": 20, "force_after_N": 1,
+                   "force_own_N": 1, "force_common_N": 1, "floor_N": 0.5, "calibrated_first": {}, "calibrated_second": coulomb}},
+    "differences": [{"axis": "x", "effect": "coulomb_friction", "probability": 0.97, "confusable_with": [], "first": {},
+                     "second": coulomb, "found_in": "second", "gap_before_force_rms_N": 20, "gap_after_force_rms_N": 1,
+                     "gap_before_position_rms_m": 1e-5, "gap_after_position_rms_m": 1e-6, "gain": 900, "loss": 800}],
+    "undecided": []}
+accept(comparison, good_comparison, "the comparison of this test")
+for path, to in [(["likeness"], "similar"), (["axes", "x", "floor_N"], -1), (["differences", 0, "probability"], 2), (["schema"], "1"),
+                 (["differences", 0, "second", "coulomb_N", "ci95"], ...), (["undecided"], ...), (["colour"], 1)]:
+    refuse(comparison, changed(good_comparison, path, to), f"comparison with {path} = {to}")
 
 units = set(re.findall(r'unit_name\{"([^"]+)"', (root / "include/quadrant/diagnosis/import/units.hpp").read_text()))
 checked += 1

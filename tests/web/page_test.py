@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 """Opens the built page from disk in headless Chromium and uses it as a person would.
 
-page_test.py QUADRANT.html quadrant-gap SOURCE_DIR --shots DIR [--shared DIR]
+page_test.py QUADRANT.html quadrant-gap SOURCE_DIR --shots DIR [--shared DIR] [--axe axe.min.js]
 With QUADRANT_TESTS=all also every practice log of SHARED/gap/practice: verdict and claims equal the program's.
 """
 import argparse
@@ -197,6 +197,86 @@ def without_a_machine(driver, page, data, shots):
     check(element(driver, "#verdict").is_displayed(), element(driver, "#start .fault").text)
 
 
+def serious(driver, axe, where):
+    """What axe-core calls serious or critical in the document at hand."""
+    driver.execute_script(axe)
+    driver.set_script_timeout(120)
+    found = driver.execute_async_script("const done = arguments[0]; axe.run(document, {iframes: false}).then(r => done(r.violations))")
+    bad = [f"{v['id']}: {v['help']} ({v['nodes'][0]['html'][:120]})" for v in found if v["impact"] in ("serious", "critical")]
+    check(not bad, f"{where}: {len(bad)} serious findings of axe-core: {'; '.join(bad)}")
+
+
+def accessible(driver, page, data, axe):
+    if not axe:
+        print("SKIPPED: accessibility (no --axe: npm is not there, or gave nothing)")
+        return
+    source = axe.read_text()
+    for scheme in ("light", "dark"):
+        open_page(driver, page, 1200, scheme)
+        element(driver, "#gallery summary").click()
+        serious(driver, source, f"empty page, {scheme}")
+        give(driver, data / "log.csv")
+        wait(lambda: driver.find_elements("css selector", "#machine input"), 20, "the form")
+        serious(driver, source, f"the form, {scheme}")
+        give(driver, data / "machine.json")
+        wait(lambda: verdict_or_fault(driver) and element(driver, "#took").text, 120, "a verdict")
+        serious(driver, source, f"verdict and sliders, {scheme}")
+        driver.switch_to.frame(element(driver, "#report"))
+        serious(driver, source, f"the report, {scheme}")
+        driver.switch_to.default_content()
+    print("accessibility: no serious finding of axe-core")
+
+
+def differences(comparison):
+    return comparison["likeness"], [(d["axis"], d["effect"], d["found_in"]) for d in comparison["differences"]]
+
+
+def compare_two(driver, page, program, data, shots, work):
+    """Both logs dropped: the same machine is alike; with a constant added to its command it differs by a force."""
+    leaning, out = work / "leaning.csv", work / "compared.json"
+    header, *rows = [line.split(",") for line in (data / "holdout.csv").read_text().split()]
+    at = header.index("x_cmd_V")
+    for row in rows:
+        row[at] = f"{float(row[at]) + 0.05:.6f}"
+    leaning.write_text("\n".join(",".join(row) for row in [header, *rows]) + "\n")
+    for other, machine in ((data / "holdout.csv", [data / "machine.json"]), (leaning, [data / "machine.json"]), (leaning, [])):
+        open_page(driver, page)
+        give(driver, data / "log.csv", other)
+        wait(lambda: element(driver, "#start").is_displayed(), 20, "two logs")
+        driver.execute_script("for (const id of ['beside']) { the(id).value = arguments[0]; the(id).dispatchEvent(new Event('change')); }",
+                              other.name)
+        if machine:
+            give(driver, *machine)
+            wait(lambda: driver.execute_script("return running"), 20, "the comparison begins")
+        else:
+            check(element(driver, "#go").is_enabled(), "no machine file is needed")
+            element(driver, "#go").click()
+        wait(lambda: not driver.execute_script("return running") and verdict_or_fault(driver), 240, "a comparison")
+        check(element(driver, "#verdict").is_displayed(), element(driver, "#start .fault").text)
+        check(not element(driver, "#what-if").is_displayed(), "no sliders for a comparison")
+        command = [program, "compare", data / "log.csv", other, "--json", out, "--quiet"] + (["--machine", *machine] if machine else [])
+        subprocess.run([str(c) for c in command], check=True)
+        expected, found = json.loads(out.read_text()), diagnosis_of(driver)
+        check(differences(found) == differences(expected), f"the page says {differences(found)}, the program {differences(expected)}")
+        named = [d["effect"] for d in found["differences"]]
+        check(named == (["constant_force"] if other == leaning else []), f"{other.name}: {named}")
+        print(f"compared with {other.name}, {'a' if machine else 'no'} machine file: {found['likeness']} {named}, as the program")
+        if other == leaning and machine:
+            shoot(driver, shots / "web_compare.png")
+    check(not errors_of(driver), f"errors in the page: {errors_of(driver)}")
+
+
+def gallery(driver, page, shots):
+    open_page(driver, page)
+    element(driver, "#gallery summary").click()
+    pictures = driver.find_elements("css selector", "#gallery img")
+    check(len(pictures) == 9, f"{len(pictures)} pictures in the gallery")
+    wait(lambda: all(driver.execute_script("arguments[0].scrollIntoView(); return arguments[0].complete && arguments[0].naturalWidth > 0", p)
+                     for p in pictures), 10, "the pictures of the gallery")
+    check(all(p.get_attribute("alt") for p in pictures), "a picture without words")
+    shoot(driver, shots / "web_gallery.png")
+
+
 def other_columns(driver, page, root, shots):
     open_page(driver, page)
     give(driver, root / "examples/import/odrive.csv", root / "examples/import/odrive.map.json")
@@ -253,6 +333,7 @@ def main():
     parse.add_argument("source", type=pathlib.Path)
     parse.add_argument("--shots", type=pathlib.Path, required=True)
     parse.add_argument("--shared", type=pathlib.Path, default=pathlib.Path("no shared folder"))
+    parse.add_argument("--axe", type=pathlib.Path)
     given = parse.parse_args()
     given.shots.mkdir(parents=True, exist_ok=True)
     data = given.source.resolve() / "examples/data"
@@ -263,6 +344,9 @@ def main():
             narrow_and_dark(driver, given.page, data, given.shots)
             without_a_machine(driver, given.page, data, given.shots)
             other_columns(driver, given.page, given.source.resolve(), given.shots)
+            compare_two(driver, given.page, given.program, data, given.shots, pathlib.Path(work))
+            gallery(driver, given.page, given.shots)
+            accessible(driver, given.page, data, given.axe)
             practice(driver, given.page, given.program, given.shared, pathlib.Path(work))
         finally:
             driver.quit()

@@ -163,7 +163,8 @@ inline std::string axis_charts(chart_book& book, std::size_t index, const axis_r
         "<section><h2>Axis {0}: the gap in pictures</h2>\n"
         "<div class=\"zoom\"><p class=\"hint\">Drag across a chart to zoom (two fingers on a touch screen); "
         "the charts in "
-        "time move together, and those over velocity and position show the samples of that time.</p><button "
+        "time move together, and those over velocity and position show the samples of that time. What each "
+        "cause looks like: docs/gallery.md of Quadrant, and the gallery of its page.</p><button "
         "type=\"button\" data-axis=\"{1}\">Whole record</button></div>\n"
         "{2}{3}{4}<div class=\"still\">{5}{6}{7}</div>\n<h3>Where the gap sits</h3>\n{8}</section>\n",
         escape(a.name), index, force, position, command + added, velocity, place, spectrum, shares(a));

@@ -266,4 +266,15 @@ inline initialised_machine init_machine(const init_request& request, const machi
     return detail::machine_starter(request, log).take();
 }
 
+/// The description that a log gives of its own machine, where there is no machine file: mass, friction and
+/// gravity by regression. Where the command is no force, one newton a unit of it is taken: masses and forces
+/// are then in units of the command. Throws bad_input where the log is not sure of the mass.
+inline initialised_machine machine_from_log(const machine_log& log) {
+    init_request ask;
+    ask.from_log = ask.unchecked = true;
+    for (const axis_log& a : log.axes)
+        if (!is_force(a.command_unit)) ask.values["force-constant"][a.name] = 1;
+    return init_machine(ask, &log);
+}
+
 } // namespace quadrant::diagnosis

@@ -18,6 +18,8 @@
 #include "chain/start.ipp"
 #include "chain/values.hpp"
 #include "chain/values.ipp"
+#include "compare.hpp"
+#include "compare.ipp"
 #include "compensate.hpp"
 #include "compensate.ipp"
 #include "compensate/compensation.hpp"
