@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 namespace quadrant {
 
@@ -98,7 +99,7 @@ public:
     }
 
     /// The velocity at the end of the step.
-    Real operator()(state& s, Real momentum, Real v) const noexcept {
+    [[gnu::always_inline]] inline Real operator()(state& s, Real momentum, Real v) const noexcept {
         return step(
             s, momentum, v, [](const Real& level) { return level; }, none_added());
     }
@@ -159,29 +160,34 @@ private:
         return Real(1) / (select(forward, forward_.inertia, backward_.inertia) +
                           h_ * (h_ + damping_) * stiffness(0, added));
     }
-    Real step(state& s, Real momentum, Real v, const auto& changed, const auto& added) const noexcept {
+    [[gnu::always_inline]] inline Real step(state& s, const Real& momentum, const Real& v, const auto& changed,
+                                            const auto& added) const noexcept {
         using std::abs;
         const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
         Real level = changed(select(forward, forward_.level, backward_.level));
-        if (falls_by_side_)
-            level = level + select(forward, forward_.excess, backward_.excess) *
-                                decayed(abs(v) *
-                                        select(forward, forward_.inverse_velocity, backward_.inverse_velocity));
-        else if (falls_)
-            level = level + forward_.excess * decayed(abs(v) * forward_.inverse_velocity);
+        if (falls_) {
+            Real excess = forward_.excess, inverse = forward_.inverse_velocity;
+            if (falls_by_side_) {
+                excess = select(forward, excess, backward_.excess);
+                inverse = select(forward, inverse, backward_.inverse_velocity);
+            }
+            level = level + excess * decayed(abs(v) * inverse);
+        }
         Real kept(0);
         if (relaxes_) { // a level of zero has no distance to keep
             const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
             kept = decayed(select(less(by, Real(700)), by, Real(700)));
         }
-        return springs_ > 1 ? several(s, momentum, level, kept,
-                                      select(forward, forward_.inertia, backward_.inertia), added)
-                            : one(s, momentum, level, kept, forward, added);
+        if (springs_ == 1) return one(s, momentum, level, kept, forward, added);
+        const Real inertia = select(forward, forward_.inertia, backward_.inertia);
+        return springs_ == N
+                   ? several(s, momentum, level, kept, inertia, added, std::integral_constant<std::size_t, N>())
+                   : several(s, momentum, level, kept, inertia, added, springs_);
     }
 
     /// A contact of one spring, which most guides are: all three ways, and the one that is true.
-    Real one(state& s, Real momentum, Real level, Real kept, const auto& forward,
-             const auto& added) const noexcept {
+    [[gnu::always_inline]] inline Real one(state& s, const Real& momentum, const Real& level, const Real& kept,
+                                           const auto& forward, const auto& added) const noexcept {
         using std::abs;
         const law spring{weight_[0] * level, kept};
         const Real slipping = select(forward, forward_.slipping, backward_.slipping),
@@ -206,41 +212,47 @@ private:
     }
 
     /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was
-    /// wrong.
-    Real several(state& s, Real momentum, Real level, Real kept, Real inertia,
-                 const auto& added) const noexcept {
+    /// wrong. `count`: how many there are, a constant where all are.
+    [[gnu::noinline]] Real several(state& s, const Real& momentum, const Real& level, const Real& kept,
+                                   const Real& inertia, const auto& added, const auto count) const noexcept {
         using std::abs;
-        std::array<Real, N> end{};                             // force of the springs that slip, at the end
-        std::array<mask_of<Real>, N> slips = s.slips, fresh{}; // fresh: broke away in this step
-        for (std::size_t i = 0; i < springs_; ++i) {
-            const law spring{weight_[i] * level, kept};
-            end[i] = along(greater_equal(s.force[i], Real(0)), spring.slips_on(abs(s.force[i])));
+        std::array<Real, N> share{}, end{}, stiff{};   // end: force of the springs that slip, at the end
+        std::array<mask_of<Real>, N> slips{}, fresh{}; // fresh: broke away in this step
+        for (std::size_t i = 0; i < count; ++i) {
+            share[i] = weight_[i] * level;
+            stiff[i] = stiffness(i, added);
+            slips[i] = s.slips[i];
+            end[i] = along(greater_equal(s.force[i], Real(0)),
+                           relaxes_ ? law{share[i], kept}.slips_on(abs(s.force[i])) : share[i]);
         }
         Real v(0);
-        for (std::size_t round = 0; round <= 2 * springs_; ++round) {
+        for (std::size_t round = 0; round <= 2 * count; ++round) {
             Real pull(0), stuck(0);
-            for (std::size_t i = 0; i < springs_; ++i) {
+            for (std::size_t i = 0; i < count; ++i) {
                 pull = pull + select(slips[i], end[i], s.force[i]);
-                stuck = stuck + select(slips[i], Real(0), stiffness(i, added));
+                stuck = stuck + select(slips[i], Real(0), stiff[i]);
             }
             v = (momentum - h_ * pull) / (inertia + h_ * (h_ + damping_) * stuck);
             const auto ahead = greater(v, Real(0)), moves = !equal(v, Real(0));
+            const Real speed = abs(v);
             auto changed = !equal(v, v); // none, but for NaN
-            for (std::size_t i = 0; i < springs_; ++i) {
-                const law spring{weight_[i] * level, kept};
-                const auto turned = both(both(slips[i], !fresh[i]), less_equal(end[i] * v, Real(0)));
-                const Real before = along(ahead, s.force[i]);
-                const auto breaks =
-                    both(both(!slips[i], moves), !spring.sticks(before + h_ * stiffness(i, added) * abs(v)));
-                end[i] = select(breaks, along(ahead, spring.breaks_away(before)), end[i]);
-                fresh[i] = either(fresh[i], breaks);
-                slips[i] = either(both(slips[i], !turned), breaks);
-                changed = either(changed, either(turned, breaks));
+            std::array<mask_of<Real>, N> turned{}, breaks{};
+            for (std::size_t i = 0; i < count; ++i) {
+                turned[i] = both(both(slips[i], !fresh[i]), less_equal(end[i] * v, Real(0)));
+                breaks[i] = both(both(!slips[i], moves),
+                                 !law{share[i], kept}.sticks(along(ahead, s.force[i]) + h_ * stiff[i] * speed));
+                changed = either(changed, either(turned[i], breaks[i]));
             }
-            if (none(changed)) break;
+            if (none(changed)) break; // nearly always in the first round
+            for (std::size_t i = 0; i < count; ++i) {
+                const Real away = law{share[i], kept}.breaks_away(along(ahead, s.force[i]));
+                end[i] = select(breaks[i], along(ahead, away), end[i]);
+                fresh[i] = either(fresh[i], breaks[i]);
+                slips[i] = either(both(slips[i], !turned[i]), breaks[i]);
+            }
         }
-        for (std::size_t i = 0; i < springs_; ++i) {
-            s.force[i] = select(slips[i], end[i], s.force[i] + h_ * stiffness(i, added) * v);
+        for (std::size_t i = 0; i < count; ++i) {
+            s.force[i] = select(slips[i], end[i], s.force[i] + h_ * stiff[i] * v);
             s.slips[i] = slips[i];
         }
         return v;

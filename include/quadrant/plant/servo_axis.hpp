@@ -207,37 +207,49 @@ public:
         has_mean_ = !all(equal(process_mean_, Real(0)));
         level_changes_ = along_.present() || has_drift_ || laws_.at(joint::friction);
         has_play_ = any(greater(half_play_, Real(0)));
+        has_shaper_ = laws_.at(joint::command) || has_dead_zone_ || has_limit_ || lag_.present();
+        has_ripple_ = ripple_.present() || laws_.at(joint::motor_gain);
+        has_more_force_ =
+            cogging_.present() || process_.present() || has_mean_ || has_coupling_ || laws_.at(joint::force);
+        has_transmission_ = has_play_ || laws_.at(joint::transmission);
+        has_reading_error_ = cyclic_.present() || laws_.at(joint::reading);
     }
 
     /// One step under a command that is held over it.
     void advance(state& s, Real command, const surroundings& now) const noexcept {
         using std::abs;
         const Real x = s.x + half_ * s.v, time = now.time + half_; // in the middle of the step
-        const joint_point<Real> point{x, s.v, command, time, h_};
+        const auto point = [&, v = s.v] { return joint_point<Real>{x, v, command, time, h_}; };
         const Real push = motor(s, command, x, point), pull = load(x);
         Real drive = push + pull;
-        if (cogging_.present()) drive += cogging_(x);
-        if (process_.present()) drive += process_(time + process_start_);
-        if (has_mean_) drive += process_mean_;
-        if (has_coupling_) drive += coupling_ * now.other_acceleration;
-        if (laws_.at(joint::force)) drive += laws_(joint::force, point, s.laws);
+        if (has_more_force_) {
+            if (cogging_.present()) drive += cogging_(x);
+            if (process_.present()) drive += process_(time + process_start_);
+            if (has_mean_) drive += process_mean_;
+            if (has_coupling_) drive += coupling_ * now.other_acceleration;
+            if (laws_.at(joint::force)) drive += laws_(joint::force, point(), s.laws);
+        }
         Real momentum = inertia_ * s.v + h_ * drive;
         if (second_.present()) momentum -= second_.impulse(s.second);
         const Real before = s.v;
-        if (has_load_friction_)
-            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point),
-                            load_friction_ * abs(push - pull));
-        else if (level_changes_)
+        if (!level_changes_ && !has_load_friction_)
+            s.v = friction_(s.friction, momentum, before);
+        else if (!has_load_friction_)
             s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point));
         else
-            s.v = friction_(s.friction, momentum, before);
+            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point),
+                            load_friction_ * abs(push - pull));
         if (second_.present()) second_.advance(s.second, before, s.v);
         s.x += half_ * (before + s.v);
-        cross_play(s, point);
+        if (has_transmission_)
+            transmit(s, point);
+        else
+            s.load = s.x;
     }
 
     /// What the encoder reads of where the load is [m].
     Real reading(const state& s) const noexcept {
+        if (!has_reading_error_) return s.load;
         Real y = s.load;
         if (cyclic_.present()) y += cyclic_(s.load);
         if (laws_.at(joint::reading))
@@ -314,14 +326,18 @@ private:
         detail::harmonic_series<harmonics, Real, Real> series_;
     };
 
-    Real motor(state& s, Real command, Real x, const joint_point<Real>& point) const noexcept {
-        if (laws_.at(joint::command)) command += laws_(joint::command, point, s.laws);
-        if (has_dead_zone_) command = detail::beyond(command, dead_zone_);
-        if (has_limit_) command = limited_to(command, limit_);
-        if (lag_.present()) command = lag_(s.current, command);
+    /// `point`: makes the joint_point, where a law asks for it.
+    Real motor(state& s, Real command, Real x, const auto& point) const noexcept {
+        if (has_shaper_) {
+            if (laws_.at(joint::command)) command += laws_(joint::command, point(), s.laws);
+            if (has_dead_zone_) command = detail::beyond(command, dead_zone_);
+            if (has_limit_) command = limited_to(command, limit_);
+            if (lag_.present()) command = lag_(s.current, command);
+        }
+        if (!has_ripple_) return force_constant_ * command;
         Real gain = force_constant_;
         if (ripple_.present()) gain = gain * (Real(1) + ripple_(x));
-        if (laws_.at(joint::motor_gain)) gain = gain * (Real(1) + laws_(joint::motor_gain, point, s.laws));
+        if (laws_.at(joint::motor_gain)) gain = gain * (Real(1) + laws_(joint::motor_gain, point(), s.laws));
         return gain * command;
     }
     /// What acts on the load whether it moves or not [N].
@@ -333,7 +349,7 @@ private:
         return out;
     }
     /// Relative change of the friction's level here and now; never below -1, a level of zero.
-    Real change_of_level(state& s, Real time, const joint_point<Real>& point) const noexcept {
+    Real change_of_level(state& s, Real time, const auto& point) const noexcept {
         using std::exp;
         Real factor(1);
         const auto times = [&](Real change) {
@@ -342,13 +358,13 @@ private:
         };
         if (along_.present()) times(along_(s.x));
         if (has_drift_) times(drift_ * (Real(1) - exp(-time * inverse_drift_)));
-        if (laws_.at(joint::friction)) times(laws_(joint::friction, point, s.laws));
+        if (laws_.at(joint::friction)) times(laws_(joint::friction, point(), s.laws));
         return factor - Real(1);
     }
     /// The play operator of `backlash`, and whether the motor carries the load.
-    void cross_play(state& s, const joint_point<Real>& point) const noexcept {
+    void transmit(state& s, const auto& point) const noexcept {
         Real motor = s.x;
-        if (laws_.at(joint::transmission)) motor += laws_(joint::transmission, point, s.laws);
+        if (laws_.at(joint::transmission)) motor += laws_(joint::transmission, point(), s.laws);
         if (!has_play_) {
             s.load = motor;
             return;
@@ -369,6 +385,8 @@ private:
     bool has_dead_zone_ = false, has_limit_ = false, has_spring_ = false, has_gravity_ = false,
          has_load_friction_ = false, has_coupling_ = false, has_drift_ = false, has_play_ = false,
          has_mean_ = false, level_changes_ = false;
+    bool has_shaper_ = false, has_ripple_ = false, has_more_force_ = false, has_transmission_ = false,
+         has_reading_error_ = false; ///< whether any of what may sit at this joint is there
 };
 
 } // namespace quadrant

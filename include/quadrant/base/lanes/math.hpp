@@ -48,7 +48,8 @@ template <std::size_t W, class Isa> lanes<W, Isa> exp(const lanes<W, Isa>& x) no
 /// that of 708. 2^-k from the bits and a polynomial of the rest (SLEEF's, https://sleef.org): a third of the
 /// work of `exp`, and the same on every instruction set. A single lane has the C library's, which is faster
 /// there.
-template <std::size_t W, class Isa> lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
+template <std::size_t W, class Isa>
+[[gnu::always_inline]] inline lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
     using number = lanes<W, Isa>;
     if constexpr (W == 1) return number(std::exp(-(x[0] > 708 ? 708 : x[0])));
     const number most(708), shift(0x1.8p52);
