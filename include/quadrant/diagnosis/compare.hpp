@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../base/version.hpp"
 #include "effect/rules.hpp"
 #include "log/log.hpp"
 #include "machine/machine.hpp"
 #include "result/result.hpp"
-#include "text/separate_compilation.hpp"
 
 namespace quadrant::diagnosis {
 

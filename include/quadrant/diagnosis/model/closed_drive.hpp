@@ -30,7 +30,7 @@ template <class Real> struct loop_numbers {
     drive_kind kind = drive_kind::current; ///< of all lanes
     typename position_servo<Real>::parameters servo{};
     typename position_loop<Real>::parameters loop{};
-    number of_duty{1};     ///< of the actuator's command a unit of what the loops give: supply [V], or 1/[N/V]
+    number of_duty{1};     ///< actuator command a unit of what the loops give: supply [V], or 1/[N/V]
     number start_force{0}; ///< of the velocity loop [N]
     number off_from{0}, off_until{0}; ///< part of the record in which the drive gives nothing [s]
 };
