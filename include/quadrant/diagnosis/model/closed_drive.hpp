@@ -63,8 +63,8 @@ public:
     void follow(Real set_point) { follower_ = position_servo<Real>::state::at(set_point); }
     Real reading() const { return mechanics_.reading(state_); }
 
-    /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the drive
-    /// is switched off.
+    /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the
+    /// drive is switched off.
     Real operator()(Real set_point, Real its_velocity, bool off, const surroundings& now) {
         auto loop = velocity_loop<Real>::state::at(state_.v);
         auto follower = position_servo<Real>::state::at(state_.x);
