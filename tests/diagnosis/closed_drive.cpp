@@ -53,6 +53,32 @@ TEST_CASE("closed drive: a proportional servo under gravity stays behind by what
     const double q = path(p, m).back(), stiffness = 1.2 * 7.4 * 0.12;
     CHECK(stiffness * (0.5 - q) == doctest::Approx(0.48 * std::sin(q)).epsilon(1e-3));
 }
+TEST_CASE("closed drive: a profile velocity holds a servo back") {
+    plant_model p = arm();
+    p.friction = {};
+    p.friction.viscous_slope = 0.04;
+    p.gravity.torque = 0;
+    p.drive.rate_limit = 0.2; // [rad/s]
+    driven_motion m = asked(600);
+    for (double& r : m.set_point) r = 1;
+    m.set_point[0] = 0;
+    const auto x = path(p, m);
+    CHECK((x[400] - x[200]) / (200 * period) == doctest::Approx(0.2).epsilon(1e-3));
+}
+TEST_CASE("closed drive: what its velocity loop remembers takes a constant force over") {
+    plant_description d;
+    d.mass_kg = 100;
+    d.force_constant_N_per_V = 1;
+    plant_model p(d, 1e-6);
+    p.constant_force = 30;
+    p.drive.kind = drive_kind::position;
+    p.drive.velocity_gain = 25000;
+    p.drive.velocity_integral = 1.2e6;
+    p.drive.position_gain = 40;
+    driven_motion m = asked(400);
+    for (double& r : m.set_point) r = 0.01;
+    CHECK(path(p, m).back() == doctest::Approx(0.01).epsilon(1e-6));
+}
 TEST_CASE("closed drive: it gives nothing where it is switched off, by its log and by its model") {
     plant_model p = arm();
     p.gravity.torque = 0;

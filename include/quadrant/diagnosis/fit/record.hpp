@@ -113,6 +113,9 @@ enum class held_by { readings, motion, loop };
 /// rows, up to where they are opposite for the first time.
 QUADRANT_DIAGNOSIS_DECL double rows_of_memory(std::span<const double> e);
 
+/// How far a drive's loop is moved by what no law of the described friction is right to [m].
+QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const plant_model& described);
+
 /// One channel for the path of a closed loop: in blocks of five memories of what the described machine leaves,
 /// at most a fifth of the record, each worth as many readings as it has memories. What a corrected model leaves
 /// repeats itself from channel to channel; this does not, and counts in full.

@@ -190,6 +190,21 @@ QUADRANT_DIAGNOSIS_DECL double rows_of_memory(std::span<const double> e) {
     return sum;
 }
 
+QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const plant_model& described) {
+    const drive_model& d = described.drive;
+    const double stiffness = d.kind == drive_kind::position_servo
+                                 ? d.duty_gain * d.supply * described.force_constant
+                                 : d.velocity_gain * d.position_gain;
+    double sum = 0;
+    for (std::size_t k = 0; k < r.position.size(); ++k) {
+        const double transmitted =
+            described.force_constant * r.command[k] - described.static_force(r.position[k]);
+        sum += transmitted * transmitted / static_cast<double>(r.position.size());
+    }
+    const auto& f = described.friction;
+    return law_error * (f.coulomb + f.excess + f.load * std::sqrt(sum)) / stiffness;
+}
+
 QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described) {
     std::vector<double> e;
     r.observer.run(described, e);
@@ -202,7 +217,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
         std::clamp(static_cast<std::size_t>(5 * memory), s.block, std::max(s.block, (rows - s.skip) / 5));
     path.nu = score_temperature * static_cast<double>(path.block) / memory;
     path.noise_gain = path.rounding = 1;
-    path.floor = 0.4 * r.resolution;
+    path.floor = std::hypot(0.4 * r.resolution, path_of_law_error(r, described));
     path.first_of_block = lay_blocks(path.block, s.skip, r.left_out, rows);
     path.segment_of_block.clear();
     for (const std::size_t first : path.first_of_block)

@@ -9,6 +9,9 @@
 
 namespace quadrant::diagnosis {
 
+/// No law is better than some five per cent of the force that it explains.
+inline constexpr double law_error = 0.05;
+
 /// Divides scores before they become probabilities: blocks are not independent.
 inline constexpr double score_temperature = 5;
 

@@ -66,12 +66,13 @@ public:
     /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the
     /// drive is switched off.
     Real operator()(Real set_point, Real its_velocity, bool off, const surroundings& now) {
-        auto loop = velocity_loop<Real>::state::at(state_.v);
-        auto follower = position_servo<Real>::state::at(state_.x);
+        const auto loop = velocity_loop<Real>::state::at(state_.v); // as they wake
+        const auto follower = position_servo<Real>::state::at(state_.x);
         Real u(0);
-        if (!off) {
-            std::swap(loop, loop_);
-            std::swap(follower, follower_);
+        if (off) {
+            loop_ = loop;
+            follower_ = follower;
+        } else {
             u = Real(numbers_.of_duty) * given(set_point, its_velocity);
             const auto gives = either(less(now.time, Real(numbers_.off_from)),
                                       greater_equal(now.time, Real(numbers_.off_until)));
@@ -79,9 +80,6 @@ public:
             loop_ = {select(gives, loop_.integral, loop.integral),
                      select(gives, loop_.filtered, loop.filtered)};
             follower_ = {select(gives, follower_.followed, follower.followed)};
-        } else {
-            loop_ = loop;
-            follower_ = follower;
         }
         mechanics_.advance(state_, u, now);
         return u;

@@ -6,9 +6,6 @@
 
 namespace quadrant::diagnosis {
 
-/// No law is better than some five per cent of the force that it explains.
-inline constexpr double law_error = 0.05;
-
 namespace detail {
 
 /// The probability that the cause is none of the suspects, when `left` stays beside what it explains (in
