@@ -71,8 +71,8 @@ public:
     fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const;
     /// The objective of models as they stand, side by side.
     std::vector<double> objectives(std::span<const plant_model> plants) const;
-    /// Several fits side by side: what their next steps need is found in one pass. As many are under way as fill
-    /// the lanes twice; the others would hold their slopes in memory meanwhile.
+    /// Several fits side by side: what their next steps need is found in one pass. As many are under way as
+    /// fill the lanes twice; the others would hold their slopes in memory meanwhile.
     template <class Course> void run(std::span<Course> courses) const {
         std::vector<plant_model> plants;
         std::vector<std::vector<double>> innovation;
