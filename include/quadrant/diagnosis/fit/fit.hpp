@@ -51,21 +51,28 @@ public:
     fit_result fit(const plant_model& start, const std::vector<parameter>& ps, int iterations) const;
     /// The objective of models as they stand, side by side.
     std::vector<double> objectives(std::span<const plant_model> plants) const;
-    /// Several fits side by side: what their next steps need is found in one pass.
+    /// Several fits side by side: what their next steps need is found in one pass. As many are under way as
+    /// fill the lanes twice; the others would hold their slopes in memory meanwhile.
     template <class Course> void run(std::span<Course> courses) const {
         std::vector<plant_model> plants;
         std::vector<std::vector<double>> innovation;
         std::vector<double> choices;
-        for (;;) {
+        std::vector<Course*> under_way;
+        for (std::size_t begun = 0;;) {
             plants.clear();
-            for (Course& c : courses) c.ask(plants);
+            for (Course* c : under_way) c->ask(plants);
+            while (begun < courses.size() && plants.size() < 2 * predictor::abreast) {
+                under_way.push_back(&courses[begun++]);
+                under_way.back()->ask(plants);
+            }
             if (plants.empty()) return;
             innovation.resize(plants.size());
             choices.assign(plants.size(), 0.0);
             predictor_.run(plants, innovation, {}, choices);
             std::size_t next = 0;
-            for (Course& c : courses)
-                next += c.take(std::span(innovation).subspan(next), std::span(choices).subspan(next));
+            for (Course* c : under_way)
+                next += c->take(std::span(innovation).subspan(next), std::span(choices).subspan(next));
+            std::erase_if(under_way, [](const Course* c) { return c->done(); });
         }
     }
 
@@ -112,11 +119,15 @@ public:
     void ask(std::vector<plant_model>& plants);
     /// Takes their innovations; returns how many it had asked for.
     std::size_t take(std::span<std::vector<double>> innovation, std::span<const double> choices);
+    bool done() const { return stage_ == stage::done; }
     fit_result& result() { return best_; }
 
 private:
     enum class stage { begin, trial, slopes, done };
 
+    std::size_t took(std::span<std::vector<double>> innovation, std::span<const double> choices);
+    /// What nobody asks a finished fit for; a first look is not asked for its innovations either.
+    void release();
     void take_slopes(std::span<std::vector<double>> moved);
     /// The next iteration, if there is one.
     void next();

@@ -113,9 +113,10 @@ QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd fitter::step(const fit_result& r, double
 
 QUADRANT_DIAGNOSIS_DECL void fitter::add(const block_quadratics& q, const channel& c, Eigen::MatrixXd& a,
                                          Eigen::VectorXd& g) {
+    Eigen::MatrixXd scratch;
     for (std::size_t b = 0; b < q.size(); ++b) {
         const double w = c.nu / (q.ms[b] + square(c.floor));
-        a += w * q.curvature(b);
+        a += w * q.curvature(b, scratch);
         g += w * q.gradient(b);
     }
 }
@@ -133,7 +134,7 @@ QUADRANT_DIAGNOSIS_DECL fit_course::fit_course(const fitter& f, const plant_mode
 }
 
 QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
-    if (stage_ == stage::done) return;
+    if (done()) return;
     if (stage_ == stage::begin) plants.push_back(best_.plant);
     if (stage_ == stage::trial) plants.push_back(trial_.plant);
     if (stage_ != stage::trial) {
@@ -143,6 +144,19 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
 }
 
 QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::take(std::span<std::vector<double>> innovation,
+                                                     std::span<const double> choices) {
+    const std::size_t taken = took(innovation, choices);
+    if (done()) release();
+    return taken;
+}
+
+QUADRANT_DIAGNOSIS_DECL void fit_course::release() {
+    slopes_ = {};
+    trial_ = {};
+    if (known_.from) best_.innovation = {};
+}
+
+QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::took(std::span<std::vector<double>> innovation,
                                                      std::span<const double> choices) {
     switch (stage_) {
     case stage::begin:

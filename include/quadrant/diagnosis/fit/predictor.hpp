@@ -6,6 +6,7 @@
 #include "../model/sample_loss.hpp"
 #include "pass.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -72,7 +73,8 @@ struct predictor {
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const;
     /// The same for several plants, some at a time side by side: a third of the time and less. One list of
-    /// innovations a plant, of accelerations where they are asked for, and of choices likewise.
+    /// innovations a plant, of accelerations where they are asked for, and of choices likewise. Plants with the
+    /// same joints share lanes, which all pay for what one of them has.
     void run(std::span<const plant_model> plants, std::span<std::vector<double>> innovation,
              std::span<std::vector<double>> acceleration = {}, std::span<double> choices = {}) const;
 
@@ -94,6 +96,8 @@ struct predictor {
                                       const loss_assumption& a) const;
 
 private:
+    /// Which joints of a plant take time, one bit each, those that take most first.
+    unsigned joints_of(const plant_model& p) const;
     /// How a pass is corrected: the position that leads it, its gains, and how much heavier the plants are.
     struct guidance {
         const double* position;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <algorithm>
+#include <cmath>
 
 namespace quadrant::diagnosis {
 
@@ -46,19 +48,50 @@ QUADRANT_DIAGNOSIS_DECL double predictor::run(const plant_model& plant, std::vec
     return 0;
 }
 
+QUADRANT_DIAGNOSIS_DECL unsigned predictor::joints_of(const plant_model& p) const {
+    unsigned out = 0;
+    for (const bool there :
+         {std::fmod(std::max(0.0, p.delay), period) != 0, p.friction.contact.elements > 1, !p.own.empty(),
+          p.friction.along.count > 0, p.ripple.count > 0, p.cogging.count > 0, p.cutting.count > 0,
+          p.cyclic.count > 0, p.gravity.torque != 0, p.friction.drift != 0, p.mode.mass > 0,
+          p.friction.excess > 0, std::isfinite(p.friction.contact.attraction), p.friction.load != 0,
+          p.backlash > 0, p.lag > 0})
+        out = 2 * out + there;
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL void predictor::run(std::span<const plant_model> plants,
                                             std::span<std::vector<double>> innovation,
                                             std::span<std::vector<double>> acceleration,
                                             std::span<double> choices) const {
-    for (std::size_t i = 0; i < plants.size();) {
-        std::vector<double>* const a = acceleration.empty() ? nullptr : &acceleration[i];
-        std::size_t n = 0;
-        while (i + n < plants.size() && n < abreast && plants[i + n].loss == 0) ++n;
-        if (n > 0)
-            pass(plants.subspan(i, n), command, innovation.subspan(i, n), a);
-        else if (const double chosen = run(plants[i], innovation[i], a); !choices.empty())
-            choices[i] = chosen;
-        i += std::max<std::size_t>(1, n);
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        if (plants[i].loss == 0) {
+            order.push_back(i);
+            continue;
+        }
+        const double chosen = run(plants[i], innovation[i], acceleration.empty() ? nullptr : &acceleration[i]);
+        if (!choices.empty()) choices[i] = chosen;
+    }
+    if (order.size() > abreast / 2)
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return joints_of(plants[a]) > joints_of(plants[b]);
+        });
+    std::vector<plant_model> some;
+    std::array<std::vector<double>, abreast> e, a;
+    for (std::size_t first = 0; first < order.size(); first += abreast) {
+        const std::size_t n = std::min(abreast, order.size() - first);
+        some.clear();
+        for (std::size_t i = 0; i < n; ++i) {
+            some.push_back(plants[order[first + i]]);
+            e[i].swap(innovation[order[first + i]]);
+            if (!acceleration.empty()) a[i].swap(acceleration[order[first + i]]);
+        }
+        pass(some, command, std::span(e).first(n), acceleration.empty() ? nullptr : a.data());
+        for (std::size_t i = 0; i < n; ++i) {
+            innovation[order[first + i]].swap(e[i]);
+            if (!acceleration.empty()) acceleration[order[first + i]].swap(a[i]);
+        }
     }
 }
 

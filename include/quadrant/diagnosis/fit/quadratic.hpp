@@ -5,25 +5,47 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <optional>
+#include <memory>
 #include <vector>
 
 namespace quadrant::diagnosis {
 
 /// Mean squares of the blocks of one channel as quadratics in the step of the parameters: ms + 2 g d + d' A d.
+/// A is symmetric, and what known slopes make of it is kept once for all fits that know them (shared_slopes):
+/// each has the rows of its own slopes only.
 struct block_quadratics {
-    Eigen::Index parameters = 0;
-    std::vector<double> ms{}, g{}, a{}; ///< block after block
+    std::size_t parameters = 0;
+    std::vector<double> ms{}, g{};    ///< block after block
+    std::vector<double> own{};        ///< of A, to the diagonal
+    std::vector<std::size_t> known{}; ///< which of the shared slopes the first parameters have
+    std::shared_ptr<const std::vector<double>> products{}; ///< of the shared slopes
+    std::size_t shared = 0;                                ///< how many they are
 
     std::size_t size() const { return ms.size(); }
+    /// How many entries a block has in `own`.
+    std::size_t own_of_block() const {
+        return (parameters * (parameters + 1) - known.size() * (known.size() + 1)) / 2;
+    }
     Eigen::Map<const Eigen::VectorXd> gradient(std::size_t block) const {
-        return {g.data() + static_cast<Eigen::Index>(block) * parameters, parameters};
+        return {g.data() + block * parameters, static_cast<Eigen::Index>(parameters)};
     }
-    Eigen::Map<const Eigen::MatrixXd> curvature(std::size_t block) const {
-        return {a.data() + static_cast<Eigen::Index>(block) * parameters * parameters, parameters, parameters};
+    /// A of a block, put together in `into`.
+    const Eigen::MatrixXd& curvature(std::size_t block, Eigen::MatrixXd& into) const {
+        const auto n = static_cast<Eigen::Index>(parameters);
+        into.resize(n, n);
+        double* const a = into.data();
+        for (std::size_t i = 0; i < known.size(); ++i)
+            for (std::size_t j = 0; j <= i; ++j)
+                a[i * parameters + j] = a[j * parameters + i] =
+                    (*products)[(block * shared + std::max(known[i], known[j])) * shared +
+                                std::min(known[i], known[j])];
+        const double* row = own.data() + block * own_of_block();
+        for (std::size_t i = known.size(); i < parameters; row += ++i)
+            for (std::size_t j = 0; j <= i; ++j) a[i * parameters + j] = a[j * parameters + i] = row[j];
+        return into;
     }
-    double at(std::size_t block, const Eigen::VectorXd& d) const {
-        return std::max(0.0, ms[block] + 2 * gradient(block).dot(d) + d.dot(curvature(block) * d));
+    double at(std::size_t block, const Eigen::VectorXd& d, Eigen::MatrixXd& scratch) const {
+        return std::max(0.0, ms[block] + 2 * gradient(block).dot(d) + d.dot(curvature(block, scratch) * d));
     }
 };
 
@@ -72,8 +94,8 @@ inline std::vector<double> products(const std::vector<const double*>& signals, s
 /// How the innovations of one model move with each of its parameters, for many fits that begin there; what
 /// these slopes make of each block is found once for all of them.
 struct shared_slopes {
-    std::vector<viewed_signal> of{};             ///< by parameter
-    std::vector<std::vector<double>> products{}; ///< by channel, see detail::products
+    std::vector<viewed_signal> of{};                                    ///< by parameter
+    std::vector<std::shared_ptr<const std::vector<double>>> products{}; ///< by channel, see detail::products
 
     shared_slopes() = default;
     shared_slopes(std::vector<std::vector<double>> slopes, const scoring& s) {
@@ -81,12 +103,9 @@ struct shared_slopes {
         for (std::size_t i = 0; i < s.channels.size(); ++i) {
             std::vector<const double*> signals;
             for (const auto& column : of) signals.push_back(column.in(i));
-            products.push_back(detail::products(signals, 0, s.channels[i]));
+            products.push_back(
+                std::make_shared<const std::vector<double>>(detail::products(signals, 0, s.channels[i])));
         }
-    }
-    double product(std::size_t channel, std::size_t block, std::size_t i, std::size_t j) const {
-        const std::size_t n = of.size();
-        return products[channel][(block * n + std::max(i, j)) * n + std::min(i, j)];
     }
 };
 
@@ -109,21 +128,20 @@ inline void find_quadratics(block_quadratics& q, const viewed_signal& e, const s
     signals.push_back(e.in(channel));
     const std::size_t from = curvature ? k : n;
     const auto sums = detail::products(signals, from, c);
-    q.parameters = static_cast<Eigen::Index>(n);
+    q.parameters = n;
+    q.known = known.which;
+    q.shared = known.from ? known.from->of.size() : 0;
+    q.products = known.from ? known.from->products[channel] : nullptr;
     q.ms.resize(blocks);
     q.g.resize(blocks * n);
-    if (curvature) q.a.resize(blocks * n * n);
+    if (curvature) q.own.resize(blocks * q.own_of_block());
+    double* own_row = q.own.data();
     for (std::size_t b = 0; b < blocks; ++b) {
         const double* const with_e = sums.data() + ((b + 1) * (all - from) - 1) * all;
         q.ms[b] = with_e[n];
         std::copy_n(with_e, n, q.g.data() + b * n);
-        if (!curvature) continue;
-        double* const a = q.a.data() + b * n * n;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j <= i; ++j)
-                a[i * n + j] = a[j * n + i] =
-                    i < k ? known.from->product(channel, b, known.which[i], known.which[j])
-                          : sums[(b * (all - from) + i - from) * all + j];
+        for (std::size_t i = from; i < n; own_row += ++i)
+            std::copy_n(sums.data() + (b * (all - from) + i - from) * all, i + 1, own_row);
     }
 }
 

@@ -27,13 +27,15 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
     for (auto& f : sums) f = all;
     c.curvature = Eigen::MatrixXd::Zero(n, n);
     c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
+    Eigen::MatrixXd scratch;
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const double w = view.nu / (blocks.ms[b] + view.floor * view.floor);
             auto& f = sums[fold_of(view.segment_of_block[b])];
-            f.a += w * blocks.curvature(b);
+            const Eigen::MatrixXd& curvature = blocks.curvature(b, scratch);
+            f.a += w * curvature;
             f.g += w * blocks.gradient(b);
-            c.curvature += w * blocks.curvature(b);
+            c.curvature += w * curvature;
             c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
         }
     });
@@ -70,7 +72,8 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const auto segment = view.segment_of_block[b];
             c.held_out[segment] -=
-                0.5 * view.nu * std::log(blocks.at(b, step[fold_of(segment)]) + view.floor * view.floor);
+                0.5 * view.nu *
+                std::log(blocks.at(b, step[fold_of(segment)], scratch) + view.floor * view.floor);
         }
     });
     c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
@@ -123,6 +126,8 @@ QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
     cross_validate(c, record.score, record.replayed(), record.closed());
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
+    if (const auto& innovation = c.fit.innovation.rows; !innovation.empty())
+        *c.noise = position_noise(innovation, record.score, record.resolution);
     c.fit.innovation = {};
     c.fit.quadratic = {};
 }
