@@ -3,6 +3,7 @@
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>
+#include <quadrant/diagnosis/where/controller_floor.hpp>
 
 using namespace controllers_workshop;
 
