@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // A drive whose loops are closed on the model, one by one and side by side in lanes.
 #include <doctest/doctest.h>
+#include <quadrant/diagnosis/fit/both_motions.hpp>
 #include <quadrant/diagnosis/fit/record.hpp>
 
 #include <numbers>
@@ -131,4 +132,69 @@ TEST_CASE("memory of a signal: one row of white noise, two time constants of a d
     CHECK(rows_of_memory(white) == doctest::Approx(1).epsilon(0.05));
     // sum of 0.95^(2 |lag|) over all lags: (1 + 0.9025) / (1 - 0.9025)
     CHECK(rows_of_memory(slow) == doctest::Approx(19.5).epsilon(0.2));
+}
+
+namespace {
+
+/// What a log of this plant on a sine of this frequency holds.
+axis_log logged(const plant_model& p, double frequency_Hz, std::size_t rows) {
+    driven_motion m = asked(rows);
+    axis_log out;
+    for (std::size_t k = 0; k < rows; ++k)
+        m.set_point[k] =
+            0.5 + 0.6 * std::sin(2 * std::numbers::pi * frequency_Hz * period * static_cast<double>(k));
+    m.position.assign(rows, 0.5);
+    out.kind = axis_kind::rotary;
+    out.reference = m.set_point;
+    out.position.resize(rows);
+    run_closed(p, m, period, 0, {},
+               [&](std::size_t k, double reading, const auto&) { out.position[k] = reading; });
+    out.command_unit.clear();
+    return out;
+}
+axis_description servo_of(const plant_model& p) {
+    axis_description a;
+    a.kind = axis_kind::rotary;
+    a.plant.mass_kg = p.mass;
+    a.plant.force_constant_N_per_V = p.force_constant;
+    a.drive.kind = drive_kind::position_servo;
+    a.drive.position_gain_per_m = p.drive.duty_gain;
+    a.drive.supply_V = p.drive.supply;
+    return a;
+}
+
+} // namespace
+
+TEST_CASE("both motions: the second log begins anew behind rows that say nothing, and a model goes both ways") {
+    const plant_model p = arm();
+    const axis_log first = logged(p, 0.7, 400), second = logged(p, 1.1, 300);
+    const auto both = both_motions(servo_of(p), first, second, period);
+    REQUIRE(both);
+    REQUIRE(both->drive->begins.size() == 1);
+    const std::size_t from = both->drive->begins[0].row;
+    CHECK(from == 430);
+    CHECK(both->position.size() == 730);
+    for (std::size_t k = 0; k < both->position.size(); ++k) CHECK(both->left_out[k] == (k >= 400 && k < from));
+    CHECK(both->position[from] == second.position[0]);
+    std::vector<double> e;
+    predictor by{.period = period, .corner_Hz = 5, .position = both->position, .command = both->command};
+    by.drive = both->drive.get();
+    by.closed = 0.0;
+    by.run(p, e);
+    const auto most = [&](std::size_t begin, std::size_t end) {
+        double out = 0;
+        for (std::size_t k = begin; k < end; ++k) out = std::max(out, std::abs(e[k]));
+        return out;
+    };
+    CHECK(most(0, 400) < 1e-9);
+    CHECK(most(from, 730) < 1e-2);  // of 600 mrad: the velocity at the begin is a difference of three rows
+    CHECK(most(670, 730) < 1e-4);   // and is forgotten
+    CHECK(std::abs(e[415]) > 0.05); // the way between is none of the machine's
+}
+TEST_CASE("both motions: logs of different columns stay apart") {
+    const plant_model p = arm();
+    const axis_log first = logged(p, 0.7, 400);
+    axis_log second = first;
+    second.duty.assign(400, 0.0);
+    CHECK_FALSE(both_motions(servo_of(p), first, second, period));
 }

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
 """The eleven cases of a real position servo (servo_pendulum, its truth.json) through the program.
-usage: servo.py PROGRAM SHARED     exit code 77: the records are not there
+usage: servo.py PROGRAM SHARED     five of them, with QUADRANT_TESTS=all the eleven; exit code 77: the records are not there
 Right: the truth first and claimed (0.5, or a group of accepted names), nothing else at 0.5; healthy: nobody blamed, no_gap or
 within_tolerance. What is not right yet (NOT_YET) is run and printed as well, and fails as soon as it is."""
 import json, os, resource, subprocess, sys, tempfile
 
-NOT_YET = {"005"}
+NOT_YET = set()
+SHORT = {"001", "004", "006", "007", "009"}  # QUADRANT_TESTS=all: all of them
 
 
 def right(truth, d):
@@ -30,6 +31,8 @@ def main(program, shared):
         truth = json.load(file)
     with tempfile.TemporaryDirectory() as folder:
         for case, said in sorted(truth.items()):
+            if os.environ.get("QUADRANT_TESTS") != "all" and case not in SHORT:
+                continue
             out = os.path.join(folder, case + ".json")
             at = lambda name: os.path.join(data, case, name)
             done = subprocess.run([program, "diagnose", "--quiet", "--threads", "1", "--machine", at("machine.json"), "--log",

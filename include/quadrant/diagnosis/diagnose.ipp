@@ -2,6 +2,7 @@
 #pragma once
 #include "chain/diagnose_chain.hpp"
 #include "effect/effect_list.hpp"
+#include "fit/both_motions.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"
@@ -365,15 +366,24 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             excluded.insert(excluded.end(), {"backlash", "structural_resonance"});
         const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
         const rules limits = detail::for_one_of(r, axes_left--);
-        const auto look = [&](held_by how) {
-            return std::make_unique<axis_case>(rigid, coupled, other ? &*other : nullptr,
-                                               machine.sample_period_s, excluded, limits, tell, how);
-        };
         // A servo's law on duty is soft, and a force moves it where it shows. A stiff loop hides it from the
         // path.
         const bool soft = axis.drive.kind == drive_kind::position_servo && logged->drive;
+        std::optional<axis_log> both; // six seconds of it hold a dozen readings: none to spare for a test
+        if (soft && other && !transmission)
+            both = both_motions(axis, *detail::named(as_read.axes, axis.name),
+                                *detail::named(as_read_too->axes, axis.name), machine.sample_period_s);
+        const auto look = [&](held_by how) {
+            return std::make_unique<axis_case>(rigid, both ? *both : coupled, other ? &*other : nullptr,
+                                               machine.sample_period_s, excluded, limits, tell, how);
+        };
         auto found = look(soft ? held_by::loop : held_by::readings);
         detail::need_blocks(*found, log.file);
+        if (both)
+            out.notes.push_back(
+                fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
+                            "holds says too little in one of them.",
+                            axis.name));
         if (detail::contradicts_motion(*found)) {
             tell("axis " + axis.name + ": again, along the measured motion");
             auto led = look(held_by::motion);

@@ -49,7 +49,7 @@ inline constexpr effect gravity{
                          .at = member<&plant_description::gravity_phase_rad>,
                          .needs = {"gravity_torque_Nm"}}},
     .rotary_only = true,
-    .prior = {0.5, "arms, tilting tables and unbalanced chucks carry their weight round"},
+    .prior = {1, "arms, tilting tables and unbalanced chucks carry their weight round"},
     .remedy = "Add the torque of the weight at the reference to the command, or balance the axis.",
     .advice =
         [](const plant_model& p, double, std::string_view unit) {

@@ -19,7 +19,7 @@ inline constexpr effect position_spring{
                          .rule = detail::rule::any_number,
                          .meaning = "force -spring x about position 0",
                          .at = member<&plant_description::spring_N_per_m>}},
-    .prior = {0.2, "cable carriers and bellows pull, most of them weakly"},
+    .prior = {0.1, "cable carriers and bellows pull, most of them weakly"},
     .compensation = "a gain on the position",
     .remedy = "Add a command proportional to the position; look at cable carrier, bellows and counterweight.",
     .trial = {.low = 1e-4,

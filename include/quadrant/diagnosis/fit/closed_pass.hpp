@@ -16,9 +16,10 @@ struct closed_input {
     double period = 0;
     std::size_t rows = 0, steps = 1; ///< steps of a row
     const double* position = nullptr;
-    double velocity = 0;                        ///< at the first row [m/s]
-    const double* other_acceleration = nullptr; ///< null: none
-    const unsigned char* off = nullptr;         ///< rows in which the drive gives nothing; null: none
+    double velocity = 0;                            ///< at the first row [m/s]
+    std::span<const driven_motion::start> begins{}; ///< where another log begins
+    const double* other_acceleration = nullptr;     ///< null: none
+    const unsigned char* off = nullptr;             ///< rows in which the drive gives nothing; null: none
     std::size_t plants = 0;
     const plant* plant_of = nullptr;
     double* const* innovation = nullptr; ///< one array a plant
@@ -73,10 +74,19 @@ template <class Real> void closed_group(const closed_input& in) {
     closed_axis<Real, axis> plant(
         axis::side_by_side(
             in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; }),
-        side_by_side<Real>(in), Real(h), Real(in.position[0]), Real(in.velocity));
-    plant.follow(gathered([](const closed_input::plant& p) { return p.set_point[0]; }));
+        side_by_side<Real>(in), Real(h));
+    const auto begin = [&](std::size_t k, double velocity) {
+        plant.begin(Real(in.position[k]), Real(velocity),
+                    gathered([&](const closed_input::plant& p) { return p.set_point[k * in.steps]; }));
+    };
+    begin(0, in.velocity);
+    auto anew = in.begins.begin();
     typename axis::surroundings now{};
     for (std::size_t k = 0; k < in.rows; ++k) {
+        if (anew != in.begins.end() && anew->row == k) {
+            begin(k, anew->velocity);
+            ++anew;
+        }
         const auto path = plant.reading().each();
         for (std::size_t i = 0; i < width && i < in.plants; ++i) in.innovation[i][k] = in.position[k] - path[i];
         now.time = Real(static_cast<double>(k) * in.period);

@@ -198,6 +198,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_closed(std::span<const plant_model>
                      .steps = steps,
                      .position = position.data(),
                      .velocity = *closed,
+                     .begins = drive->begins,
                      .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
                      .off = drive->off.empty() ? nullptr : drive->off.data(),
                      .plants = plants.size(),

@@ -116,14 +116,19 @@ QUADRANT_DIAGNOSIS_DECL double rows_of_memory(std::span<const double> e);
 /// How far a drive's loop is moved by what no law of the described friction is right to [m].
 QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const plant_model& described);
 
-/// One channel for the path of a closed loop: in blocks of five memories of what the described machine leaves,
-/// at most a fifth of the record, each worth as many readings as it has memories. What a corrected model leaves
-/// repeats itself from channel to channel; this does not, and counts in full.
-QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described);
+/// One channel for the path of a closed loop: in blocks of five memories of what the described machine or the
+/// nearest model leaves, the shorter one, at most a fifth of the record, each worth as many readings as it has
+/// memories. What a corrected model leaves repeats itself from channel to channel; this does not, and counts in
+/// full.
+QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described,
+                                        const plant_model& nearest);
 
 /// The record with its observer stepping as finely as the described machine needs.
+/// `nearest`: to what the machine does, of the models that are known, for what is judged by its path; null: the
+/// described machine.
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
-                                                held_by how = held_by::readings);
+                                                held_by how = held_by::readings,
+                                                const plant_model* nearest = nullptr);
 
 } // namespace quadrant::diagnosis
 

@@ -205,20 +205,32 @@ QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const pla
     return law_error * (f.coulomb + f.excess + f.load * std::sqrt(sum)) / stiffness;
 }
 
-QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described) {
-    std::vector<double> e;
-    r.observer.run(described, e);
+QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described,
+                                        const plant_model& nearest) {
     const std::size_t rows = r.position.size();
-    const double memory = std::max(rows_of_memory(std::span(e).first(rows)), r.scale.block() / r.period);
     auto& s = r.score;
+    std::vector<unsigned char> unjudged = r.left_out;
+    if (!r.observer.drive->begins.empty()) unjudged.resize(rows, 0);
+    for (const auto& b : r.observer.drive->begins)
+        for (std::size_t k = b.row; k < std::min(rows, b.row + s.skip); ++k) unjudged[k] = 1;
+    // Where the errors of two models last differently long, the shorter one tells them apart.
+    double memory = static_cast<double>(rows);
+    for (const plant_model* plant : {&described, &nearest}) {
+        std::vector<double> e;
+        r.observer.run(*plant, e);
+        for (std::size_t k = 0; k < unjudged.size(); ++k)
+            if (unjudged[k]) e[k] = 0;
+        memory = std::min(memory, rows_of_memory(std::span(e).first(rows)));
+    }
+    memory = std::max(memory, r.scale.response() / r.period);
     channel path = s.channels.front();
     path.mean = 1;
-    path.block =
-        std::clamp(static_cast<std::size_t>(5 * memory), s.block, std::max(s.block, (rows - s.skip) / 5));
+    path.block = std::clamp<std::size_t>(static_cast<std::size_t>(5 * memory), 1,
+                                         std::max<std::size_t>(1, (rows - s.skip) / 5));
     path.nu = score_temperature * static_cast<double>(path.block) / memory;
     path.noise_gain = path.rounding = 1;
     path.floor = std::hypot(0.4 * r.resolution, path_of_law_error(r, described));
-    path.first_of_block = lay_blocks(path.block, s.skip, r.left_out, rows);
+    path.first_of_block = lay_blocks(path.block, s.skip, unjudged, rows);
     path.segment_of_block.clear();
     for (const std::size_t first : path.first_of_block)
         path.segment_of_block.push_back(r.segment[first + path.block / 2]);
@@ -228,7 +240,8 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
     s.channels = std::move(out);
 }
 
-QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how) {
+QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how,
+                                                const plant_model* nearest) {
     const plant_model described(a, r.scale.give());
     if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
@@ -250,7 +263,7 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
             c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
         }
     }
-    if (how == held_by::loop) judge_path(r, described);
+    if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
     return r;
 }
 

@@ -52,15 +52,16 @@ template <class Real, class Axis> class closed_axis {
 public:
     using surroundings = typename Axis::surroundings;
 
-    closed_axis(const typename Axis::parameters& p, const loop_numbers<Real>& n, Real step, Real position,
-                Real velocity)
+    closed_axis(const typename Axis::parameters& p, const loop_numbers<Real>& n, Real step)
         : numbers_(n), mechanics_(p, step, already_checked()), servo_(n.servo, step, already_checked()),
-          outer_(n.loop, step, already_checked()), inner_(n.loop.velocity, step, already_checked()),
-          state_(Axis::state::at(mechanics_.position_of(position), velocity)),
-          loop_(velocity_loop<Real>::state::at(velocity, Real(n.start_force))) {}
+          outer_(n.loop, step, already_checked()), inner_(n.loop.velocity, step, already_checked()) {}
 
-    /// Before the first step: where the set-points begin.
-    void follow(Real set_point) { follower_ = position_servo<Real>::state::at(set_point); }
+    /// Before the first step of a record: where axis and set-points are, and how fast the axis moves.
+    void begin(Real position, Real velocity, Real set_point) {
+        state_ = Axis::state::at(mechanics_.position_of(position), velocity);
+        loop_ = velocity_loop<Real>::state::at(velocity, Real(numbers_.start_force));
+        follower_ = position_servo<Real>::state::at(set_point);
+    }
     Real reading() const { return mechanics_.reading(state_); }
 
     /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the
@@ -98,8 +99,8 @@ private:
     position_servo<Real> servo_;
     position_loop<Real> outer_;
     velocity_loop<Real> inner_;
-    typename Axis::state state_;
-    typename velocity_loop<Real>::state loop_;
+    typename Axis::state state_{};
+    typename velocity_loop<Real>::state loop_{};
     typename position_servo<Real>::state follower_{};
 };
 
@@ -112,12 +113,16 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     const std::size_t n = motion.set_point.size();
     const int steps = steps_of_drive(plant, period);
     const double h = period / steps, scale = motion.in_volts ? plant.drive.velocity_per_V : 1;
-    closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion.constant), h,
-                                         motion.position[0], velocity);
-    axis.follow(motion.set_point[0]);
+    closed_axis<double, plant_axis> axis(axis_parameters(plant), loops_of(plant.drive, motion.constant), h);
+    axis.begin(motion.position[0], velocity, motion.set_point[0]);
+    auto anew = motion.begins.begin();
     std::vector<double> set_point = motion.set_point, command(n);
     set_point_clock clock(plant.drive, set_point, period);
     for (std::size_t k = 0; k < n; ++k) {
+        if (anew != motion.begins.end() && anew->row == k) {
+            axis.begin(motion.position[k], anew->velocity, motion.set_point[k]);
+            ++anew;
+        }
         seen(k, axis.reading(), set_point);
         plant_axis::surroundings now{.time = static_cast<double>(k) * period,
                                      .other_acceleration =

@@ -76,6 +76,12 @@ struct driven_motion {
     std::vector<double> measured;
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
+    /// Rows at which another log begins, and with which velocity [m/s]: the machine stands there anew.
+    struct start {
+        std::size_t row;
+        double velocity;
+    };
+    std::vector<start> begins{};
     double to_position =
         0; ///< scales what the drive gives otherwise than measured to the noise of the reading [m]
 

@@ -24,6 +24,14 @@ public:
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
 
+private:
+    /// The log made ready. How many independent readings a path holds, only a model near the machine tells: the
+    /// error of a wrong one is one long wave. So a first search looks for one.
+    axis_record record_of(double period, const std::vector<std::string>& excluded, const progress& tell,
+                          held_by how);
+    std::optional<plant_model> nearest_; ///< of that search
+
+public:
     const axis_description& axis;
     const axis_log& log;
     const axis_log* holdout;
@@ -51,6 +59,9 @@ public:
     const candidate& applied() const { return path[claims]; }
     /// Takes another way from the machine file to its causes.
     void follow(std::vector<candidate> way);
+    /// Whether the hold-out log was kept from the fits, so that it tests what was fitted. Not so where its motion
+    /// stands in `log`, too (both_motions()).
+    bool tested_apart() const { return second && !(log.drive && !log.drive->begins.empty()); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause
     /// can hide behind the names.

@@ -9,10 +9,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
                                              const progress& tell, held_by how)
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
-      record(for_machine(
-          in_pieces(prepare(l, period, resolution, scales_of(a.plant, l, period, resolution)), motions), a,
-          how)),
-      models(record, a, excluded, r, tell) {
+      record(record_of(period, excluded, tell, how)), models(record, a, excluded, r, tell) {
     const auto is_excluded = [&](const char* effect) {
         return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
     };
@@ -27,13 +24,24 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
     if (controller_unnamed) controller->mended = false;
     if (holdout)
         second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
-                             axis, how);
+                             axis, how, nearest_ ? &*nearest_ : nullptr);
     count_unnamed = coarse() && is_excluded("encoder_quantization");
     follow(models.run());
-    if (!second || !record.replayed() || best().effects.empty()) return;
+    if (!tested_apart() || !record.replayed() || best().effects.empty()) return;
     const auto worth_of = [&](const candidate& m) { return worth(m); };
     if (auto more = models.most_worth(best(), least_score(), worth_of); !search::same(more, best()))
         follow(models.path_to(more));
+}
+
+QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period,
+                                                         const std::vector<std::string>& excluded,
+                                                         const progress& tell, held_by how) {
+    const axis_record ready =
+        in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);
+    axis_record out = for_machine(ready, axis, how);
+    if (how != held_by::loop) return out;
+    nearest_ = search(out, axis, excluded, limits, tell).nearest();
+    return for_machine(ready, axis, how, &*nearest_);
 }
 
 QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
@@ -43,14 +51,14 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     settled = models.settled(best().fit.ms, record.score, noise) &&
               (best().effects.empty() || models.near_its_laws(best()));
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
-    if (second) settled_on_second = second_log(best()).settled;
+    if (tested_apart()) settled_on_second = second_log(best()).settled;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_tolerances() const {
     const candidate& m = path.front();
     if (m.stops_at_a_tolerance()) return false; // it would have left them
     if (!models.within_tolerances(m.fit.ms, record.score, noise)) return false;
-    if (!second) return true;
+    if (!tested_apart()) return true;
     fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
     fitter(second->observer, second->score).evaluate(there);
     return models.within_tolerances(there.ms, second->score, noise);
@@ -97,7 +105,7 @@ axis_case::scores_on_second(const std::vector<const candidate*>& some) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::worth(const candidate& m) const {
-    return m.total + (second && record.replayed() ? second_log(m).score : 0);
+    return m.total + (tested_apart() && record.replayed() ? second_log(m).score : 0);
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::least_score() const {

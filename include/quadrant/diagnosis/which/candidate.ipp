@@ -68,16 +68,26 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
                           .cwiseMin(high);
         c.leave.push_back(c.fit.x + step[f]);
     }
+    double readings = 0;
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const auto segment = view.segment_of_block[b];
-            c.held_out[segment] -=
-                0.5 * view.nu *
-                std::log(blocks.at(b, step[fold_of(segment)], scratch) + view.floor * view.floor);
+            const double ms = closed ? blocks.ms[b] : blocks.at(b, step[fold_of(segment)], scratch);
+            c.held_out[segment] -= 0.5 * view.nu * std::log(ms + view.floor * view.floor);
+            readings += view.nu / score_temperature;
         }
     });
     c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
-    if (closed) c.penalty += fitter::prior(c.fit); // a machine far from its description has to be worth it
+    if (closed) { // a machine far from its description has to be worth it, and so has a number that is free
+        const auto free = std::count_if(c.fit.parameters.begin(), c.fit.parameters.end(),
+                                        [](const parameter& p) { return !(p.spread > 0); });
+        const auto& friction = c.fit.plant.friction;
+        constexpr double frictionless = 1e-3; // odds of a servo's gear without any
+        if (!(friction.coulomb + friction.excess + friction.load > 0))
+            c.penalty -= score_temperature * std::log(frictionless);
+        c.penalty += fitter::prior(c.fit) - detail::flexibility(c.fit) +
+                     0.5 * score_temperature * static_cast<double>(free) * std::log(std::max(2.0, readings));
+    }
     c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }
@@ -87,6 +97,29 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> resumed(const fit_result& f) {
     for (std::size_t i = 0; i < ps.size(); ++i) ps[i].start = ps[i].from_fit(f.x[static_cast<Eigen::Index>(i)]);
     return ps;
 }
+
+namespace detail {
+
+/// The valleys of a path are narrow: the first of these parameters begins at the best of its start, its
+/// described value and fractions and multiples of both.
+inline void begin_at_the_best(std::vector<parameter>& ps, std::size_t first, const fitter& fit,
+                              plant_model plant) {
+    parameter& p = ps[first];
+    std::vector<double> values{p.start};
+    for (const double around : {p.start, p.of(plant)})
+        for (const double times : {0.2, 0.3, 0.45, 0.7, 1.0, 1.4, 2.2, 3.3, 5.0})
+            if (const double v = std::clamp(times * around, p.low, p.high);
+                v != 0 && std::none_of(values.begin(), values.end(),
+                                       [&](double x) { return std::abs(x - v) < 0.05 * std::abs(v); }))
+                values.push_back(v);
+    for (const parameter& q : ps) q.of(plant) = q.start;
+    std::vector<plant_model> plants(values.size(), plant);
+    for (std::size_t i = 0; i < values.size(); ++i) p.of(plants[i]) = values[i];
+    const auto looks = fit.objectives(plants);
+    p.start = values[static_cast<std::size_t>(std::min_element(looks.begin(), looks.end()) - looks.begin())];
+}
+
+} // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidate& from, const effect& added,
                                                const screening& look, const shared_slopes& slopes, int steps) {
@@ -105,7 +138,9 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
             ps.push_back(resumed_from[i]);
             known.which.push_back(i);
         }
+        const std::size_t own = ps.size();
         ps.insert(ps.end(), start.begin(), start.end());
+        if (look.record.closed() && !start.empty()) detail::begin_at_the_best(ps, own, fit, plant);
         courses_.emplace_back(fit, plant, ps, steps, std::move(known), 0);
     }
 }

@@ -14,7 +14,8 @@ struct rival {
     candidate model;
     const effect* name = nullptr;
     double weight = 0;
-    bool same = false; ///< not told apart from the cause by this record
+    bool same = false;     ///< not told apart from the cause by this record
+    bool unlikely = false; ///< then: beside the others that are not; not told
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
 };

@@ -6,9 +6,11 @@ namespace quadrant::diagnosis {
 namespace detail {
 
 QUADRANT_DIAGNOSIS_DECL void weigh(std::vector<rival>& rivals, const axis_case& c) {
-    const auto draws = segment_draws(c.record.segments);
+    auto draws = segment_draws(c.record.segments);
+    // The score of a path counts every reading once, and a motion that alone shows an effect is not to be lost.
+    if (c.record.closed()) draws.assign(1, std::vector<double>(c.record.segments, 1.0));
     std::vector<double> score(rivals.size()), second(rivals.size());
-    if (c.second) {
+    if (c.tested_apart()) {
         std::vector<const candidate*> models;
         for (const rival& r : rivals) models.push_back(&r.model);
         second = c.scores_on_second(models);
@@ -53,6 +55,18 @@ QUADRANT_DIAGNOSIS_DECL double explained_by(const axis_case& c, std::size_t whic
     return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
 
+/// Of a group stay the likeliest names that hold 95 % of its weight, the first, and what is one model with it.
+inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
+    std::vector<rival*> same;
+    for (rival& r : rivals)
+        if (r.same && &r != &rivals.front() && !may_be_one(*r.name, *rivals.front().name)) same.push_back(&r);
+    std::stable_sort(same.begin(), same.end(),
+                     [](const rival* a, const rival* b) { return a->weight < b->weight; });
+    double out = 0;
+    for (rival* r : same)
+        if ((out += r->weight) < 0.05 * all) r->unlikely = true;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
     std::vector<const effect*> others = c.best().effects;
@@ -83,15 +97,15 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
 
     const double energy = square(c.models.held_out_force(c.best()));
     const double unexplained = c.settled ? 0 : std::max(0.0, energy - square(c.floor_force()));
-    const double there = c.second ? square(c.second_log(c.best()).force) : 0;
+    const double there = c.tested_apart() ? square(c.second_log(c.best()).force) : 0;
     const double unexplained_there = there - square(c.floor_force());
     const auto excess_on_second = [&](const candidate& m) {
-        if (!c.second || !c.record.replayed() || !(unexplained_there > 0)) return 0.0;
+        if (!c.tested_apart() || !c.record.replayed() || !(unexplained_there > 0)) return 0.0;
         return std::max(0.0, square(c.second_log(m).force) - there) / unexplained_there;
     };
     const auto excess_of_own = [&](const candidate& m) {
         const double here = std::max(0.0, energy - square(c.models.held_out_force(m))) / unexplained;
-        if (!c.second || !(unexplained_there > 0)) return here;
+        if (!c.tested_apart() || !(unexplained_there > 0)) return here;
         return here + std::max(0.0, there - square(c.second_log(m).force)) / unexplained_there;
     };
     for (auto& r : out) {
@@ -122,6 +136,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     }
     double sum = 0;
     for (const auto& r : out) sum += r.weight;
+    if (c.record.closed()) leave_out_the_unlikely(out, sum);
     // A name that the search did not come to may be as good as the cause itself, as often as it is as common.
     double all = 0, missed = 0;
     for (const effect* e : c.models.suspects()) {
@@ -146,7 +161,9 @@ QUADRANT_DIAGNOSIS_DECL double doubtful_beside(const axis_case& c, double explai
 
 QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_model& plant) {
     std::vector<double> e;
-    r.observer.run(plant, e);
+    predictor on_the_model = r.observer;
+    on_the_model.closed = r.velocity[0];
+    on_the_model.run(plant, e);
     double sum = 0, rows = 0;
     for (std::size_t k = r.score.skip; k < r.position.size(); ++k)
         if (r.left_out.empty() || !r.left_out[k]) {
@@ -157,10 +174,13 @@ QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_mod
 }
 
 QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t which) {
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, c.best().effects[which]);
     const plant_model with = c.best().fit.plant,
-                      without = c.models.plant_without(c.best(), *c.best().effects[which]);
+                      without = others.empty() ? c.models.plant_without(c.best(), *c.best().effects[which])
+                                               : c.models.with(others).fit.plant;
     double left = beside_path(c.record, with), before = beside_path(c.record, without);
-    if (c.second) {
+    if (c.tested_apart()) {
         left += beside_path(*c.second, restarted(with, *c.second));
         before += beside_path(*c.second, restarted(without, *c.second));
     }
@@ -169,7 +189,7 @@ QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t whi
 
 QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     const std::size_t names = c.models.suspects().size();
-    if (!c.second)
+    if (!c.tested_apart())
         return by_chance(names, c.record.closed() ? left_of_paths(c, which)
                                                   : doubtful_beside(c, explained_by(c, which)));
     std::vector<const effect*> others = c.best().effects;
@@ -179,8 +199,9 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     const auto with_gain = [&](double out) { return 1 / (1 + (1 - out) / out * std::exp(gain)); };
     // What predicts another motion worse than the machine file does is no cause of both.
     constexpr double doubt = 0.6;
-    if (c.record.closed() && beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
-                                 beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
+    if (c.axis.drive.takes_position() && c.log.drive &&
+        beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
+            beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
         return doubt;
     if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_paths(c, which)));
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
@@ -195,9 +216,12 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
     std::vector<const effect*> same;
     for (const rival& r : names)
         if (r.same || &r == &names.front()) same.push_back(r.name);
-    return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(),
-                                                    [&](const candidate& m) { return c.worth(m); }) -
-                              c.worth(c.best())) /
+    // Of a path that no further name improves enough, a model with more names says nothing.
+    const auto worth = [&](const candidate& m) {
+        const bool longer = c.record.closed() && m.effects.size() > c.best().effects.size();
+        return longer ? -std::numeric_limits<double>::infinity() : c.worth(m);
+    };
+    return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(), worth) - c.worth(c.best())) /
                              score_temperature));
 }
 
@@ -287,7 +311,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             if (r.name == &e) {
                 named.probability = r.weight;
                 named.group_probability += r.weight;
-            } else if (r.same) {
+            } else if (r.same && !r.unlikely) {
                 named.confusable_with.emplace_back(r.name->name);
                 named.group_probability += r.weight;
                 auto values = estimates(r.model, *r.name, c.record.score);

@@ -154,12 +154,20 @@ public:
         return out;
     }
 
+    /// The machine with the one effect that comes nearest to the record, or as calibrated.
+    plant_model nearest() const;
+
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
     bool pays(const candidate& more, const candidate& less) const;
     /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while
     /// that does not grow, half of the innovations of one channel. A drag is small beside the peaks of every
     /// reversal, but not in its own band.
     bool shrinks(const candidate& more, const candidate& less) const;
+
+    /// The path of a loop closed on this model is off by more than those of machines inside the owner's
+    /// tolerances are from one another, in one standard deviation. Of a calibrated machine without a cause: it,
+    /// or the described one.
+    bool differs_from_like_machines(const candidate& c) const;
 
     static bool has(const candidate& c, const effect* e);
     static bool same(const candidate& a, const candidate& b);

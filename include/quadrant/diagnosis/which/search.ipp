@@ -18,8 +18,10 @@ QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_des
     candidate start;
     start.fit.plant = given_.fit.plant;
     start.fit.parameters = calibration(axis, record.scale.give());
-    if (record.closed()) // in the unit of a score that counts in full
-        for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(score_temperature);
+    // In the unit of a score that counts in full. Described numbers lie nearer the middle of their tolerance than
+    // its ends: a triangle, of half the variance.
+    if (record.closed())
+        for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(2 * score_temperature);
     if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
     if (record.observer.drive && record.observer.drive->tapped())
         for (parameter& p : timing_of_readings(start.fit.plant.drive, record.period))
@@ -341,6 +343,14 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
     return path_to(best);
 }
 
+QUADRANT_DIAGNOSIS_DECL plant_model search::nearest() const {
+    const candidate* best = &calibrated_;
+    const auto single = with_each(calibrated_);
+    for (const candidate& c : single)
+        if (c.total > best->total) best = &c;
+    return best->fit.plant;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& best) const {
     std::vector<candidate> path{best};
     while (!path.back().effects.empty()) {
@@ -371,11 +381,17 @@ QUADRANT_DIAGNOSIS_DECL bool search::pays(const candidate& more, const candidate
     const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
     const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
     if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
+    if (record_.closed() && !differs_from_like_machines(less)) return false;
     // What calibration bends to hides some of what an effect takes off.
     return shrinks(more, less) || (record_.closed() && less.stops_at_a_tolerance() && shrinks(more, given_));
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candidate& less) const {
+    if (record_.closed()) { // judged by its path; the forces of a gear that friction holds say little
+        const double law = square(record_.score.channels.front().floor);
+        const auto left = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms.front()) - law); };
+        return left(more) < square(1 - rules_.least_shrink) * left(less);
+    }
     const double floor = square(floor_force(more)), fall = square(1 - rules_.least_shrink);
     const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
     if (left(more) < fall * left(less)) return true;
@@ -387,6 +403,13 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candid
         if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
     }
     return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::differs_from_like_machines(const candidate& c) const {
+    // The 95th of 100 machines differs by two standard deviations.
+    const candidate& before =
+        c.effects.empty() && mean_of(given_.fit.ms.front()) > mean_of(c.fit.ms.front()) ? given_ : c;
+    return mean_of(before.fit.ms.front()) > tolerance_cloud().front() / 4;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::has(const candidate& c, const effect* e) {
