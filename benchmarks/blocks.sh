@@ -64,7 +64,7 @@ both_axes_v3() { # the same for x86-64-v3, products and sums fused where the com
         command -v $compiler >/dev/null || continue
         for program in xy_loop_count xy_loop; do
             [ $program = xy_loop_count ] && libraries= || libraries="-lbenchmark -lpthread -ldl"
-            $compiler -std=c++20 -O3 -DNDEBUG -march=x86-64-v3 -ffp-contract=fast -rdynamic -I"$root/include" -I"$root/examples" \
+            $compiler -std=c++20 -O3 -DNDEBUG -march=x86-64-v3 -ffp-contract=fast -rdynamic -I"$root/include" -I"$root/examples/programs" \
                 -o "$here/v3_$program" "$root/benchmarks/$program.cpp" $libraries 2>>"$here.log" || { cat "$here.log" >&2; exit 1; }
         done
         "$here/v3_xy_loop_count" same_commands || exit 1

@@ -57,7 +57,7 @@ for fir in '' _without_fir; do
         grep -q avx2 /proc/cpuinfo || continue
         program=$v3/xy_loop_count-$compiler
         [ "$fir" ] || $compiler -std=c++20 -O3 -DNDEBUG -march=x86-64-v3 -ffp-contract=fast -I"$root/include" \
-            -I"$root/examples" -o "$program" "$root/benchmarks/xy_loop_count.cpp"
+            -I"$root/examples/programs" -o "$program" "$root/benchmarks/xy_loop_count.cpp"
         "$program" same_commands || { echo "$compiler, v3: the loops do not give the same commands"; exit 1; }
         typed=$(per_sample "$program" "typed$fir")
         lanes=$(per_sample "$program" "typed_lanes$fir")

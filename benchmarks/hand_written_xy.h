@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* One axis of the two-axis loop (examples/quadrant_latency/loop.hpp) as one would write it by hand: doubles, SI, one struct,
- * one function. The same arithmetic in the same order, so that both can be compared bit for bit, every wire readable, and the
+/* One axis of the two-axis loop (examples/programs/quadrant_latency/loop.hpp) as one would write it by hand: doubles,
+ * SI, one struct, one function. The same arithmetic in the same order, so that both can be compared bit for bit, every wire readable, and the
  * same policy: each box holds its last output, keeps its state and raises its flag when a number is not finite. Left out is what the loop
  * does not use: change of the memory's period, other exponents of the Stribeck curve, other orders of the observer.
  * The numbers of taps are constants: in C they would be macros. */

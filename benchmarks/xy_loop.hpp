@@ -13,8 +13,8 @@
 #include <limits>
 
 /// The controller of both axes of the milling table: typed, alone and in lanes
-/// (examples/quadrant_latency/loop.hpp), by hand, as an expert writes it, and as a run-time graph of the same
-/// blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
+/// (examples/programs/quadrant_latency/loop.hpp), by hand, as an expert writes it, and as a run-time graph of
+/// the same blocks. `Learning` and `Smoothing` are the taps of the memory's FIR filters, 1 and 1 for none.
 namespace xy_loop {
 
 using namespace quadrant;

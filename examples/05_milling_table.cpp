@@ -12,8 +12,8 @@
 // whole periods is 1 % off the cutter's cycle: weights 2, -1 forgive that, for 12 dB between the harmonics
 // instead of 6 with weights 1.
 // You should see: (i) > (ii) > (iii); a memory that learns too much is stopped and gives no figure.
-#include "quadrant_reproduce/divergence_guard.hpp"
-#include "quadrant_reproduce/thesis.hpp"
+#include "programs/quadrant_reproduce/divergence_guard.hpp"
+#include "programs/quadrant_reproduce/thesis.hpp"
 
 #include <quadrant/analysis/loop_dob.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>

@@ -41,9 +41,9 @@ function(install_program program summary)
     return()
   endif()
   string(REPLACE "-" "_" folder ${program})
-  set(files ${PROJECT_SOURCE_DIR}/examples/${folder})
+  set(files ${PROJECT_SOURCE_DIR}/examples/programs/${folder})
   set(page ${PROJECT_BINARY_DIR}/${program}.1)
-  set(writer ${PROJECT_SOURCE_DIR}/examples/quadrant_gap/man_page.cmake)
+  set(writer ${PROJECT_SOURCE_DIR}/examples/programs/quadrant_gap/man_page.cmake)
   add_custom_command(OUTPUT ${page}
     COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DNAME=${program} -DSUMMARY=${summary}
       -DVERSION=${PROJECT_VERSION} -DMORE=${files}/man_page.txt -DOUT=${page} -P ${writer}
@@ -55,7 +55,7 @@ function(install_program program summary)
   endif()
   install(TARGETS ${program} COMPONENT ${component})
   install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
-  install(FILES ${PROJECT_SOURCE_DIR}/examples/quadrant_gap/quadrant-gap.bash COMPONENT ${component}
+  install(FILES ${PROJECT_SOURCE_DIR}/examples/programs/quadrant_gap/quadrant-gap.bash COMPONENT ${component}
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${program})
 endfunction()
 install_program(quadrant-gap "why does the machine not do what its simulation says?")

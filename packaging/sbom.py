@@ -6,7 +6,7 @@ library with its version and licence, and our own files by name (their contents 
     python3 packaging/sbom.py           writes packaging/sbom.cdx.json
     python3 packaging/sbom.py --check   compares it with the files of this computer; 77 when no package manager can say versions
 
-The list of files is read from where they are embedded: examples/CMakeLists.txt (embed) and examples/web/build.sh.
+The list of files is read from where they are embedded: examples/programs/CMakeLists.txt (embed) and examples/web/build.sh.
 """
 import hashlib
 import json
@@ -41,8 +41,8 @@ def own_version():
 
 def embedded():
     """Page -> files, from the text of the build."""
-    cmake = (root / "examples/CMakeLists.txt").read_text()
-    names = {"CMAKE_CURRENT_SOURCE_DIR": str(root / "examples"), "QUADRANT_DYGRAPHS": str(dygraphs)}
+    cmake = (root / "examples/programs/CMakeLists.txt").read_text()
+    names = {"CMAKE_CURRENT_SOURCE_DIR": str(root / "examples/programs"), "QUADRANT_DYGRAPHS": str(dygraphs)}
     pages = {}
     for call, body in re.findall(r"^\s*(set|embed)\(([^)]*)\)", cmake, re.M):
         words = re.sub(r"\$\{(\w+)\}", lambda m: names.get(m[1], m[0]), body).split()

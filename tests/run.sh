@@ -127,7 +127,7 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         { printf '\004' && sed 's/^Name\t.*/Name\tr\ty\tu/' examples/import/twincat_scope.csv | head -n 60; } >"$found/foreign"
         { printf '\005G1 F9 X5\nG4 P1\nG64 P1 G2 X9 Y1 R9\nX0 Y0 I-1\n' && grep ^N examples/path/circle.nc; } >"$found/gcode"
         { printf '\006' && head -n 14 examples/path/butterfly.cl && printf 'SPLINE/OFF\nCIRCLE/0,-50,0,0,0,1,50\nGOTO/0,0,0\n'; } >"$found/cl"
-        { printf '\007' && cat examples/quadrant_cnc/milling_table.json; } >"$found/cnc"
+        { printf '\007' && cat examples/programs/quadrant_cnc/milling_table.json; } >"$found/cnc"
         { printf '\010t_s,angle_deg,radius_m,nominal_radius_m\n' &&
             awk 'BEGIN { for (k = 0; k < 130; ++k) printf "%.2f,%d,%.7f,.1\n", k / 100, 3 * k, .1 + 1e-6 * (k % 3) }'; } >"$found/radius"
         if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \

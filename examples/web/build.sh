@@ -20,13 +20,13 @@ for library in boost eigen3/Eigen nlohmann fmt; do
     ln -sfn "/usr/include/$library" "$build/include/${library##*/}"
 done
 cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
-    "-DFILES=$root/examples/quadrant_gap/report_template.html;$root/examples/quadrant_gap/report.css;$root/examples/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
-    -P "$root/examples/page/embed.cmake"
+    "-DFILES=$root/examples/programs/quadrant_gap/report_template.html;$root/examples/programs/quadrant_gap/report.css;$root/examples/programs/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
+    -P "$root/examples/programs/page/embed.cmake"
 
 # One file each, as many at once as there are cores.
 version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
 flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
-    -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$build/include"
+    -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
 part() { # NAME HEADER...
     name=$1
     shift

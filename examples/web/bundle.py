@@ -43,7 +43,7 @@ wasm = gzip.compress((build / "quadrant.wasm").read_bytes(), 9, mtime=0)
 values = {
     "version": version,
     "gallery": gallery(sources / "../../docs"),
-    "report_css": (sources / "../quadrant_gap/report.css").read_text(),
+    "report_css": (sources / "../programs/quadrant_gap/report.css").read_text(),
     "page_css": (sources / "page.css").read_text(),
     "wasm": base64.b64encode(wasm).decode(),
     "worker": script(build / "quadrant.js", sources / "worker.js"),

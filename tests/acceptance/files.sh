@@ -153,6 +153,6 @@ if command -v bash >/dev/null; then
                 case " ${COMPREPLY[*]} " in *" $option "*) ;; *) echo "$s $option is not completed"; exit 1 ;; esac
             done
         done' - \
-        "$root/examples/quadrant_gap/quadrant-gap.bash"
+        "$root/examples/programs/quadrant_gap/quadrant-gap.bash"
     echo 'ok: completion'
 fi

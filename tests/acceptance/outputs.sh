@@ -144,7 +144,7 @@ interrupt HUP 1.5 "$program" fleet --jobs 1 --out many_out many
 [ -z "$(find many_out -name '.working-*')" ] || fail "an interrupted fleet leaves $(find many_out -name '.working-*')"
 if [ -x "$cnc" ]; then
     awk 'BEGIN { print "G21 G17 G90 G61 F300"; for (k = 0; k < 4000; ++k) print "G1 X" (k % 2 ? 20 : 0) " Y" (k % 3) }' >long.nc
-    interrupt TERM 1 "$cnc" run --quiet --cnc "$root/examples/quadrant_cnc/mill.json" --path long.nc --log cnc.csv
+    interrupt TERM 1 "$cnc" run --quiet --cnc "$root/examples/programs/quadrant_cnc/mill.json" --path long.nc --log cnc.csv
     [ ! -e cnc.csv ] || fail 'an interrupted run leaves a log'
 fi
 no_leftovers 'an interrupted program'

@@ -140,11 +140,11 @@ TEST_CASE("genetic: refuses ranges, options and texts that are none") {
         return refused([&] { tune_genetic(genes, many_valleys, 100, o, go_on); });
     };
     CHECK(with({}, {}) == "tune_genetic.genes = 0: must be one or more");
-    CHECK(with({{1, 1}}, {}) == "gene.low = 1: must be finite and below high");
+    CHECK(with({{1, 1}}, {}) == "gene.low = 1: must be finite and below high (1)");
     CHECK(with({{0, 1, true}}, {}) == "gene.low = 0: must be above 0 for a logarithmic gene");
     CHECK(with(box, {.population = 3}) == "genetic_options.population = 3: must be 4 or more");
     CHECK(with(box, {.population = 4, .elite = 4}) ==
-          "genetic_options.elite = 4: must be below the population");
+          "genetic_options.elite = 4: must be below the population (4)");
     CHECK(with(box, {.mutation = 1.5}) == "genetic_options.mutation = 1.5: must lie between 0 and 1");
     const auto state = tune_genetic(box, many_valleys, 100, {}, go_on);
     CHECK(refused([&] {

@@ -127,7 +127,7 @@ TEST_CASE(
 
 TEST_CASE("mill.json: X and Y are the printed ones") {
     const cnc_description mill =
-        read_cnc(std::filesystem::path(QUADRANT_SOURCE_DIR "/examples/quadrant_cnc/mill.json"));
+        read_cnc(std::filesystem::path(QUADRANT_SOURCE_DIR "/examples/programs/quadrant_cnc/mill.json"));
     REQUIRE(mill.axes.size() == 3);
     CHECK(mill.servo_period_s == vcnc::period.value());
     for (const auto& [axis, printed] : {std::pair{mill.axes[0], vcnc::x_axis}, {mill.axes[1], vcnc::y_axis}}) {
@@ -161,7 +161,7 @@ TEST_CASE("mill.json: X and Y are the printed ones") {
 
 TEST_CASE("gap machine: mass, force and friction of the x axis along the table") {
     const cnc_description mill =
-        read_cnc(std::filesystem::path(QUADRANT_SOURCE_DIR "/examples/quadrant_cnc/mill.json"));
+        read_cnc(std::filesystem::path(QUADRANT_SOURCE_DIR "/examples/programs/quadrant_cnc/mill.json"));
     std::vector<std::string> notes;
     const auto machine = gap_machine(mill, notes);
     const auto& x = machine.axes[0].plant;

@@ -10,7 +10,7 @@ import sys
 
 root = pathlib.Path(__file__).resolve().parents[2]
 program, scratch = sys.argv[1], pathlib.Path(sys.argv[2])
-mill = json.loads((root / "examples/quadrant_cnc/mill.json").read_text())
+mill = json.loads((root / "examples/programs/quadrant_cnc/mill.json").read_text())
 del mill["axes"]["z"]
 laws = {
     "pid": mill["axes"]["x"]["control"],

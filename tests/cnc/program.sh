@@ -8,7 +8,7 @@ cnc=$1 gap=$2 root=$3 dir=$4
 rm -rf "$dir"
 mkdir -p "$dir"
 cd "$dir"
-machines=$root/examples/quadrant_cnc paths=$root/examples/path
+machines=$root/examples/programs/quadrant_cnc paths=$root/examples/path
 mill=$machines/mill.json
 fail() { echo "FAILED: $*"; exit 1; }
 

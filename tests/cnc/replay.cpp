@@ -30,7 +30,7 @@ struct exported {
 exported run(const nlohmann::json& law, const char* friction) {
     const files::path folder = files::temp_directory_path() / fmt::format("quadrant_cnc_replay.{}", getpid());
     files::create_directories(folder);
-    std::ifstream file(QUADRANT_SOURCE_DIR "/examples/quadrant_cnc/mill.json");
+    std::ifstream file(QUADRANT_SOURCE_DIR "/examples/programs/quadrant_cnc/mill.json");
     auto mill = nlohmann::json::parse(file);
     mill["axes"].erase("z");
     for (auto& axis : mill["axes"]) {

@@ -31,7 +31,7 @@ def expect(ok, message):
 
 
 schema, figures = validator("cnc.schema.json"), validator("cnc_run.schema.json")
-keys = (root / "examples/quadrant_cnc/cnc_keys.hpp").read_text(encoding="utf-8")
+keys = (root / "examples/programs/quadrant_cnc/cnc_keys.hpp").read_text(encoding="utf-8")
 
 
 def table(name):
@@ -48,7 +48,7 @@ for box, tables in {"trajectory": ["trajectory_keys", "trajectory_other_keys"], 
     difference = read ^ schema.schema["$defs"][box]["properties"].keys()
     expect(not difference, f"cnc.schema.json and the reader differ in the keys of {box}: {sorted(difference)}")
 
-machines = sorted((root / "examples/quadrant_cnc").glob("*.json"))
+machines = sorted((root / "examples/programs/quadrant_cnc").glob("*.json"))
 expect(len(machines) >= 2, "no machine files")
 for path in machines:
     expect(schema.is_valid(json.loads(path.read_text())), f"{path} is not valid")
@@ -58,7 +58,7 @@ for path in sys.argv[3:]:
         faults.append(f"{path}: {error.message}")
     checked += 1
 
-mill = json.loads((root / "examples/quadrant_cnc/mill.json").read_text())
+mill = json.loads((root / "examples/programs/quadrant_cnc/mill.json").read_text())
 del mill["axes"]["y"], mill["axes"]["z"]
 stroke = scratch / "stroke.nc"
 stroke.write_text("G21 G1 X1 F6000\n")

@@ -76,7 +76,7 @@ def check_links(page):
 
 
 # --- 2. Code that is shown is code that is compiled. ---
-compiled = re.compile(r"(examples|include)/\S+\.(cpp|hpp|c|h)")
+compiled = re.compile(r"(examples|include|docs/generators)/\S+\.(cpp|hpp|c|h)")
 marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
 given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
 languages = {"", "cpp", "sh", "json"}
@@ -107,7 +107,7 @@ def check_snippets(page):
         marked += 1
         source = root / from_file.group(1)
         if not compiled.fullmatch(from_file.group(1)) or not source.is_file():
-            fault(page, line, f"{from_file.group(1)} is no source under examples/ or include/")
+            fault(page, line, f"{from_file.group(1)} is no source under examples/, docs/generators/ or include/")
             continue
         shown, there = lines_of(match.group(3)), lines_of(source.read_text())
         if not any(shown) or not any(there[k : k + len(shown)] == shown for k in range(len(there))):
@@ -119,10 +119,10 @@ def check_snippets(page):
 
 # --- 3. Commands have the options that they are shown with. ---
 programs = {
-    name: root / "examples" / name.replace("-", "_")
+    name: root / "examples/programs" / name.replace("-", "_")
     for name in ("quadrant-gap", "quadrant-gap-mpi", "quadrant-cnc", "quadrant-reproduce", "quadrant-latency")
 }
-shared_options = {"quadrant-gap": ["examples/quadrant_gap/commands.hpp"], "quadrant-gap-mpi": ["examples/quadrant_gap/fleet.cpp"]}
+shared_options = {"quadrant-gap": ["examples/programs/quadrant_gap/commands.hpp"], "quadrant-gap-mpi": ["examples/programs/quadrant_gap/fleet.cpp"]}
 
 
 @lru_cache(maxsize=None)
@@ -226,12 +226,12 @@ def check_picture(page):
 
 
 def check_pictures():
-    drawn = {n for s in (root / "examples/block_pictures").glob("*.cpp") for n in re.findall(r'\{"(\w+)", draw_', s.read_text())}
+    drawn = {n for s in (root / "docs/generators/block_pictures").glob("*.cpp") for n in re.findall(r'\{"(\w+)", draw_', s.read_text())}
     of_pages = {page.stem for page in blocks.glob("*.md")}
     for name in sorted({path.stem for path in pictures.glob("*")} - of_pages):
         fault(pictures / f"{name}.svg", 1, "is the picture of no block")
     for name in sorted(drawn ^ of_pages):
-        fault(blocks / f"{name}.md", 1, "is a page, or a picture of examples/block_pictures, without the other")
+        fault(blocks / f"{name}.md", 1, "is a page, or a picture of docs/generators/block_pictures, without the other")
     for page in sorted(blocks.glob("*.md")):
         check_picture(page)
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: gallery.sh CMAKE BUILD OUT     the pictures of docs/gallery.md are what examples/gallery writes, byte for byte
+# usage: gallery.sh CMAKE BUILD OUT     the pictures of docs/gallery.md are what docs/generators/gallery writes, byte for byte
 set -u
 cmake=$1 build=$2 out=$3
 cd "$(dirname "$0")/../.." || exit 1

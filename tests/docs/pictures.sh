@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: pictures.sh CMAKE BUILD OUT     the pictures of docs/blocks are what examples/block_pictures writes, byte for byte
+# usage: pictures.sh CMAKE BUILD OUT     the pictures of docs/blocks are what docs/generators/block_pictures writes, byte for byte
 set -u
 cmake=$1 build=$2 out=$3
 cd "$(dirname "$0")/../.." || exit 1

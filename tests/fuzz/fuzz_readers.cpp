@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 // The first byte chooses the reader; bad_input (bad_program of a tool path) is the only way out but success.
-#include "../../examples/quadrant_cnc/gap_machine.hpp"
-#include "../../examples/quadrant_cnc/read_cnc.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/circle/read_radius.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "quadrant/path/cl_reader.hpp"
 #include "quadrant/path/gcode_reader.hpp"
+#include "quadrant_cnc/gap_machine.hpp"
+#include "quadrant_cnc/read_cnc.hpp"
 
 #include <cstdint>
 #include <sstream>

@@ -365,5 +365,5 @@ TEST_CASE("gain_schedule: straight between the nodes, held beyond, no jump at a 
     const auto integral = loop.now().integral;
     CHECK(loop(g(0_mps, 100_mm)) == integral); // three times the gains
     CHECK_THROWS_WITH_AS((schedule{{{0_mm, 0_mm, 1_mm}, {1.0, 1.0, 1.0}}, T}),
-                         "gain_schedule.at = 0 m: must lie above the one before it", invalid_parameter);
+                         "gain_schedule.at = 0 m: must lie above the one before it (0 m)", invalid_parameter);
 }

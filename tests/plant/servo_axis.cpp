@@ -231,7 +231,7 @@ TEST_CASE("servo_axis: what no axis has is refused by name") {
     p = full_axis();
     p.second.mass = quantity<si::mass>::from_value(200);
     CHECK_THROWS_WITH(axis(p, step),
-                      "servo_axis.second.mass = 200 kg: must lie below the mass, of which it is a part");
+                      "servo_axis.second.mass = 200 kg: must lie below the mass, of which it is a part (100)");
     p = full_axis();
     p.play = -1e-6;
     CHECK_THROWS_WITH(axis(p, step), "servo_axis.play = -1e-06: must be finite and not below 0");

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../../examples/quadrant_gap/report.hpp"
-#include "../../examples/quadrant_gap/summary.hpp"
+#include "quadrant_gap/report.hpp"
+#include "quadrant_gap/summary.hpp"
 #include "sample_result.hpp"
 
 int main(int argc, char** argv) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "../../examples/quadrant_gap/report.hpp"
+#include "quadrant_gap/report.hpp"
 
 #include <sstream>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "../../examples/quadrant_gap/summary.hpp"
+#include "quadrant_gap/summary.hpp"
 #include "sample_result.hpp"
 
 using namespace quadrant_gap;

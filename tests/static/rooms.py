@@ -4,6 +4,9 @@
 
 The order is that of the tables under "Rooms" and "Rooms of the diagnosis" in docs/CONTRIBUTING.md: a room includes itself
 and rooms above it in the table. What lies beside the rooms includes any of them, and no room includes it.
+
+Numbered examples are for reading: no test includes one. A test includes from tests/, what it tests from examples/programs
+and examples/linuxcnc, and what writes the docs from docs/generators; no program and no generator includes a test.
 """
 import os
 import pathlib
@@ -80,6 +83,19 @@ def hold(top, heading, what_is_above):
 
 order = hold(include / "quadrant", "Rooms", "what holds all rooms,")
 order += hold(include / "quadrant/diagnosis", "Rooms of the diagnosis", "the call")
+
+from_tests = ("tests", "examples/programs", "examples/linuxcnc", "docs/generators")
+for folder, may, found_in in (
+    ("tests", from_tests, ("tests", "examples", "examples/programs", "docs/generators")),
+    ("examples/programs", ("examples/programs",), ("examples/programs",)),
+    ("docs/generators", ("docs/generators", "examples/programs"), ("docs/generators", "examples/programs")),
+):
+    for source in (p for p in (root / folder).rglob("*") if p.suffix in (".hpp", ".cpp", ".cc", ".h")):
+        for name in re.findall(r'^\s*#\s*include "([^"]+)"', source.read_text(), re.M):
+            places = [pathlib.Path(os.path.normpath(base / name)) for base in (source.parent, *(root / f for f in found_in))]
+            target = next((p for p in places if p.is_file()), None)  # none: made by the build, or of the library
+            if target and not target.is_relative_to(root / "include") and not any(target.is_relative_to(root / f) for f in may):
+                faults.append(f"{source.relative_to(root)}: includes {target.relative_to(root)}; a file of {folder} does not")
 
 for fault in faults:
     print(fault)

@@ -164,7 +164,7 @@ TEST_CASE("profile: what cannot be driven is refused with its line") {
     p.kind = profile_kind::constant_acceleration;
     CHECK(refused(p).find("profile.limits.jerk = 50 m/s^3: must be infinite") == 0);
     p.limits = at_most(0.05, 2);
-    CHECK(refused(p).find("profile.from = 0.1 m/s: must lie between 0 and the feed") == 0);
+    CHECK(refused(p).find("profile.from = 0.1 m/s: must lie between 0 and the feed (0.05 m/s)") == 0);
     // At one speed all along there is nothing to make slower.
     const auto through = move_of(0.01235, at_most(0.1, 2, 50), seven_phases, 0.1, 0.1);
     CHECK_THROWS_WITH_AS(through.in_whole_periods(1_ms),

@@ -126,7 +126,8 @@ cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<O
                     quadrant::detail::shortest(double(run.command.size())) + ")");
         require(run.velocity.size() == (runs[0].velocity.empty() ? 0 : run.position.size()),
                 "identify_cogging.velocity", double(run.velocity.size()),
-                "must hold as many samples as position in all runs, or none in all");
+                "must hold as many samples as position (" +
+                    quadrant::detail::shortest(double(run.position.size())) + ") in all runs, or none in all");
         detail::cogging_record r{{}, {}, run.velocity, run.direction};
         for (std::size_t i = 0; i < run.position.size(); ++i) {
             require_finite("identify_cogging.position", run.position[i]);

@@ -154,7 +154,8 @@ inline std::optional<displacement> estimated_contour_error(place reference, plac
 template <class Path>
 std::vector<displacement> contour_errors(Path path, const std::vector<displacement>& x,
                                          const std::vector<displacement>& y) {
-    require(x.size() == y.size(), "contour_errors.x", double(x.size()), "must hold as many samples as y");
+    require(x.size() == y.size(), "contour_errors.x", double(x.size()),
+            "must hold as many samples as y (" + quadrant::detail::shortest(double(y.size())) + ")");
     std::vector<displacement> out;
     out.reserve(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -37,7 +37,7 @@ public:
         require_below_nyquist("chirp.to", p.to, period);
         require_positive("chirp.length", p.length);
         require(p.fade >= duration() && p.fade <= 0.5 * p.length, "chirp.fade", p.fade,
-                "must lie between 0 and half the length");
+                "must lie between 0 and half the length (" + quadrant::detail::shortest(0.5 * p.length) + ")");
     }
     value operator()() noexcept {
         now_ = done() ? value() : at(double(step_) * period_);

@@ -40,7 +40,8 @@ template <signal_tag Command = signal::voltage> struct plant_fit {
 template <signal_tag In = signal::voltage>
 plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& options) {
     require_not_negative("fit_plant.from", options.from);
-    require(options.to > options.from, "fit_plant.to", options.to, "must be above fit_plant.from");
+    require(options.to > options.from, "fit_plant.to", options.to,
+            "must be above fit_plant.from (" + quadrant::detail::shortest(options.from) + ")");
     require_positive("fit_plant.longest_delay", options.longest_delay);
     struct point {
         frequency f;

@@ -132,7 +132,9 @@ friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration p
     std::vector<group> groups;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         require(runs[r].position.size() == runs[r].command.size(), "axis_log.position",
-                double(runs[r].position.size()), "must hold as many samples as command");
+                double(runs[r].position.size()),
+                "must hold as many samples as command (" +
+                    quadrant::detail::shortest(double(runs[r].command.size())) + ")");
         require(runs[r].position.size() >= 640, "axis_log.position", double(runs[r].position.size()),
                 "must hold 640 samples or more");
         const auto found = detail::read_run(runs[r], period, options.uneven);

@@ -147,11 +147,12 @@ genetic_state tune_genetic(const std::vector<gene>& genes, const Cost& cost, std
     require(!genes.empty(), "tune_genetic.genes", 0.0, "must be one or more");
     for (const gene& g : genes) {
         require(std::isfinite(g.low) && std::isfinite(g.high) && g.low < g.high, "gene.low", g.low,
-                "must be finite and below high");
+                "must be finite and below high (" + quadrant::detail::shortest(g.high) + ")");
         require(!g.logarithmic || g.low > 0, "gene.low", g.low, "must be above 0 for a logarithmic gene");
     }
     require(o.population >= 4, "genetic_options.population", double(o.population), "must be 4 or more");
-    require(o.elite < o.population, "genetic_options.elite", double(o.elite), "must be below the population");
+    require(o.elite < o.population, "genetic_options.elite", double(o.elite),
+            "must be below the population (" + quadrant::detail::shortest(double(o.population)) + ")");
     require(o.tournament >= 1, "genetic_options.tournament", double(o.tournament), "must be 1 or more");
     require(o.crossover >= 0 && o.crossover <= 1, "genetic_options.crossover", o.crossover,
             "must lie between 0 and 1");
@@ -219,7 +220,7 @@ inline genetic_state read_genetic(const std::string& text) {
     std::uint64_t people = 0, genes = 0;
     next(s.generation), next(s.simulations), next(people), next(genes);
     require(people <= text.size() && genes <= text.size(), "read_genetic.population", double(people),
-            "must be no more than there are numbers");
+            "must be no more than there are numbers (" + quadrant::detail::shortest(double(text.size())) + ")");
     for (std::uint64_t k = 0; k < people; ++k) {
         s.cost.emplace_back();
         next(s.cost.back());

@@ -140,7 +140,9 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
                                                  const H& response, duration period,
                                                  const compensation_options& options = {}) {
     require(compensation.size() == reference.size(), "judge_compensation.compensation",
-            double(compensation.size()), "must hold as many samples as reference");
+            double(compensation.size()),
+            "must hold as many samples as reference (" + quadrant::detail::shortest(double(reference.size())) +
+                ")");
     require(options.window >= 20.0 * period, "compensation_options.window", options.window,
             "must be 20 periods or more");
     require_positive("compensation_options.scale_tolerance", options.scale_tolerance);

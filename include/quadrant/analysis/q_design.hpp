@@ -27,7 +27,7 @@ inline void require_rule(const q_rule& r) {
     require(r.margin > 0 && r.margin <= 1, "q_rule.margin", r.margin, "must lie between 0 and 1");
     require_not_negative("q_rule.from", r.from);
     require(std::isfinite(r.to.value()) && r.to > r.from, "q_rule.to", r.to,
-            "must be finite and above q_rule.from");
+            "must be finite and above q_rule.from (" + quadrant::detail::shortest(r.from) + ")");
     require_not_negative("q_rule.deviations", r.deviations);
 }
 /// The lines that count.
@@ -114,9 +114,9 @@ q_design<Observer> design_q(const measured_frf& frf, const decltype(Observer::pa
     const auto holds = [&](double corner) { return with(corner).worst <= rule.margin; };
     const double highest = 0.49 / period.value();
     double good = lines.front().f.value(), bad = good;
-    require(
-        good < highest && holds(good), "design_q.corner", good,
-        "must leave |Q Delta| below q_rule.margin: the nominal plant does not fit the axis, or begin lower");
+    require(good < highest && holds(good), "design_q.corner", good,
+            "must leave |Q Delta| below q_rule.margin (" + quadrant::detail::shortest(rule.margin) +
+                "): the nominal plant does not fit the axis, or begin lower");
     while (bad < highest && holds(bad)) good = bad, bad = std::min(1.02 * bad, highest);
     if (holds(bad)) good = bad;
     for (int i = 0; i < 40 && good < bad; ++i) {

@@ -78,12 +78,14 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
     require(options.points >= 10 && options.points <= 400, "virgin_options.points", double(options.points),
             "must lie between 10 and 400");
     require(!runs.empty() && 5 * runs.size() <= options.points, "find_virgin_curve.runs", double(runs.size()),
-            "must be one or more, and no more than a fifth of virgin_options.points");
+            "must be one or more, and no more than a fifth of virgin_options.points (" +
+                quadrant::detail::shortest(double(options.points)) + ")");
     std::vector<detail::slow_branches> cut;
     double count = HUGE_VAL;
     for (const auto& run : runs) {
         require(run.position.size() == run.command.size(), "axis_log.position", double(run.position.size()),
-                "must hold as many samples as command");
+                "must hold as many samples as command (" +
+                    quadrant::detail::shortest(double(run.command.size())) + ")");
         const double here = detail::count_of(run.position);
         cut.push_back(detail::cut_at_reversals(run, period.value(), force_constant.value(),
                                                options.mass.value(), options.viscous.value(), here));

@@ -47,7 +47,7 @@ public:
             require_finite("gain_schedule.at", p.at[i]);
             require_finite("gain_schedule.gain", p.gain[i]);
             require(i == 0 || detail::plain(p.at[i]) > detail::plain(p.at[i - 1]), "gain_schedule.at", p.at[i],
-                    "must lie above the one before it");
+                    "must lie above the one before it (" + detail::shortest(p.at[i == 0 ? 0 : i - 1]) + ")");
             at_[i] = in_real<Real>(p.at[i]);
             gain_[i] = in_real<Real>(p.gain[i]);
         }

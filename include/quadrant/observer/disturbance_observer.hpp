@@ -280,7 +280,8 @@ template <class Observer, class Frf>
 robust_stability robustness(const Observer& observer, Frf&& plant, frequency from, frequency to,
                             std::size_t points = 1000) {
     require_positive("robustness.from", from);
-    require(detail::is_finite(to.value()) && to > from, "robustness.to", to, "must be finite and above from");
+    require(detail::is_finite(to.value()) && to > from, "robustness.to", to,
+            "must be finite and above from (" + detail::shortest(from) + ")");
     require(points >= 2, "robustness.points", double(points), "must be at least 2");
     robust_stability result;
     for (std::size_t i = 0; i < points; ++i) {

@@ -275,7 +275,9 @@ private:
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             require(lane(p.limit, i) > 0, "servo_axis.limit", lane(p.limit, i), "must be above 0");
             require(detail::plain(lane(p.second.mass, i)) < lane(p.mass, i), "servo_axis.second.mass",
-                    lane(p.second.mass, i), "must lie below the mass, of which it is a part");
+                    lane(p.second.mass, i),
+                    "must lie below the mass, of which it is a part (" + detail::shortest(lane(p.mass, i)) +
+                        ")");
         }
         require_finite("servo_axis.constant", p.constant);
         require_finite("servo_axis.spring", p.spring);

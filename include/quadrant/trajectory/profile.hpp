@@ -120,8 +120,9 @@ public:
         const bounds within = plain(p.limits);
         const double length = p.length.value(), from = p.from.value(), to = p.to.value();
         require(from >= 0 && from <= within.velocity, "profile.from", p.from,
-                "must lie between 0 and the feed");
-        require(to >= 0 && to <= within.velocity, "profile.to", p.to, "must lie between 0 and the feed");
+                "must lie between 0 and the feed (" + quadrant::detail::shortest(p.limits.velocity) + ")");
+        require(to >= 0 && to <= within.velocity, "profile.to", p.to,
+                "must lie between 0 and the feed (" + quadrant::detail::shortest(p.limits.velocity) + ")");
         if (!speed_profile::feasible(p.kind, within, length, from, to)) {
             bounds free = within;
             free.jerk = unlimited;

@@ -34,7 +34,7 @@ inline motion sinusoid(std::string name, double peak_speed, double cycles) {
             }};
 }
 
-/// Circles of 30 mm at 100 mm/s with the run-in of examples/quadrant_reproduce/milling_table.hpp.
+/// Circles of 30 mm at 100 mm/s with the run-in of examples/programs/quadrant_reproduce/milling_table.hpp.
 inline motion table_circle(double turns) {
     constexpr double radius = 0.03, w = 0.1 / radius, start = 0.05;
     return {"circle", turns * 2 * std::numbers::pi / w, [=](double t) {

@@ -98,9 +98,7 @@ int reproduce(const options& o, bool wants_page) {
     return 0;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
     CLI::App app{
         "The experiments of [Jamaludin2008], [Yeung2006] and [LowKeck2003] computed again, our figures beside "
         "the published ones.\n"
@@ -126,8 +124,12 @@ int main(int argc, char** argv) {
                                     "quadrant-reproduce");
     } catch (const CLI::ParseError& e) {
         return quadrant_page::said(app, e, argc, argv, bad_input_code);
-    } catch (const std::exception& e) { // unknown_id, bad_input, or what this computer refuses
-        fmt::print(stderr, "quadrant-reproduce: {}\n", e.what());
     }
-    return bad_input_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return quadrant_page::guarded("quadrant-reproduce", bad_input_code,
+                                  [&] { return run_program(argc, argv); });
 }

@@ -46,9 +46,7 @@ int run(const quadrant_latency::plan& plan, const std::string& html) {
     return quadrant_latency::fits(result, plan.period_us) ? 0 : too_long_code;
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
     CLI::App app{"Runs the two-axis controller of the milling table on this computer, with warm and cold "
                  "caches and on a\n"
                  "timer, and says how much of the servo period it needs.",
@@ -84,8 +82,11 @@ int main(int argc, char** argv) {
         return quadrant_page::ended(run(plan, html), "quadrant-latency");
     } catch (const CLI::ParseError& e) {
         return quadrant_page::said(app, e, argc, argv, bad_input_code);
-    } catch (const std::exception& e) { // what this computer refuses
-        fmt::print(stderr, "quadrant-latency: {}\n", e.what());
     }
-    return bad_input_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return quadrant_page::guarded("quadrant-latency", bad_input_code, [&] { return run_program(argc, argv); });
 }

@@ -31,10 +31,9 @@ void add_run(CLI::App& app) {
     });
 }
 
-} // namespace
+constexpr int bad_input_code = 2;
 
-int main(int argc, char** argv) {
-    constexpr int bad_input_code = 2;
+int run_program(int argc, char** argv) {
     CLI::App app{
         "A virtual CNC: a part program driven through simulated axes, with its tracking and contour errors.",
         "quadrant-cnc"};
@@ -48,8 +47,11 @@ int main(int argc, char** argv) {
         return quadrant_page::ended(0, "quadrant-cnc");
     } catch (const CLI::ParseError& e) {
         return quadrant_page::ended(quadrant_page::said(app, e, argc, argv, bad_input_code), "quadrant-cnc");
-    } catch (const std::exception& e) { // bad_input, bad_program, or what this computer refuses
-        std::fprintf(stderr, "quadrant-cnc: %s\n", e.what());
     }
-    return bad_input_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return quadrant_page::guarded("quadrant-cnc", bad_input_code, [&] { return run_program(argc, argv); });
 }

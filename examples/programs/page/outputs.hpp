@@ -3,6 +3,8 @@
 #include <quadrant/diagnosis/text/output_file.hpp>
 
 #include <cstdio>
+#include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,19 @@ inline int ended(int code, const char* program) {
     if (std::fflush(stdout) == 0 && !lost) return code;
     std::fprintf(stderr, "%s: standard output cannot be written\n", program);
     return code == 0 ? unwritten : code;
+}
+
+/// The exit code of `program()`. What it throws (bad input, what this computer refuses, no memory to set up the
+/// command line) becomes one line on standard error and the code `refused`.
+template <class Program> int guarded(const char* name, int refused, const Program& program) {
+    try {
+        return program();
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "%s: out of memory\n", name);
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "%s: %s\n", name, e.what());
+    }
+    return refused;
 }
 
 } // namespace quadrant_page

@@ -3,8 +3,11 @@
 #include "../page/nearest_option.hpp"
 #include "commands.hpp"
 
-int main(int argc, char** argv) {
-    constexpr int bad_input_code = 2;
+namespace {
+
+constexpr int bad_input_code = 2;
+
+int run_program(int argc, char** argv) {
     CLI::App app{"Why does the machine not do what its simulation says?", "quadrant-gap"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     app.require_subcommand(1);
@@ -30,8 +33,11 @@ int main(int argc, char** argv) {
         return quadrant_page::ended(0, "quadrant-gap");
     } catch (const CLI::ParseError& e) {
         return quadrant_page::ended(quadrant_page::said(app, e, argc, argv, bad_input_code), "quadrant-gap");
-    } catch (const std::exception& e) { // bad_input, or what this computer refuses
-        std::fprintf(stderr, "quadrant-gap: %s\n", e.what());
     }
-    return bad_input_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    return quadrant_page::guarded("quadrant-gap", bad_input_code, [&] { return run_program(argc, argv); });
 }

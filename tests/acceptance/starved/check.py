@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""usage: check.py COMPILER SCRATCH PROGRAM...
+
+Commands that write files, with one allocation that fails and with one write that fails: it ends with an exit code of its own (no signal)
+and a message, or did all that was asked for; a file that stood where it writes is as before, or the new one, whole; nothing is left beside.
+"""
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+root = Path(__file__).resolve().parents[3]
+compiler, scratch, programs = sys.argv[1], Path(sys.argv[2]).resolve(), {Path(p).name: Path(p).resolve() for p in sys.argv[3:]}
+shutil.rmtree(scratch, ignore_errors=True)
+scratch.mkdir(parents=True)
+shim = scratch / "fail_nth.so"
+subprocess.run([compiler, "-std=c++20", "-O1", "-shared", "-fPIC", "-o", shim, Path(__file__).with_name("fail_nth.cpp")], check=True)
+
+data, imports = root / "examples/data", root / "examples/import"
+# What each program is asked for: its arguments, and the files that it writes.
+asked = {
+    "quadrant-gap": [
+        (["import", "--map", imports / "halsampler.map.json", imports / "halsampler.txt", "log.csv"], ["log.csv"]),
+        (["simulate", "--machine", data / "machine.json", "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+    ],
+}
+PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
+OLD = "what stood here before\n"
+faults, tried, stopped = [], 0, 0
+
+
+def run(folder, program, arguments, outputs, **more):
+    """Exit code, both outputs, the files: everything that a user would see afterwards."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for name in outputs:
+        (folder / name).write_text(OLD)
+    before = more.pop("before", [])
+    done = subprocess.run([*before, program, *arguments], cwd=folder, capture_output=True, text=True, errors="replace", timeout=300, **more)
+    files = {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.iterdir()}
+    return done, files
+
+
+def places(last):
+    return sorted({max(1, round(last ** (k / (PLACES - 1)))) for k in range(PLACES)})
+
+
+def hold(what, done, files, good, good_files, outputs):
+    global tried, stopped
+    tried += 1
+    old = hashlib.sha256(OLD.encode()).hexdigest()
+    if not 0 <= done.returncode < 128:
+        faults.append(f"{what}: ended by signal {-done.returncode}: {done.stderr.strip()[-200:]}")
+    elif done.returncode == 0 and (files != good_files or done.stdout != good.stdout):
+        faults.append(f"{what}: says all went well, and it did not")
+    elif done.returncode != 0:
+        stopped += 1
+        if not done.stderr.strip() and "standard error" not in what:
+            faults.append(f"{what}: exit code {done.returncode} without a word")
+    for name in outputs:
+        if files.get(name) not in (old, good_files[name]):
+            faults.append(f"{what}: {name} is neither the old file nor the new one")
+    for name in files.keys() - good_files.keys():
+        faults.append(f"{what}: leaves {name} behind")
+
+
+traces = shutil.which("strace") and subprocess.run(["strace", "-o", "/dev/null", "true"], capture_output=True).returncode == 0
+for name, program in programs.items():
+    for arguments, outputs in asked[name]:
+        called = f"{name} {arguments[0]}"
+        folder = scratch / "run"
+        good, good_files = run(folder, program, arguments, outputs)
+        if good.returncode != 0 or any(good_files[o] == hashlib.sha256(OLD.encode()).hexdigest() for o in outputs):
+            faults.append(f"{called}: does not work with all memory: {good.stderr[-300:]}")
+            continue
+        count = scratch / "count"
+        run(folder, program, arguments, outputs, env={**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_COUNT_TO": str(count)})
+        for n in places(int(count.read_text())):
+            more = {**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_FAIL_AT": str(n)}
+            hold(f"{called}, allocation {n} fails", *run(folder, program, arguments, outputs, env=more), good, good_files, outputs)
+        if not traces:
+            continue
+        trace = scratch / "trace"
+        run(folder, program, arguments, outputs, before=["strace", "-f", "-qq", "-o", trace, "-e", "trace=write,writev"])
+        writes = [line for line in trace.read_text().splitlines() if "write" in line]
+        for n in places(len(writes)):
+            to_stderr = " standard error" if f"{' '.join(writes[n - 1].split()[1:2])}".startswith("write(2,") else ""
+            inject = ["strace", "-f", "-qq", "-o", "/dev/null", "-e", "trace=write,writev", "-e", f"inject=write,writev:error=ENOSPC:when={n}"]
+            hold(f"{called}, write {n}{to_stderr} fails", *run(folder, program, arguments, outputs, before=inject), good, good_files, outputs)
+
+for fault in faults:
+    print("FAILED:", fault)
+if not traces:
+    print("SKIPPED: writes that fail (no strace that works here)")
+print(f"{tried} failures injected, {stopped} stopped the program with a code and a message, {len(faults)} faults")
+sys.exit(1 if faults or not stopped else 0)
