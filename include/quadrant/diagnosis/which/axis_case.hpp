@@ -59,8 +59,8 @@ public:
     const candidate& applied() const { return path[claims]; }
     /// Takes another way from the machine file to its causes.
     void follow(std::vector<candidate> way);
-    /// Whether the hold-out log was kept from the fits, so that it tests what was fitted. Not so where its motion
-    /// stands in `log`, too (both_motions()).
+    /// Whether the hold-out log was kept from the fits, so that it tests what was fitted. Not so where its
+    /// motion stands in `log`, too (both_motions()).
     bool tested_apart() const { return second && !(log.drive && !log.drive->begins.empty()); }
     bool coarse() const { return axis.encoder.resolution_m > 0 && count > 1.5 * axis.encoder.resolution_m; }
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause

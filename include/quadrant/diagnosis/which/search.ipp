@@ -18,8 +18,8 @@ QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_des
     candidate start;
     start.fit.plant = given_.fit.plant;
     start.fit.parameters = calibration(axis, record.scale.give());
-    // In the unit of a score that counts in full. Described numbers lie nearer the middle of their tolerance than
-    // its ends: a triangle, of half the variance.
+    // In the unit of a score that counts in full. Described numbers lie nearer the middle of their tolerance
+    // than its ends: a triangle, of half the variance.
     if (record.closed())
         for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(2 * score_temperature);
     if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
