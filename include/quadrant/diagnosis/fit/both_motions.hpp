@@ -44,8 +44,8 @@ inline std::vector<unsigned char> marks_of_both(const std::vector<unsigned char>
 } // namespace detail
 
 /// Two logs of a drive that closes its loops, as read, in one record: for models whose path is judged. There
-/// the second begins anew; the rows between are no motion of the machine and say nothing. None where the logs do
-/// not hold the same columns.
+/// the second begins anew; the rows between are no motion of the machine and say nothing. None where the logs
+/// do not hold the same columns.
 inline std::optional<axis_log> both_motions(const axis_description& axis, const axis_log& first,
                                             const axis_log& second, double period) {
     const auto same = [&](auto column) { return (first.*column).empty() == (second.*column).empty(); };
