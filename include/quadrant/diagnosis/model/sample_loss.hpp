@@ -60,6 +60,14 @@ private:
         double score = 0, applied = 0;
         std::uint64_t lost = 0;
         std::array<double, reach> to_come{};
+        double share = 0; ///< likelihood, that of the best is 1
+    };
+    /// A history with one row more, before it is known to be worth keeping.
+    struct branch {
+        const history* from;
+        double score, expected; ///< of the row that its pulses make
+        std::uint64_t lost;
+        double pulse; ///< of this row's command
     };
 
     lost_commands(std::span<const double> command, std::span<const double> innovation,
@@ -79,13 +87,14 @@ private:
     void follow();
 
     /// One history becomes two where a loss would show.
-    void go_on(const history& h, std::size_t k, std::vector<history>& next) const;
+    void go_on(const history& h, std::size_t k, std::vector<branch>& out) const;
+    history grown(const branch& b, std::size_t k) const;
 
     /// The commands and pulses of the weights, and how many were lost of those whose loss would show.
     void count();
 
     /// The likeliest first. Histories that agree for as long as a pulse lasts are one.
-    static void keep_the_likeliest(std::vector<history>& of);
+    static void keep_the_likeliest(std::vector<branch>& of);
 
     lossy_commands found() const;
 

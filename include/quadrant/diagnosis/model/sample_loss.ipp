@@ -67,54 +67,58 @@ QUADRANT_DIAGNOSIS_DECL bool lost_commands::shows(double step, std::size_t k) co
 
 QUADRANT_DIAGNOSIS_DECL void lost_commands::follow() {
     std::vector<history> now(1), next;
+    std::vector<branch> branches;
     now.front().applied = command_[from_ - 1];
     double before = 0, alone = 0;
     std::fill(gain_.begin(), gain_.end(), 0.0);
     for (std::size_t k = from_; k < end_; ++k) {
-        next.clear();
-        for (const history& h : now) go_on(h, k, next);
         const double seen = left_[k + first_], sigma = std::sqrt(variance_[(k + first_) / window]);
-        for (history& h : next) {
-            double& expected = h.to_come[k % reach];
-            h.score += log_density((seen - expected) / sigma);
-            expected = 0;
-        }
+        branches.clear();
+        for (const history& h : now) go_on(h, k, branches);
+        for (branch& b : branches) b.score += log_density((seen - b.expected) / sigma);
         alone += log_density(seen / sigma);
-        keep_the_likeliest(next);
+        keep_the_likeliest(branches);
+        next.clear();
+        for (const branch& b : branches) next.push_back(grown(b, k));
         now.swap(next);
         const double best = now.front().score;
         double sum = 0;
-        for (const history& h : now) sum += std::exp(h.score - best);
+        for (history& h : now) sum += h.share = std::exp(h.score - best);
         const double ahead = best + std::log(sum) - alone;
         gain_[k] = ahead - before;
         before = ahead;
         for (std::size_t back = k + 1 == end_ ? 0 : lag; back <= lag && k >= from_ + back; ++back) {
             weight_[k - back] = 0;
             for (const history& h : now)
-                if ((h.lost >> back) & 1) weight_[k - back] += std::exp(h.score - best) / sum;
+                if ((h.lost >> back) & 1) weight_[k - back] += h.share / sum;
         }
     }
     count();
 }
 
 QUADRANT_DIAGNOSIS_DECL void lost_commands::go_on(const history& h, std::size_t k,
-                                                  std::vector<history>& next) const {
-    const double step = a_.size * (h.applied - command_[k]);
-    history kept = h;
-    kept.lost <<= 1;
-    kept.applied = command_[k];
-    if (shows(step, k)) {
-        history lost = h;
-        lost.lost = kept.lost | 1;
-        for (std::size_t j = 0; j < shape_.size(); ++j) { // the mean of the losses is gone with the past
-            lost.to_come[(k + j) % reach] += (1 - p_) * step * shape_[j];
-            kept.to_come[(k + j) % reach] -= p_ * step * shape_[j];
-        }
-        lost.score += std::log(p_);
-        kept.score += std::log(1 - p_);
-        next.push_back(lost);
+                                                  std::vector<branch>& out) const {
+    const double step = a_.size * (h.applied - command_[k]), expected = h.to_come[k % reach];
+    const std::uint64_t kept = h.lost << 1;
+    if (!shows(step, k)) {
+        out.push_back({&h, h.score, expected, kept, 0});
+        return;
     }
-    next.push_back(kept);
+    // The mean of the losses is gone with the past.
+    const double gone = (1 - p_) * step, stays = p_ * step;
+    out.push_back({&h, h.score + std::log(p_), expected + gone * shape_[0], kept | 1, gone});
+    out.push_back({&h, h.score + std::log(1 - p_), expected - stays * shape_[0], kept, -stays});
+}
+
+QUADRANT_DIAGNOSIS_DECL lost_commands::history lost_commands::grown(const branch& b, std::size_t k) const {
+    history out = *b.from;
+    out.score = b.score;
+    out.lost = b.lost;
+    if (!(b.lost & 1)) out.applied = command_[k];
+    for (std::size_t j = 0; b.pulse != 0 && j < shape_.size(); ++j)
+        out.to_come[(k + j) % reach] += b.pulse * shape_[j];
+    out.to_come[k % reach] = 0;
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL void lost_commands::count() {
@@ -133,9 +137,9 @@ QUADRANT_DIAGNOSIS_DECL void lost_commands::count() {
     if (a_.learned && told_ > 0) p_ = std::clamp(lost / told_, 1e-4, 0.5);
 }
 
-QUADRANT_DIAGNOSIS_DECL void lost_commands::keep_the_likeliest(std::vector<history>& of) {
+QUADRANT_DIAGNOSIS_DECL void lost_commands::keep_the_likeliest(std::vector<branch>& of) {
     constexpr std::uint64_t lasting = (std::uint64_t(1) << reach) - 1;
-    std::sort(of.begin(), of.end(), [](const history& a, const history& b) { return a.score > b.score; });
+    std::sort(of.begin(), of.end(), [](const branch& a, const branch& b) { return a.score > b.score; });
     std::size_t n = 0;
     for (std::size_t i = 0; i < of.size() && n < abreast; ++i) {
         bool known = false;
