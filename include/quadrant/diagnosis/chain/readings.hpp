@@ -64,14 +64,6 @@ private:
     std::vector<std::size_t> rows_;
 };
 
-/// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it
-/// stands at a known side of any play; and the force, where one is known, is far enough from zero for the side
-/// in contact to be sure.
-
-/// The columns of one freed term.
-
-/// The equations of a model.
-
 } // namespace quadrant::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION

@@ -3,6 +3,9 @@
 
 namespace quadrant::diagnosis::chain {
 
+/// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it
+/// stands at a known side of any play; and the force, where one is known, is far enough from zero for the side
+/// in contact to be sure.
 QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
     const std::size_t n = link_.rows();
     std::vector<unsigned char> out(n, 0);
