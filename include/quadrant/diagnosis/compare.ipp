@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "compare.hpp"
 #include "compare/finding.hpp"
 #include "compare/values.hpp"
 #include "diagnose.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../compare.hpp"
+#include "../effect/rules.hpp"
+#include "comparison_result.hpp"
 #include "fit_of_log.hpp"
 #include "with_causes.hpp"
 

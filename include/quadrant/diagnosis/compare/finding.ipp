@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../which/chance.hpp"
-#include "finding.hpp"
 #include "values.hpp"
 
 #include <cmath>

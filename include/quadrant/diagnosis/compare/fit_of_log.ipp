@@ -5,7 +5,6 @@
 #include "../result/result.hpp"
 #include "../which/pieces.hpp"
 #include "../which/search.hpp"
-#include "fit_of_log.hpp"
 
 namespace quadrant::diagnosis::detail::beside {
 

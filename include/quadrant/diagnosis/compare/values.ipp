@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../write_machine.hpp"
-#include "values.hpp"
 
 #include <cmath>
 #include <iterator>

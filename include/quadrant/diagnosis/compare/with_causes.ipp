@@ -4,7 +4,6 @@
 #include "../effect/effect_list.hpp"
 #include "../effect/effects.hpp"
 #include "../text/bad_input.hpp"
-#include "with_causes.hpp"
 
 namespace quadrant::diagnosis::detail::beside {
 
