@@ -290,6 +290,20 @@ inline bool contradicts_motion(const axis_case& c) {
     return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
 }
 
+/// The same where the command was measured, and what was found makes the axis answer it less than described. A
+/// stiff loop makes a measured command answer every force that the model does not have, and neither that nor the
+/// noise of its sensor moves the axis: a heavy model of a weak motor, which follows no command, predicts the
+/// readings best, and the forces along the motion do not ask for it.
+inline bool answers_too_little(const axis_case& c) {
+    if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
+        c.best().effects.empty() || c.models.over() || c.best().fit.plant.backlash > 0)
+        return false;
+    const auto answer = [](const candidate& m) {
+        return m.fit.plant.force_constant / m.fit.plant.moving_mass();
+    };
+    return answer(c.best()) < (1 - c.limits.least_shrink) * answer(c.path.front());
+}
+
 /// Effects of the caller's own have names of their own.
 inline void add_own_effects(std::vector<std::string>& names, const axis_description& axis) {
     const auto& own = axis.own_effects;
@@ -384,15 +398,17 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
                             "holds says too little in one of them.",
                             axis.name));
-        if (detail::contradicts_motion(*found)) {
+        const bool stands = detail::contradicts_motion(*found);
+        if (stands || detail::answers_too_little(*found)) {
             tell("axis " + axis.name + ": again, along the measured motion");
             auto led = look(held_by::motion);
-            if (led->left_along_motion() < 1 - r.least_shrink) {
+            if (led->left_along_motion() < (1 - r.least_shrink) * (stands ? 1 : found->left_along_motion())) {
                 found = std::move(led);
                 out.notes.push_back(fmt::format(
                     "axis {}: judged by the forces along the measured motion: models corrected by the readings "
-                    "predicted best by standing where the axis moves.",
-                    axis.name));
+                    "predicted best by {}.",
+                    axis.name,
+                    stands ? "standing where the axis moves" : "answering the measured command too little"));
             }
         }
         detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);

@@ -73,7 +73,9 @@ inline constexpr effect cutting_force{
         std::vector<std::vector<parameter>> out;
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
-            if (detail::motion_repeats(s.record.position, period / s.record.period)) continue;
+            if (detail::motion_repeats(s.record.position, period / s.record.period) ||
+                detail::strokes_repeat(s.record, period))
+                continue;
             out.push_back(detail::repeating<detail::cutting_force_harmonics, 4>(
                 "process.fundamental_Hz", "process.force_N", period, duration, most));
             out.push_back(detail::repeating<detail::cutting_force_harmonics, 8>(

@@ -116,6 +116,17 @@ inline bool motion_repeats(std::span<const double> position, double rows) {
     return false;
 }
 
+/// Whether a force of this period would repeat with the strokes, or with one of their first harmonics: what
+/// follows the motion, by whatever law, does so too. A stroke's frequency is that of the sine with this speed and
+/// way.
+inline bool strokes_repeat(const axis_record& r, double period) {
+    double mean = 0, way = 0, speed = 0;
+    for (double x : r.position) mean += x / static_cast<double>(r.position.size());
+    for (double x : r.position) way += (x - mean) * (x - mean);
+    for (double v : r.velocity) speed += v * v;
+    return speed * period * period > way * std::pow(2 * std::numbers::pi / 4, 2);
+}
+
 inline double travel(const screening& s) {
     const auto [low, high] = std::minmax_element(s.record.position.begin(), s.record.position.end());
     return *high - *low;
