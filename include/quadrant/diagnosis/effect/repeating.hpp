@@ -117,14 +117,15 @@ inline bool motion_repeats(std::span<const double> position, double rows) {
 }
 
 /// Whether a force of this period would repeat with the strokes, or with one of their first harmonics: what
-/// follows the motion, by whatever law, does so too. A stroke's frequency is that of the sine with this speed and
-/// way.
+/// follows the motion, by whatever law, does so too. A stroke's frequency is that of the triangle with this way
+/// and this mean speed.
 inline bool strokes_repeat(const axis_record& r, double period) {
-    double mean = 0, way = 0, speed = 0;
-    for (double x : r.position) mean += x / static_cast<double>(r.position.size());
-    for (double x : r.position) way += (x - mean) * (x - mean);
-    for (double v : r.velocity) speed += v * v;
-    return speed * period * period > way * std::pow(2 * std::numbers::pi / 4, 2);
+    const auto rows = static_cast<double>(r.position.size());
+    double mean = 0, square = 0, speed = 0;
+    for (double x : r.position) mean += x / rows;
+    for (double x : r.position) square += (x - mean) * (x - mean) / rows;
+    for (double v : r.velocity) speed += std::abs(v) / rows;
+    return speed * period > std::sqrt(3 * square);
 }
 
 inline double travel(const screening& s) {
