@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 using namespace quadrant::diagnosis;
@@ -225,6 +226,42 @@ TEST_CASE("read_log: a wrong reading and a repeated one are left out, an impact 
     CHECK(count(logged([&](int k) { return k < 300 ? 1e-4 * k : 0.03 - 8e-5 * (k - 300); })) <= 1); // a bounce
     CHECK(count(logged([](int k) { return 1e-4 * std::round(20 * std::sin(0.01 * k)); })) == 0); // coarse count
     CHECK(count(logged([](int k) { return 1e-3 * std::max(0.0, std::sin(0.02 * k)); })) == 0); // sticks at rest
+}
+
+TEST_CASE(
+    "read_log: an angle that starts again within one turn goes on, a glitch and a stroke over a turn do not") {
+    constexpr double turn = 2 * std::numbers::pi;
+    const auto angle = [](int k) { return 7 * std::sin(0.02 * k) + 20; };
+    const auto logged = [&](auto position, auto reference) {
+        std::string text = "t_s,q_ref_rad,q_pos_rad,q_cmd_Nm\n";
+        for (int k = 0; k < 600; ++k)
+            text += fmt::format("{:.4f},{:.9f},{:.9f},0\n", 5e-4 * k, reference(k), position(k));
+        return read(text);
+    };
+    for (const double from : {0.0, -turn / 2}) {
+        const auto within = [&](int k) { return angle(k) - turn * std::floor((angle(k) - from) / turn); };
+        const auto log = logged(within, angle);
+        const double whole = log.axes[0].position[0] - angle(0);
+        CHECK(std::abs(whole / turn - std::round(whole / turn)) < 1e-8);
+        for (int k = 0; k < 600; ++k) {
+            CHECK(std::abs(log.axes[0].position[static_cast<std::size_t>(k)] - angle(k) - whole) < 1e-8);
+            CHECK(std::abs(log.axes[0].reference[static_cast<std::size_t>(k)] -
+                           log.axes[0].position[static_cast<std::size_t>(k)]) < 1e-8);
+        }
+        REQUIRE(log.notes.size() == 1);
+        CHECK(log.notes[0].find("starts again") != std::string::npos);
+    }
+    const auto as_it_stands = [&](auto position) {
+        const auto log = logged(position, position);
+        for (const auto& note : log.notes) CHECK(note.find("starts again") == std::string::npos);
+        for (int k = 0; k < 600; k += 7)
+            if (k != 301)
+                CHECK(std::abs(log.axes[0].position[static_cast<std::size_t>(k)] - position(k)) < 1e-6);
+    };
+    as_it_stands(angle);
+    as_it_stands([](int k) { return std::sin(0.02 * k) + (k == 301 ? 5 : 0); }); // a wrong reading
+    as_it_stands([](int k) { return k < 300 ? 0.01 * k : 0.01 * k - 4; });       // a jump inside the turn
+    as_it_stands([](int k) { return 3.1 * std::sin(0.9 * k); }); // too fast to tell a step from a jump
 }
 
 TEST_CASE("read_log: without a position reference the motion is that of its speed, or of the axis") {

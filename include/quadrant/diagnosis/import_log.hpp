@@ -3,6 +3,7 @@
 #include "import/foreign_table.hpp"
 #include "import/own_header.hpp"
 #include "import/read_map.hpp"
+#include "log/angle_wraps.hpp"
 #include "log/even_rows.hpp"
 #include "read_log.hpp"
 
@@ -44,6 +45,13 @@ public:
             tables_.push_back(foreign_table_reader(map_, i, files_[i].text, files_[i].name).take());
             for (const auto& note : tables_.back().notes) tell(i, note);
         }
+        for (std::size_t i = 0; i < tables_.size(); ++i)
+            for (foreign_column& c : tables_[i].columns) {
+                const bool angle = c.name.ends_with("_pos_rad") || c.name.ends_with("_ref_rad");
+                if (const std::size_t times = angle ? unwrap(c.values) : 0; times > 0)
+                    tell(i, fmt::format("{} starts again {} times within one turn: it goes on here", c.name,
+                                        times));
+            }
         const double zero = tables_.front().t.front();
         for (auto& table : tables_)
             for (double& t : table.t) t -= zero;

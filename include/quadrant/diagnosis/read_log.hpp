@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "log/angle_wraps.hpp"
 #include "log/log.hpp"
 #include "log/log_header.hpp"
 #include "log/log_rows.hpp"
@@ -150,6 +151,17 @@ private:
         auto& position = header_.columns[*at.position];
         log_column* command = at.command ? &header_.columns[*at.command] : nullptr;
         log_column* reference = at.reference ? &header_.columns[*at.reference] : nullptr;
+        const auto tell = [&](const std::string& text) {
+            out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
+        };
+        if (*at.kind == axis_kind::rotary) {
+            const std::size_t times = unwrap(position.values),
+                              asked = reference ? unwrap(reference->values) : 0;
+            if (times + asked > 0 && reference) turn_to(reference->values, position.values);
+            if (times > 0)
+                tell(fmt::format(": the position starts again {} times within one turn; it goes on here",
+                                 times));
+        }
         const bool still = is_constant(position.values);
         if (still && header_.axes.size() == 1) {
             const bool asked = reference && !is_constant(reference->values);
@@ -159,9 +171,6 @@ private:
                                                     " does: is the drive on, the brake open, the encoder read?"
                                               : ""));
         }
-        const auto tell = [&](const std::string& text) {
-            out.notes.push_back(fmt::format("{}: axis {}{}.", out.file, name, text));
-        };
         if (still) tell(" never moves: nothing can be said of it");
         const double step = position.step.step();
         const auto found = rows.check(position.values, observed_count(position.values, step));
@@ -199,6 +208,7 @@ private:
             axis.duty_step = header_.columns[*at.duty].step.step();
         }
         if (at.motor) {
+            if (at.motor_unit == "rad") unwrap(header_.columns[*at.motor].values);
             axis.motor = rows.smooth(header_.columns[*at.motor].values);
             axis.motor_unit = at.motor_unit;
             axis.motor_step = header_.columns[*at.motor].step.step();
