@@ -291,8 +291,8 @@ inline bool contradicts_motion(const axis_case& c) {
 }
 
 /// The same where the command was measured, and what was found makes the axis answer it less than described. A
-/// stiff loop makes a measured command answer every force that the model does not have, and neither that nor the
-/// noise of its sensor moves the axis: a heavy model of a weak motor, which follows no command, predicts the
+/// stiff loop makes a measured command answer every force that the model does not have, and neither that nor
+/// the noise of its sensor moves the axis: a heavy model of a weak motor follows no command, predicts the
 /// readings best, and the forces along the motion do not ask for it.
 inline bool answers_too_little(const axis_case& c) {
     if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||

@@ -75,6 +75,10 @@ template <class Real> void closed_group(const closed_input& in) {
         axis::side_by_side(
             in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; }),
         side_by_side<Real>(in), Real(h));
+    const closed_input::plant& first = in.plant_of[0];
+    const bool alike = std::all_of(in.plant_of, in.plant_of + in.plants, [&](const closed_input::plant& p) {
+        return p.set_point == first.set_point && p.its_velocity == first.its_velocity;
+    });
     const auto begin = [&](std::size_t k, double velocity) {
         plant.begin(Real(in.position[k]), Real(velocity),
                     gathered([&](const closed_input::plant& p) { return p.set_point[k * in.steps]; }));
@@ -92,9 +96,12 @@ template <class Real> void closed_group(const closed_input& in) {
         now.time = Real(static_cast<double>(k) * in.period);
         if (in.other_acceleration) now.other_acceleration = Real(in.other_acceleration[k]);
         for (std::size_t j = k * in.steps; j < (k + 1) * in.steps; ++j) {
-            plant(gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
-                  gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
-                  in.off && in.off[k], now);
+            if (alike)
+                plant(Real(first.set_point[j]), Real(first.its_velocity[j]), in.off && in.off[k], now);
+            else
+                plant(gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
+                      gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
+                      in.off && in.off[k], now);
             now.time = now.time + Real(h);
         }
     }

@@ -106,11 +106,6 @@ private:
     /// Innovations of a free mass on which these forces act, and the accelerations that say the same.
     void pass_led(std::span<const plant_model> plants, std::span<const double> u,
                   std::span<std::vector<double>> innovation, std::vector<double>* acceleration) const;
-    /// What each drive follows in each step of each row. Plants with one drive share it.
-    struct followed {
-        std::vector<double> set_point, its_velocity;
-    };
-    followed set_points_of(const drive_model& d, std::size_t steps) const;
     /// The logged path beside that of each plant with its drive's loops closed on it; accelerations as where
     /// the readings correct it.
     void pass_closed(std::span<const plant_model> plants, std::span<const double> u,

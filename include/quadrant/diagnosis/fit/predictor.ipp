@@ -153,23 +153,6 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_led(std::span<const plant_model> pl
     }
 }
 
-QUADRANT_DIAGNOSIS_DECL predictor::followed predictor::set_points_of(const drive_model& d,
-                                                                     std::size_t steps) const {
-    followed out;
-    set_point_clock clock(d, drive->set_point, period);
-    const double scale = drive->in_volts ? d.velocity_per_V : 1;
-    const auto all = position.size() * steps;
-    out.set_point.reserve(all);
-    out.its_velocity.reserve(all);
-    for (std::size_t j = 0; j < all; ++j) {
-        const double begin = static_cast<double>(j) / static_cast<double>(steps);
-        const auto r = clock.between(begin, begin + 1 / static_cast<double>(steps));
-        out.set_point.push_back(scale * r.value);
-        out.its_velocity.push_back(r.velocity / period);
-    }
-    return out;
-}
-
 QUADRANT_DIAGNOSIS_DECL void predictor::pass_closed(std::span<const plant_model> plants,
                                                     std::span<const double> u,
                                                     std::span<std::vector<double>> innovation,
@@ -182,15 +165,21 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_closed(std::span<const plant_model>
     std::size_t steps = 1;
     for (const plant_model& p : plants)
         steps = std::max(steps, static_cast<std::size_t>(steps_of_drive(p, period)));
-    std::array<followed, abreast> follows;
+    std::array<std::shared_ptr<const followed_set_points>, abreast> follows;
+    std::array<std::vector<double>, abreast> scaled; // of velocity drives in volts
     std::array<closed_input::plant, abreast> each;
     std::array<double*, abreast> e{};
     for (std::size_t i = 0; i < plants.size(); ++i) {
-        std::size_t same = 0;
-        while (same < i && !(plants[same].drive == plants[i].drive)) ++same;
-        if (same == i) follows[i] = set_points_of(plants[i].drive, steps);
-        each[i] = {axis_parameters(plants[i]), loops_of(plants[i].drive, drive->constant),
-                   follows[same].set_point.data(), follows[same].its_velocity.data()};
+        const drive_model& d = plants[i].drive;
+        follows[i] = drive->follows(d, steps);
+        const double* set_point = follows[i]->value.data();
+        if (drive->in_volts) {
+            scaled[i] = follows[i]->value;
+            for (double& r : scaled[i]) r *= d.velocity_per_V;
+            set_point = scaled[i].data();
+        }
+        each[i] = {axis_parameters(plants[i]), loops_of(d, drive->constant), set_point,
+                   follows[i]->velocity.data()};
         e[i] = innovation[i].data();
     }
     passes().closed({.period = period,

@@ -8,9 +8,9 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// How often an angle starts again, as a counter of one turn does, and makes it go on instead [rad]. An angle that
-/// starts again never leaves one turn; it jumps from one end of that turn to the other; and no other step is
-/// longer than an eighth of a turn, so that none is taken for a jump. Anything else is left as it is, 0.
+/// How often an angle starts again, as a counter of one turn does, and makes it go on instead [rad]. Such an
+/// angle never leaves one turn; it jumps from one end of that turn to the other; and no other step is longer
+/// than an eighth of a turn, so that none is taken for a jump. Anything else is left as it is, 0.
 inline std::size_t unwrap(std::vector<double>& angle) {
     constexpr double turn = 2 * std::numbers::pi;
     if (angle.size() < 2) return 0;

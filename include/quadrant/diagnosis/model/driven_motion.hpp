@@ -5,7 +5,11 @@
 #include "drive_model.hpp"
 
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace quadrant::diagnosis {
 
@@ -61,6 +65,71 @@ private:
     long next_ = 0; ///< the set-point that arrives next
 };
 
+/// What a drive's loops follow in each step of each row, as many steps in every row.
+struct followed_set_points {
+    std::vector<double> value;    ///< of the set-point, mean over the step
+    std::vector<double> velocity; ///< of its velocity [a second]
+};
+
+/// The set-points that drives of one timing follow, made once: most models of a search differ in anything but
+/// the drive's clock. Threads may ask side by side. A copy begins empty.
+class set_point_memory {
+public:
+    set_point_memory() = default;
+    set_point_memory(const set_point_memory&) {}
+    set_point_memory& operator=(const set_point_memory&) {
+        const std::lock_guard lock(mutex_);
+        kept_.clear();
+        return *this;
+    }
+
+    /// `set_point`: one a row, the same in every call.
+    std::shared_ptr<const followed_set_points> of(const drive_model& d, std::size_t steps,
+                                                  std::span<const double> set_point, double period) const {
+        const timing asked{d.between, d.set_point_period, d.delay + d.reading_age, d.loss, d.clock_slip, steps};
+        {
+            const std::lock_guard lock(mutex_);
+            for (const auto& [of, points] : kept_)
+                if (of == asked) return points;
+        }
+        auto made = std::make_shared<const followed_set_points>(follow(d, steps, set_point, period));
+        const std::lock_guard lock(mutex_);
+        if (kept_.size() < most)
+            kept_.emplace_back(asked, made);
+        else
+            kept_[next_++ % most] = {asked, made};
+        return made;
+    }
+
+private:
+    static constexpr std::size_t most = 8; // the models of one pass
+    struct timing {
+        interpolation between;
+        double set_point_period, delay, loss, clock_slip;
+        std::size_t steps;
+        bool operator==(const timing&) const = default;
+    };
+    static followed_set_points follow(const drive_model& d, std::size_t steps,
+                                      std::span<const double> set_point, double period) {
+        followed_set_points out;
+        set_point_clock clock(d, set_point, period);
+        const std::size_t all = set_point.size() * steps;
+        out.value.reserve(all);
+        out.velocity.reserve(all);
+        for (std::size_t j = 0; j < all; ++j) {
+            const double begin = static_cast<double>(j) / static_cast<double>(steps);
+            const auto r = clock.between(begin, begin + 1 / static_cast<double>(steps));
+            out.value.push_back(r.value);
+            out.velocity.push_back(r.velocity / period);
+        }
+        return out;
+    }
+
+    mutable std::mutex mutex_{};
+    mutable std::vector<std::pair<timing, std::shared_ptr<const followed_set_points>>> kept_{};
+    mutable std::size_t next_ = 0;
+};
+
 /// What a drive with loops of its own received, and the motion that it saw: as logged. Its law is replayed on
 /// this, so that nothing is judged through a loop that hides what is wrong.
 struct driven_motion {
@@ -70,7 +139,8 @@ struct driven_motion {
     std::vector<double> set_point;          ///< command of a velocity drive, else position; one a row
     bool in_volts = false;                  ///< a velocity drive's command
     std::vector<double> position, velocity; ///< of the motor [m], [m/s]
-    std::vector<unsigned char> off;         ///< rows in which the drive gives nothing; empty: none
+    std::vector<double> position_in_parts, velocity_in_parts; ///< in the middle of each part of each row
+    std::vector<unsigned char> off; ///< rows in which the drive gives nothing; empty: none
     /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing
     /// was.
     std::vector<double> measured;
@@ -82,6 +152,7 @@ struct driven_motion {
         double velocity;
     };
     std::vector<start> begins{};
+    set_point_memory memory{}; ///< of set_point: not asked before that is whole
     double to_position =
         0; ///< scales what the drive gives otherwise than measured to the noise of the reading [m]
 
@@ -94,9 +165,16 @@ struct driven_motion {
         for (std::size_t k = 3; k + 3 < x.size(); ++k)
             velocity[k] = (45 * (x[k + 1] - x[k - 1]) - 9 * (x[k + 2] - x[k - 2]) + (x[k + 3] - x[k - 3])) /
                           (60 * period);
+        position_in_parts = in_the_middle_of_parts(position);
+        velocity_in_parts = in_the_middle_of_parts(velocity);
     }
     bool is_off(std::size_t k) const { return !off.empty() && off[k]; }
     bool tapped() const { return !measured.empty(); }
+
+    /// What the loops of this drive follow in each step of each row, in the unit of `set_point`.
+    std::shared_ptr<const followed_set_points> follows(const drive_model& d, std::size_t steps) const {
+        return memory.of(d, steps, set_point, period);
+    }
 
     /// What the law of this drive gives in each part of each row: duty of a position servo, else force [N].
     std::vector<double> in_parts(const drive_model& d) const {
@@ -192,16 +270,20 @@ private:
     }
     /// use(row, entry, set-point, its velocity [a second], position, velocity).
     template <class Use> void each_part(const drive_model& d, Use use) const {
-        set_point_clock clock(d, set_point, period);
+        const auto points = follows(d, parts);
         const std::size_t n = position.size();
         for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t i = 0; i < parts; ++i) {
-                const double begin = static_cast<double>(k) + static_cast<double>(i) / parts;
-                const auto r = clock.between(begin, begin + 1.0 / parts);
-                const double p = (static_cast<double>(i) + 0.5) / parts;
-                use(k, k * parts + i, r.value, r.velocity / period, through_four(position, k, p),
-                    through_four(velocity, k, p));
-            }
+            for (std::size_t at = k * parts; at < (k + 1) * parts; ++at)
+                use(k, at, points->value[at], points->velocity[at], position_in_parts[at],
+                    velocity_in_parts[at]);
+    }
+    static std::vector<double> in_the_middle_of_parts(const std::vector<double>& x) {
+        std::vector<double> out;
+        out.reserve(x.size() * parts);
+        for (std::size_t k = 0; k < x.size(); ++k)
+            for (std::size_t i = 0; i < parts; ++i)
+                out.push_back(through_four(x, k, (static_cast<double>(i) + 0.5) / parts));
+        return out;
     }
     /// The cubic through a row, the one before and the two behind it, at the share p of the way to the next
     /// row.
