@@ -106,19 +106,19 @@ run_ctest() { # PRESET CTEST-ARGUMENTS...
 release() { # GCC: every test, what must not compile with both compilers, the consumers, the page in a browser
     build_preset release all && run_ctest release
 }
-sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables
-    build_preset sanitize unit_tests && run_ctest sanitize -R '^unit\.'
+sanitize() { # Clang, address and undefined-behaviour sanitizers: the test executables, and the fuzzer beside them
+    build_preset sanitize unit_tests fuzz && run_ctest sanitize -R '^unit\.'
 }
 thread() { # Clang, thread sanitizer: diagnoses side by side, each on all cores
     build_preset thread test_threads && run_ctest thread -R '^unit\.threads$'
 }
 fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the reader
-    build_preset fuzz fuzz || return
-    set -- "$build"/fuzz/tests/fuzz_*
+    build_preset sanitize fuzz || return
+    set -- "$build"/sanitize/tests/fuzz_*
     [ -x "$1" ] || { left_out "fuzz: no fuzzers"; return; }
     for fuzzer; do
         name=${fuzzer##*/}
-        found=$build/fuzz/found/$name # grows from run to run
+        found=$build/found/$name # grows from run to run
         mkdir -p "$found"
         { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
         { printf '\001' && cat examples/data/machine.json; } >"$found/machine"

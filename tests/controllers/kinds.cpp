@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 // Every kind of controller of machine files: reading, writing, replay, the closed loop, the key that differs.
+#include "shared.hpp"
 #include "workshop.hpp"
 
 #include <quadrant/diagnosis/write_machine.hpp>
 
 #include <cstdio>
-#include <cstdlib>
 #include <doctest/doctest.h>
 
 using namespace controllers_workshop;
-
-namespace {
-
-bool all_tests() {
-    const char* const wanted = std::getenv("QUADRANT_TESTS");
-    return wanted && std::string_view(wanted) == "all";
-}
-
-} // namespace
 
 TEST_CASE("controller kinds: every kind has an axis in the machine of these tests, with all its keys") {
     CHECK(machine().axes.size() == controller_kinds().size());

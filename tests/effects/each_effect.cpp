@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "diagnosis/claims.hpp"
+#include "shared.hpp"
 
 #include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/which/search.hpp>
@@ -167,6 +168,7 @@ std::vector<double> shaken(double seconds) {
 }
 TEST_CASE("diagnose: lost commands, few and many, with how many were lost") {
     for (const double p : {0.02, 0.1}) {
+        if (p > 0.02 && !all_tests()) continue;
         machine real;
         const auto file = described(real);
         real.loss = p;
