@@ -33,7 +33,7 @@ part() { # NAME HEADER...
     for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
 }
 part diagnose diagnose next/next_experiment
-part compare compare
+part compare compare compare/finding compare/fit_of_log compare/values compare/with_causes
 part apply apply read_diagnosis read_machine text/json_text effect/effect_list
 part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/record fit/drive_noise model/linear_past model/sample_loss
 part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated

@@ -18,14 +18,10 @@ struct law_figures {
     bool settles = false; ///< both steps die out in the time of the test: a loop that is not stable does not
 };
 
-/// All of it at once, for any linear law in the port: frequency response, margins, bandwidth, steps.
-/// At half the sampling rate L is real: that counts as a crossing of the phase when it is negative there.
-/// Source: [Yeung2006] section 3 (analysis of the axis control), [Franklin1998].
-/// Throws for a band that is none; a law that is not stable is analysed and told by `settles`.
-template <class Law>
-law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
-                     const step_options<typename Law::output>& steps = {}) {
-    const frequency nyquist = 0.5 * once_per(loop.axis.period);
+/// What frequency says of a loop with open(f), sensitivity(f) and disturbance(f), such as `law_loop` and
+/// `impulse_test`, up to half its rate; the steps stay empty. At half the sampling rate L is real: that counts as
+/// a crossing of the phase when it is negative there. Source: [Franklin1998]. Throws for a band that is none.
+template <class Loop> law_figures frequency_figures(const Loop& loop, frequency from, frequency nyquist) {
     const band searched{from, 0.999 * nyquist};
     const auto open = [&](frequency f) { return loop.open(f); };
     law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};
@@ -40,6 +36,16 @@ law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
     y.sensitivity_peak = 1 / y.margins.modulus.value;
     y.bandwidth = sensitivity_bandwidth([&](frequency f) { return loop.sensitivity(f); }, searched);
     y.softest = least([&](frequency f) { return 1.0 / loop.disturbance(f); }, searched);
+    return y;
+}
+
+/// All of it at once, for any linear law in the port: frequency response, margins, bandwidth, steps.
+/// Source: [Yeung2006] section 3 (analysis of the axis control), [Franklin1998].
+/// Throws for a band that is none; a law that is not stable is analysed and told by `settles`.
+template <class Law>
+law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
+                     const step_options<typename Law::output>& steps = {}) {
+    law_figures y = frequency_figures(loop, from, 0.5 * once_per(loop.axis.period));
     y.reference = reference_step(loop.law, loop.axis, quantity<si::length>::from_value(1e-3), steps);
     y.disturbance =
         disturbance_step(loop.law, loop.axis, quantity_of<typename Law::output>::from_value(1), steps);

@@ -67,6 +67,19 @@ inline void find_settling(step_figures& y, double aim, double within, double T) 
 }
 } // namespace detail
 
+/// Reads the figures of a reference step off its response.
+inline void read_reference_step(step_figures& y, quantity<si::length> size, duration period) {
+    std::optional<std::size_t> low, high;
+    for (std::size_t k = 0; k < y.response.size(); ++k) {
+        if (y.response[k] > y.peak) y.peak = y.response[k], y.peak_time = double(k) * period;
+        if (!low && y.response[k] >= 0.1 * size) low = k;
+        if (!high && y.response[k] >= 0.9 * size) high = k;
+    }
+    if (low && high) y.rise = double(*high - *low) * period;
+    y.overshoot = std::max(0.0, y.peak / size - 1);
+    detail::find_settling(y, size.value(), 0.02 * size.value(), period.value());
+}
+
 /// The reference jumps by `size` (velocity and acceleration stay 0).
 /// Throws "step_test.<field> = ...: must ...".
 template <axis_law Law>
@@ -74,16 +87,7 @@ step_figures reference_step(const Law& law, const sampled_axis<typename Law::out
                             quantity<si::length> size, const step_options<typename Law::output>& with = {}) {
     require_positive("step_test.size", size);
     step_figures y = detail::stepped(law, axis, size, {}, with);
-    const double T = axis.period.value();
-    std::optional<std::size_t> low, high;
-    for (std::size_t k = 0; k < y.response.size(); ++k) {
-        if (y.response[k] > y.peak) y.peak = y.response[k], y.peak_time = double(k) * axis.period;
-        if (!low && y.response[k] >= 0.1 * size) low = k;
-        if (!high && y.response[k] >= 0.9 * size) high = k;
-    }
-    if (low && high) y.rise = double(*high - *low) * axis.period;
-    y.overshoot = std::max(0.0, y.peak / size - 1);
-    detail::find_settling(y, size.value(), 0.02 * size.value(), T);
+    read_reference_step(y, size, axis.period);
     return y;
 }
 
