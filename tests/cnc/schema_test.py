@@ -31,6 +31,12 @@ def expect(ok, message):
 
 
 schema, figures = validator("cnc.schema.json"), validator("cnc_run.schema.json")
+analysis = validator("cnc_analysis.schema.json")
+for name in ("mill", "milling_table"):
+    ran = subprocess.run([program, "analyse", "--cnc", root / f"examples/programs/quadrant_cnc/{name}.json", "--json"], stdout=subprocess.PIPE, check=True)
+    for fault in analysis.iter_errors(json.loads(ran.stdout)):
+        faults.append(f"analysis of {name}: {fault.message[:200]}")
+    checked += 1
 keys = (root / "examples/programs/quadrant_cnc/cnc_keys.hpp").read_text(encoding="utf-8")
 
 

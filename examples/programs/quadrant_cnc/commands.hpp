@@ -13,4 +13,13 @@ struct run_options {
 };
 void run(const run_options& o);
 
+struct analyse_options {
+    std::string cnc, report; ///< files; empty: none
+    std::string json;        ///< the same; "-": standard output
+    std::string axis;        ///< empty: all
+    double step_m = 0;       ///< 0: what takes half of the command's limit
+    bool quiet = false;
+};
+void analyse(const analyse_options& o);
+
 } // namespace quadrant_cnc

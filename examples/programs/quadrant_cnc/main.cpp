@@ -31,17 +31,40 @@ void add_run(CLI::App& app) {
     });
 }
 
+void add_analyse(CLI::App& app) {
+    const auto o = std::make_shared<quadrant_cnc::analyse_options>();
+    auto* command =
+        app.add_subcommand("analyse", "margins, bandwidth, stiffness and step response of each axis");
+    command->add_option("--cnc", o->cnc, "the machine (JSON, docs/cnc.md)")->required();
+    command->add_option("--axis", o->axis, "this one only");
+    command
+        ->add_option("--step", o->step_m,
+                     "of the reference, in metres; without: what takes half of the command's limit")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--report", o->report, "write the report (one HTML file, opens without a network)");
+    auto* json = command->add_option("--json", o->json,
+                                     "write the figures and responses (JSON); without a file name: print them");
+    json->expected(0, 1);
+    command->add_flag("-q,--quiet", o->quiet, "no text, only the files");
+    command->set_version_flag("--version", QUADRANT_VERSION);
+    command->callback([o, json] {
+        if (json->count() > 0 && o->json.empty()) o->json = "-";
+        quadrant_cnc::analyse(*o);
+    });
+}
+
 constexpr int bad_input_code = 2;
 
 int run_program(int argc, char** argv) {
-    CLI::App app{
-        "A virtual CNC: a part program driven through simulated axes, with its tracking and contour errors.",
-        "quadrant-cnc"};
+    CLI::App app{"A virtual CNC: its axes analysed, and a part program driven through them, with tracking and "
+                 "contour errors.",
+                 "quadrant-cnc"};
     app.set_version_flag("--version", QUADRANT_VERSION);
     app.require_subcommand(1);
     app.footer("Exit code: 0 when what was asked for is written, 1 when standard output fails, 2 on bad "
                "input (one line says where).");
     add_run(app);
+    add_analyse(app);
     try {
         app.parse(argc, argv);
         return quadrant_page::ended(0, "quadrant-cnc");

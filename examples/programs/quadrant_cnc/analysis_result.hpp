@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "cnc_file.hpp"
+
+#include <quadrant/analysis/law_figures.hpp>
+
+#include <string>
+#include <vector>
+
+/// What an analysis says of the axes of a machine; SI.
+namespace quadrant_cnc {
+
+/// One line of the frequency responses.
+struct response_line {
+    double frequency_Hz = 0;
+    quadrant::analysis::complex open, sensitivity, tracking; ///< tracking: 0 where it is not known
+};
+
+/// The answer to a step of the reference: of the axis as it is, and of its linear part.
+struct step_answer {
+    double size_m = 0;
+    quadrant::analysis::step_figures as_it_is, linear;
+    std::size_t limited = 0; ///< periods in which a limit held
+    bool differs() const;    ///< whether what is not linear can be seen
+};
+
+struct axis_analysis {
+    std::string name, law;
+    double period = 0;
+    bool stable = false, linear = false;
+    /// Empty where there is no frequency response: the loop is not stable, or its law is not linear.
+    std::vector<response_line> lines{};
+    quadrant::analysis::law_figures figures{}; ///< of the open loop
+    std::optional<double> bandwidth_Hz;        ///< where tracking falls through -3 dB
+    double tracking_peak = 0, tracking_peak_Hz = 0;
+    double stiffness_N_per_m = 0, stiffness_Hz = 0; ///< dynamic, at its least
+    step_answer step{};
+};
+
+struct machine_analysis {
+    std::string cnc_file;
+    double period = 0;
+    std::vector<axis_analysis> axes;
+    std::vector<std::string> notes;
+};
+
+} // namespace quadrant_cnc

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""The page of quadrant-cnc analyse in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
+analysis_page.py PROGRAM ROOT SCRATCH     exit code 77: no browser"""
+import os
+import pathlib
+import subprocess
+import sys
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    print("no python3-selenium: skipped")
+    sys.exit(77)
+if not os.path.exists("/usr/bin/chromium") or not os.path.exists("/usr/bin/chromedriver"):
+    print("no chromium: skipped")
+    sys.exit(77)
+
+program, root, scratch = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+scratch.mkdir(parents=True, exist_ok=True)
+page = (scratch / "analysis.html").resolve()
+subprocess.run([program, "analyse", "--quiet", "--cnc", root / "examples/programs/quadrant_cnc/mill.json", "--report", page], check=True)
+options = Options()
+for argument in ("--headless=new", "--no-sandbox", "--disable-gpu"):
+    options.add_argument(argument)
+options.binary_location = "/usr/bin/chromium"
+options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+browser = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
+bad = []
+try:
+    for width in (1280, 390):
+        for dark in (False, True):
+            browser.set_window_size(width, 900)
+            browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                    {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
+            browser.get(page.as_uri())
+            shown = browser.execute_script("""
+                const drawn = [...document.querySelectorAll('svg.plane')];
+                const outside = drawn.flatMap(s => [...s.querySelectorAll('text')].filter(t => {
+                    const a = t.getBoundingClientRect(), b = s.getBoundingClientRect();
+                    return a.left < b.left - 1 || a.right > b.right + 1 || a.top < b.top - 1 || a.bottom > b.bottom + 1; }));
+                return {drawn: drawn.length, lines: drawn.every(s => s.querySelector('polyline.open, polyline.tracking')),
+                        small: drawn.filter(s => s.getBoundingClientRect().width < 200).length, outside: outside.map(t => t.textContent),
+                        wide: document.documentElement.scrollWidth > innerWidth, axes: document.querySelectorAll('section[data-axis-name]').length,
+                        rows: document.querySelectorAll('table.figures tr').length,
+                        names: drawn.every(s => s.getAttribute('aria-label')), words: document.body.innerText};""")
+            what = f"{width} px, {'dark' if dark else 'light'}"
+            good = (shown["axes"] == 3 and shown["drawn"] == 15 and shown["lines"] and shown["names"] and shown["small"] == 0
+                    and not shown["wide"] and not shown["outside"] and shown["rows"] >= 3 * 8
+                    and "phase margin" in shown["words"] and "nan" not in shown["words"])
+            print("ok  " if good else "BAD ", what, "" if good else {k: v for k, v in shown.items() if k != "words"})
+            bad += [] if good else [what]
+            if not dark:
+                browser.save_screenshot(str(scratch / f"analysis_{width}.png"))
+    said = browser.get_log("browser")
+    asked = [e for e in browser.get_log("performance") if "Network.requestWillBeSent" in e["message"] and "file://" not in e["message"]]
+    if said or asked:
+        bad.append("console or network")
+        print("BAD  console or network:", said, asked[:2])
+finally:
+    browser.quit()
+sys.exit(1 if bad else 0)
