@@ -19,8 +19,9 @@ struct law_figures {
 };
 
 /// What frequency says of a loop with open(f), sensitivity(f) and disturbance(f), such as `law_loop` and
-/// `impulse_test`, up to half its rate; the steps stay empty. At half the sampling rate L is real: that counts as
-/// a crossing of the phase when it is negative there. Source: [Franklin1998]. Throws for a band that is none.
+/// `impulse_test`, up to half its rate; the steps stay empty. At half the sampling rate L is real: that counts
+/// as a crossing of the phase when it is negative there.
+/// Source: [Franklin1998]. Throws for a band that is none.
 template <class Loop> law_figures frequency_figures(const Loop& loop, frequency from, frequency nyquist) {
     const band searched{from, 0.999 * nyquist};
     const auto open = [&](frequency f) { return loop.open(f); };
