@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// A graph of a few lines as SVG, drawn here, so that its page needs no script and no other program. Colours are
-/// those of the page's classes.
+/// A graph of a few lines as SVG, drawn here, so that its page needs no script and no other program. Colours
+/// are those of the page's classes.
 namespace quadrant_page {
 
 /// One direction of a graph.

@@ -15,8 +15,8 @@ struct loop_sample {
     double due = 0;      ///< the reference of this period [m]
 };
 
-/// An axis with its controller that runs one period at a time: at rest after rest(); step(asked, push) with what
-/// is added to the command. lead(): periods that the reference has to be ahead.
+/// An axis with its controller that runs one period at a time: at rest after rest(); step(asked, push) with
+/// what is added to the command. lead(): periods that the reference has to be ahead.
 template <class L>
 concept running_loop = requires(L& loop, const axis_motion<>& asked, double push) {
     loop.rest();
