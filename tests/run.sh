@@ -157,6 +157,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
     libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
+[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page will be skipped"
 

@@ -40,6 +40,7 @@ void add_apply(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_forecast(CLI::App& app);
 void add_compensate(CLI::App& app);
+void add_export(CLI::App& app);
 void add_init(CLI::App& app);
 void add_import(CLI::App& app);
 void add_trial(CLI::App& app);

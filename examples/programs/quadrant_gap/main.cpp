@@ -23,6 +23,7 @@ int run_program(int argc, char** argv) {
     quadrant_gap::add_forecast(app);
     quadrant_gap::add_compensate(app);
     quadrant_gap::add_compare(app);
+    quadrant_gap::add_export(app);
     quadrant_gap::add_init(app);
     quadrant_gap::add_import(app);
     quadrant_gap::add_trial(app);
