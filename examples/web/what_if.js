@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Sliders for what was found; gap and curves of the simulation with their values.
 const wanted = () => ({
-    causes: [...the('knobs').querySelectorAll('.knob.cause')].map(knob => ({
+    causes: [...the('knobs').querySelectorAll('.knob.of-cause')].map(knob => ({
         on: knob.querySelector('input[type=checkbox]').checked,
         values: [...knob.querySelectorAll('input[type=range]')].map(s => Number(s.value)),
     })),
@@ -14,7 +14,7 @@ const in_digits = v => v === 0 ? '0' : String(+v.toPrecision(4));
 function lay_out_knobs({causes, has_calibration}) {
     const knobs = causes.map((c, k) => {
         const tick = make('input', {type: 'checkbox', checked: c.claimed, disabled: !c.sliders.length, id: `cause-${k}`});
-        const knob = make('div', {className: 'knob cause'}, make('label', {}, tick, ` ${c.label}, axis ${c.axis}`),
+        const knob = make('div', {className: 'knob of-cause'}, make('label', {}, tick, ` ${c.label}, axis ${c.axis}`),
             make('small', {textContent: ` ${c.claimed ? 'claimed' : 'a suspect'}, ${c.probability}${c.sliders.length ? '' : '; it has no value to set'}`}));
         c.sliders.forEach((s, i) => {
             const id = `value-${k}-${i}`, say = make('output');
