@@ -39,10 +39,11 @@ part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/r
 part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
 part case which/axis_case which/block_places where/places how_far/how_far how_far/closed_loop how_far/driven_loop
 part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start
+part compensate compensate compensate/compensation compensate/tracking_forecast
 part controllers controller/kinds where/controller_box where/controller_mismatch
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
-set -- diagnose compare apply passes search case chain controllers binding
+set -- diagnose compare apply passes search case chain compensate controllers binding
 printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
 cd "$build"
 em++ -O2 -fwasm-exceptions $(printf '%s.o ' "$@") -o quadrant.js --no-entry \

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/diagnosis/check_physics.hpp>
+#include <quadrant/diagnosis/import/mat_file.hpp>
 #include <quadrant/diagnosis/import/own_header.hpp>
 #include <quadrant/diagnosis/import/read_map.hpp>
 #include <quadrant/diagnosis/import_log.hpp>

@@ -5,7 +5,7 @@ let on_files = () => {};
 
 const axes_of = names => `${names.length > 1 ? 'axes' : 'axis'} ${names.join(', ')}`;
 const known_as = {
-    log: f => `log: ${f.rows} rows, one every ${+(f.period_s * 1e3).toPrecision(4)} ms, ${axes_of(f.axes.map(a => a.name))}`,
+    log: f => `log: ${f.rows} rows, one every ${+(f.period_s * 1e3).toPrecision(4)}\u00a0ms, ${axes_of(f.axes.map(a => a.name))}`,
     machine: f => `machine file: ${axes_of(f.axes)}`,
     map: () => 'import map',
     table: () => 'a table whose columns have to be named below',

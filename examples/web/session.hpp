@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "compensated.hpp"
 #include "dropped.hpp"
 #include "form.hpp"
 #include "what_if.hpp"
@@ -51,15 +52,23 @@ private:
         if (what == "diagnose") return diagnosed(request);
         if (what == "compare") return compared(request);
         if (what == "what_if") return what_if(request);
+        if (what == "compensate") return compensated(request);
         throw std::invalid_argument("no such request: " + what);
     }
 
     const std::string& text(const std::string& name) const { return files_.at(name).text; }
+    /// The same; of a MAT-file its table.
+    const std::string& table_text(const std::string& name) {
+        std::string& bytes = files_.at(name).text;
+        if (is_mat_file(bytes)) bytes = table_of_mat_file(bytes, name);
+        return bytes;
+    }
 
     /// What a file is. A table with columns of other names is one that the page asks about.
     nlohmann::json look(const std::string& name) {
         const std::string& bytes = text(name);
         try {
+            table_text(name);
             if (looks_like_json(bytes)) {
                 const std::string schema = schema_of(bytes);
                 if (schema == "quadrant.import/1") {
@@ -74,7 +83,8 @@ private:
                 return {{"kind", "machine"}, {"axes", axes}, {"period_s", machine.sample_period_s}};
             }
             if (bytes.find('\0') != std::string::npos)
-                throw bad_input(name, "is no text: save it as CSV, which every program can");
+                throw bad_input(name,
+                                "is neither text nor a MAT-file: save it as CSV, which every program can");
             return described(logs_[name] = read_dropped_log(bytes, name));
         } catch (const std::exception& fault) {
             logs_.erase(name);
@@ -89,7 +99,7 @@ private:
     /// Tables through a map: they become one log, under the name of the first.
     nlohmann::json import(const nlohmann::json& request) {
         std::vector<foreign_file> tables;
-        for (const auto& name : request.at("files")) tables.push_back({text(name), name});
+        for (const auto& name : request.at("files")) tables.push_back({table_text(name), name});
         const auto map =
             request.contains("map_file")
                 ? read_import_map(text(request["map_file"]), request["map_file"].get<std::string>())
@@ -168,6 +178,13 @@ private:
         nlohmann::json answer = {{"machine_text", text}, {"after", drawn(simulate(machine, log_), log_)}};
         if (holdout_) answer["after_holdout"] = drawn(simulate(machine, *holdout_), *holdout_);
         return answer;
+    }
+
+    /// What feedforwards built from the causes as they are set would gain on the log.
+    nlohmann::json compensated(const nlohmann::json& request) const {
+        const auto wanted = as_set(result_, request.at("causes"), request.at("calibrated").get<bool>());
+        const auto corrected = apply(machine_text_, machine_file_, wanted, 0.5).machine;
+        return drawn(compensate(machine_, wanted, log_), corrected, log_);
     }
 
     progress tell_;

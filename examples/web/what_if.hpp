@@ -104,8 +104,8 @@ inline bool has_calibration(const diagnosis_result& d) {
                        [](const axis_result& a) { return !a.calibrated.empty(); });
 }
 
-/// A diagnosis with the causes that are switched on, at the values of their sliders: all of them are then
-/// written; and with the calibration inside the owner's tolerances, or without it.
+/// A diagnosis with the causes that are switched on, at the values of their sliders, whose intervals move
+/// along: all of them are then written; and with the calibration inside the owner's tolerances, or without it.
 inline diagnosis_result as_set(const diagnosis_result& found, const nlohmann::json& causes, bool calibrated) {
     diagnosis_result d = found;
     bool suspects = false;
@@ -116,7 +116,12 @@ inline diagnosis_result as_set(const diagnosis_result& found, const nlohmann::js
         suspects = suspects || (on && !quadrant_gap::claimed(c));
         std::size_t next = 0;
         for (parameter_estimate& p : c.parameters)
-            for (estimate& e : p.values) e.value = set.at("values").at(next++).get<double>();
+            for (estimate& e : p.values) {
+                const double moved = set.at("values").at(next++).get<double>() - e.value;
+                e.value += moved;
+                e.low += moved;
+                e.high += moved;
+            }
         c.with_suspects.clear();
         c.probability = c.group_probability = on ? 1 : 0;
     }

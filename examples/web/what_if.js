@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSL-1.0
 // Sliders for what was found; gap and curves of the simulation with their values.
 const wanted = () => ({
-    causes: [...the('knobs').querySelectorAll('.knob.cause')].map(knob => ({
+    causes: [...the('knobs').querySelectorAll('.knob.of-cause')].map(knob => ({
         on: knob.querySelector('input[type=checkbox]').checked,
         values: [...knob.querySelectorAll('input[type=range]')].map(s => Number(s.value)),
     })),
     calibrated: the('calibrated')?.checked ?? true,
 });
-let found = null, shown = null, at_work = false, again = false;
+let found = null, shown = null, gains = null, at_work = false, again = false;
 
 const in_digits = v => v === 0 ? '0' : String(+v.toPrecision(4));
 
 function lay_out_knobs({causes, has_calibration}) {
     const knobs = causes.map((c, k) => {
         const tick = make('input', {type: 'checkbox', checked: c.claimed, disabled: !c.sliders.length, id: `cause-${k}`});
-        const knob = make('div', {className: 'knob cause'}, make('label', {}, tick, ` ${c.label}, axis ${c.axis}`),
-            make('small', {textContent: ` ${c.claimed ? 'claimed' : 'a suspect'}, ${c.probability}${c.sliders.length ? '' : '; it has no value to set'}`}));
+        const knob = make('div', {className: 'knob of-cause'}, make('label', {}, tick, ` ${c.label}, axis ${c.axis}`),
+            make('small', {textContent: ` ${c.claimed ? 'claimed' : 'a suspect'}, ${c.probability.replace(' ', '\u00a0')}${c.sliders.length ? '' : '; it has no value to set'}`}));
         c.sliders.forEach((s, i) => {
             const id = `value-${k}-${i}`, say = make('output');
             const range = make('input', {type: 'range', id, min: s.low, max: s.high, step: 'any'});
@@ -106,11 +106,59 @@ async function compute_what_if() {
         the('took').textContent = `Computed in ${Math.round(performance.now() - began)} ms.`;
     }
     if (again) { again = false; compute_what_if(); }
+    else if (!answer.error) compute_compensation();
+}
+
+// ---- what a compensation in the controller would gain ----
+
+function gains_of(axis, several) {
+    const title = several ? `Tracking error of axis ${axis.axis}` : 'Tracking error';
+    const titles = ['', 'rms', 'peak', 'at reversals', 'command, rms'].map(textContent => make('th', {scope: 'col', textContent}));
+    const rows = axis.rows.map(([name, ...values]) => make('tr', {}, make('th', {scope: 'row', textContent: name.replaceAll('_', ' ')}),
+        ...values.map(textContent => make('td', {textContent}))));
+    const parts = [make('h3', {textContent: title})];
+    if (rows.length) parts.push(make('div', {className: 'wide', tabIndex: 0, role: 'region', ariaLabel: title},
+        make('table', {}, make('thead', {}, make('tr', {}, ...titles)), make('tbody', {}, ...rows))));
+    if (axis.after) {
+        const canvas = make('canvas');
+        canvas.setAttribute('role', 'img');
+        canvas.setAttribute('aria-label', `${title} of the simulated loop, as it is and with the controller's keys set; the table above has the numbers`);
+        parts.push(make('h3', {textContent: 'Reference minus position, simulated'}),
+            make('p', {className: 'legend'}, make('span', {}, make('i', {style: 'background:var(--before)'}), 'the controller as it is'), ' ',
+                make('span', {}, make('i', {style: 'background:var(--after)'}), 'with its feedforward keys set')), canvas);
+    }
+    return [...parts, ...axis.says.map(textContent => make('p', {className: 'hint', textContent}))];
+}
+
+function draw_gains() {
+    const canvases = the('gains').querySelectorAll('canvas');
+    let next = 0;
+    for (const axis of gains?.axes ?? [])
+        if (axis.after) draw_curve(canvases[next++], 'm', axis.after.seconds, axis.before.lines, axis.after.lines);
+}
+
+async function compute_compensation() {
+    the('compensation').hidden = !the('compensated').checked;
+    if (!the('compensated').checked || at_work) return;
+    at_work = true;
+    const began = performance.now(), answer = await call({do: 'compensate', ...wanted()});
+    at_work = false;
+    if (answer.cancelled) return;
+    gains = answer.error ? null : answer;
+    the('compensation').querySelector('.fault').textContent = answer.error || '';
+    the('gains').replaceChildren(...(gains?.axes ?? []).flatMap(a => gains_of(a, gains.axes.length > 1)),
+        ...(gains?.notes ?? []).map(note => make('p', {className: 'hint', textContent: `Note: ${note}.`})));
+    the('save-compensation').disabled = !gains;
+    the('save-compensated').disabled = !gains?.machine_text;
+    the('forecast-took').textContent = answer.error ? '' : `Forecast in ${((performance.now() - began) / 1000).toFixed(1)} s.`;
+    draw_gains();
+    if (again) { again = false; compute_what_if(); }
 }
 
 function show_what_if(answer) {
     found = answer;
-    shown = null;
+    shown = gains = null;
+    the('compensated').checked = false;
     the('what-if').hidden = !answer.causes.length;
     if (!answer.causes.length) return;
     lay_out_knobs(answer);
@@ -127,5 +175,10 @@ function show_what_if(answer) {
 the('knobs').addEventListener('input', compute_what_if);
 the('as-found').addEventListener('click', () => { lay_out_knobs(found); compute_what_if(); });
 the('save-machine').addEventListener('click', () => save('machine.json', shown.machine_text, 'application/json'));
-addEventListener('resize', draw_what_if);
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw_what_if);
+the('compensated').addEventListener('change', compute_compensation);
+the('save-compensation').addEventListener('click', () => save('compensation.json', gains.forecast, 'application/json'));
+the('save-compensated').addEventListener('click', () => save('machine.json', gains.machine_text, 'application/json'));
+for (const draw of [draw_what_if, draw_gains]) {
+    addEventListener('resize', draw);
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
+}

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: page.sh quadrant-gap SOURCE_DIR BUILD_DIR SHARED     builds the page and uses it in a browser
+# usage: page.sh quadrant-gap SOURCE_DIR BUILD_DIR SHARED     builds the page, asks it in node, uses it in a browser
 # Exit code 77 (skipped) where emscripten or the browser is missing.
 set -u
 program=$1 source=$2 build=$3 shared=$4
@@ -22,5 +22,8 @@ elif [ -f "$build/$axe" ] || (cd "$build" && npm pack axe-core@4.10.2 --silent >
 else
     echo "SKIPPED: npm gives no axe-core: the accessibility of the page is not checked"
 fi
+/usr/bin/python3 "$(dirname "$0")/verdicts.py" "$build/quadrant.html" "$program" "$shared"
+said=$?
+[ $said = 0 ] || [ $said = 77 ] || exit $said
 exec /usr/bin/python3 "$(dirname "$0")/page_test.py" "$build/quadrant.html" "$program" "$source" \
     --shots "$build/reports" --shared "$shared" $with_axe

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 
 #include <quadrant/diagnosis/check_physics.hpp>
+#include <quadrant/diagnosis/import/mat_file.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <iostream>
@@ -47,9 +48,11 @@ void run(const import_options& o) {
         paths.reads(fmt::format("input {}", i + 1), o.files[i]);
     paths.writes("OUT", o.files.back());
     std::vector<foreign_file> files;
-    for (std::size_t i = 0; i + 1 < o.files.size(); ++i)
-        files.push_back(
-            {quadrant::diagnosis::detail::read_whole(std::filesystem::path(o.files[i])), o.files[i]});
+    for (std::size_t i = 0; i + 1 < o.files.size(); ++i) {
+        std::string text = quadrant::diagnosis::detail::read_whole(std::filesystem::path(o.files[i]));
+        if (is_mat_file(text)) text = table_of_mat_file(text, o.files[i]);
+        files.push_back({std::move(text), o.files[i]});
+    }
     const std::string& out = o.files.back();
     import_map map;
     if (!o.map.empty())

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../text/bad_input.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <boost/beast/zlib/inflate_stream.hpp>
+#include <cstdint>
+#include <cstring>
+#include <fmt/format.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+namespace detail {
+
+/// A MATLAB MAT-file of level 5 (save -v6, or -v7: compressed) on its way to a table of text. What is wrong
+/// with it is said with its byte: of the file, or of what a compressed variable holds.
+class mat_reader {
+public:
+    mat_reader(std::string_view bytes, std::string_view file)
+        : file_(file), file_bytes_(bytes), bytes_(bytes) {}
+
+    /// A MAT-file of level 5, or one of level 7.3, which take() refuses.
+    static bool is_one(std::string_view bytes) {
+        return bytes.size() >= header && bytes.starts_with("MATLAB ") &&
+               (bytes.substr(126, 2) == "IM" || bytes.substr(126, 2) == "MI");
+    }
+
+    std::string take() {
+        if (file_bytes_.starts_with("MATLAB 7.3"))
+            refuse(0, "is of level 7.3 (HDF5): save it in MATLAB with save(..., '-v7'), or as CSV");
+        swapped_ = (file_bytes_.substr(126, 2) == "MI") == (std::endian::native == std::endian::little);
+        const auto version = integer<std::uint16_t>(124);
+        if (version != 0x0100)
+            refuse(124, fmt::format("version {:#06x} is not that of level 5 (0x0100)", version));
+        for (at_ = header; at_ < bytes_.size();) {
+            const element e = next();
+            if (e.type == compressed)
+                inflate(e);
+            else if (e.type == matrix)
+                read_variable(e);
+        }
+        return table();
+    }
+
+private:
+    static constexpr std::size_t header = 128;
+    static constexpr std::uint32_t compressed = 15, matrix = 14;
+
+    struct element {
+        std::uint32_t type;
+        std::size_t at, size; ///< of its data
+    };
+    struct variable {
+        std::string name;
+        std::uint64_t rows, columns;
+        std::vector<double> values; ///< column by column
+    };
+
+    [[noreturn]] void refuse(std::size_t at, std::string_view message) const {
+        if (inside_ == 0) throw bad_input(file_, fmt::format("byte {}: {}", at, message));
+        throw bad_input(file_,
+                        fmt::format("byte {} (compressed; byte {} of its contents): {}", inside_, at, message));
+    }
+
+    template <class T> T integer(std::size_t at) const {
+        T value{};
+        if (bytes_.size() < sizeof(T) || at > bytes_.size() - sizeof(T))
+            refuse(bytes_.size(), "ends in the middle of a variable");
+        char raw[sizeof(T)];
+        std::memcpy(raw, bytes_.data() + at, sizeof(T));
+        if (swapped_) std::reverse(raw, raw + sizeof(T));
+        std::memcpy(&value, raw, sizeof(T));
+        return value;
+    }
+
+    /// The element at at_, which then stands behind it.
+    element next() {
+        const auto word = integer<std::uint32_t>(at_);
+        const std::size_t tag = at_;
+        element e{};
+        if (word >> 16 != 0) { // a small one: type and size in one word, the data in the next
+            e = {word & 0xffff, tag + 4, word >> 16};
+            if (e.size > 4) refuse(tag, fmt::format("a small element of {} bytes; 4 are the most", e.size));
+            at_ = tag + 8;
+        } else {
+            e = {word, tag + 8, integer<std::uint32_t>(tag + 4)};
+            const std::size_t padded = e.type == compressed ? e.size : (e.size + 7) / 8 * 8;
+            at_ = e.at + padded;
+        }
+        if (e.size > bytes_.size() - std::min(e.at, bytes_.size()))
+            refuse(tag, fmt::format("an element of {} bytes; the file has {} behind this", e.size,
+                                    bytes_.size() - std::min(e.at, bytes_.size())));
+        if (e.type == 0 || e.type > 18) refuse(tag, fmt::format("no element has the type {}", e.type));
+        return e;
+    }
+
+    /// A variable that was saved compressed: zlib around one element.
+    void inflate(const element& e) {
+        const std::string_view packed = file_bytes_.substr(e.at, e.size);
+        const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(packed[k]); };
+        constexpr std::size_t around = 6; // two bytes before, a sum of four behind
+        if (packed.size() < around || (byte(0) & 0x0f) != 8 || (byte(0) * 256 + byte(1)) % 31 != 0 ||
+            byte(1) & 0x20)
+            refuse(e.at, "no zlib stream begins here");
+        std::string contents;
+        boost::beast::zlib::inflate_stream stream;
+        boost::beast::zlib::z_params p;
+        boost::beast::error_code fault;
+        p.next_in = packed.data() + 2;
+        p.avail_in = packed.size() - 2; // the sum as well: the decoder looks ahead
+        constexpr std::size_t piece = 1 << 18;
+        while (!fault) {
+            contents.resize(p.total_out + piece);
+            p.next_out = contents.data() + p.total_out;
+            p.avail_out = piece;
+            const std::size_t before = p.total_out;
+            stream.write(p, boost::beast::zlib::Flush::none, fault);
+            if (!fault && p.total_out == before) break;
+        }
+        contents.resize(p.total_out);
+        if (fault != boost::beast::zlib::error::end_of_stream)
+            refuse(e.at + 2 + p.total_in, "the zlib stream is broken");
+        std::uint32_t sum = 0;
+        for (std::size_t k = packed.size() - 4; k < packed.size(); ++k) sum = sum << 8 | byte(k);
+        if (sum != adler32(contents))
+            refuse(e.at + e.size - 4, "the sum of the zlib stream is another: the file is damaged");
+        const std::size_t behind = at_;
+        bytes_ = contents;
+        inside_ = e.at - 8;
+        at_ = 0;
+        const element held = next();
+        if (held.type == matrix) read_variable(held);
+        bytes_ = file_bytes_;
+        inside_ = 0;
+        at_ = behind;
+    }
+    static std::uint32_t adler32(std::string_view bytes) {
+        std::uint32_t a = 1, b = 0;
+        for (const char c : bytes) {
+            a = (a + static_cast<unsigned char>(c)) % 65521;
+            b = (b + a) % 65521;
+        }
+        return b << 16 | a;
+    }
+
+    /// A variable of real numbers; texts, structures and cells are left out, and so is a single number.
+    void read_variable(const element& whole) {
+        const std::size_t behind = at_;
+        at_ = whole.at;
+        const element flags = next();
+        if (flags.type != 6 || flags.size != 8) refuse(whole.at, "a variable begins with its flags (8 bytes)");
+        const auto word = integer<std::uint32_t>(flags.at);
+        const std::uint32_t kind = word & 0xff;
+        const bool complex = word & 0x0800;
+        const element dimensions = next();
+        if (dimensions.type != 5 || dimensions.size < 8 || dimensions.size % 4 != 0)
+            refuse(dimensions.at, "the dimensions of a variable are 32-bit integers, two or more");
+        const element name = next();
+        variable v{
+            .name = std::string(bytes_.substr(name.at, name.size)), .rows = 1, .columns = 1, .values = {}};
+        if (const auto end = v.name.find('\0'); end != v.name.npos) v.name.resize(end);
+        constexpr std::uint32_t of_doubles = 6, last = 15;
+        if (kind >= of_doubles && kind <= last) {
+            for (std::size_t k = 0; k < dimensions.size / 4; ++k) {
+                const auto n = integer<std::int32_t>(dimensions.at + 4 * k);
+                if (n < 0)
+                    refuse(dimensions.at + 4 * k, fmt::format("{}: dimension {} is negative", v.name, n));
+                (k == 0 ? v.rows : v.columns) *= static_cast<std::uint64_t>(n);
+                if (v.rows > bytes_.size() || v.columns > bytes_.size() ||
+                    (v.columns > 0 && v.rows > bytes_.size() / v.columns))
+                    refuse(dimensions.at, fmt::format("{}: has more numbers than the file has bytes", v.name));
+            }
+            if (complex)
+                refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
+            read_numbers(v);
+            if (at_ > behind) refuse(whole.at, fmt::format("{}: is longer than it says", v.name));
+            if (v.values.size() > 1) variables_.push_back(std::move(v));
+        }
+        at_ = behind;
+    }
+
+    void read_numbers(variable& v) {
+        const element e = next();
+        constexpr std::size_t sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
+        const std::size_t each = e.type < std::size(sizes) ? sizes[e.type] : 0;
+        if (each == 0) refuse(e.at, fmt::format("{}: numbers of type {} are not of level 5", v.name, e.type));
+        if (e.size != v.rows * v.columns * each)
+            refuse(e.at, fmt::format("{}: {} by {} numbers of {} bytes are not {} bytes", v.name, v.rows,
+                                     v.columns, each, e.size));
+        v.values.resize(e.size / each);
+        for (std::size_t k = 0; k < v.values.size(); ++k) v.values[k] = number(e.type, e.at + k * each);
+        if (v.rows == 1) std::swap(v.rows, v.columns);
+    }
+    double number(std::uint32_t type, std::size_t at) const {
+        switch (type) {
+        case 1:
+            return integer<std::int8_t>(at);
+        case 2:
+            return integer<std::uint8_t>(at);
+        case 3:
+            return integer<std::int16_t>(at);
+        case 4:
+            return integer<std::uint16_t>(at);
+        case 5:
+            return integer<std::int32_t>(at);
+        case 6:
+            return integer<std::uint32_t>(at);
+        case 7:
+            return static_cast<double>(integer<float>(at));
+        case 9:
+            return integer<double>(at);
+        case 12:
+            return static_cast<double>(integer<std::int64_t>(at));
+        default:
+            return static_cast<double>(integer<std::uint64_t>(at));
+        }
+    }
+
+    /// Columns by the names of the variables; of a matrix name_1, name_2, ...
+    std::string table() const {
+        if (variables_.empty())
+            throw bad_input(file_,
+                            "holds no vector of numbers: save time, position and command as vectors, not in "
+                            "structures or cells");
+        const variable& first = variables_.front();
+        std::string out;
+        for (const variable& v : variables_) {
+            if (v.rows != first.rows)
+                throw bad_input(file_,
+                                fmt::format("{} has {} rows, {} has {}: save only what belongs to one log",
+                                            v.name, v.rows, first.name, first.rows));
+            for (std::size_t k = 0; k < v.columns; ++k)
+                out += (out.empty() ? "" : ",") + v.name + (v.columns > 1 ? fmt::format("_{}", k + 1) : "");
+        }
+        out += '\n';
+        for (std::uint64_t row = 0; row < first.rows; ++row) {
+            const char* before = "";
+            for (const variable& v : variables_)
+                for (std::size_t k = 0; k < v.columns; ++k, before = ",")
+                    fmt::format_to(std::back_inserter(out), "{}{}", before,
+                                   v.values[static_cast<std::size_t>(k * v.rows + row)]);
+            out += '\n';
+        }
+        return out;
+    }
+
+    std::string_view file_, file_bytes_, bytes_; ///< bytes_: of the file, or what a compressed variable holds
+    std::size_t at_ = header, inside_ = 0; ///< inside_: where in the file the compressed variable is; 0: none
+    bool swapped_ = false;
+    std::vector<variable> variables_{};
+};
+
+} // namespace detail
+
+/// Whether the bytes are a MATLAB MAT-file.
+inline bool is_mat_file(std::string_view bytes) { return detail::mat_reader::is_one(bytes); }
+
+/// The vectors and matrices of a MAT-file (level 5, also compressed) as a table of text whose first line names
+/// the variables: what import_log reads. Single numbers, texts, structures and cells are left out. Refuses
+/// other levels, complex numbers, vectors of different lengths, and a damaged file with its byte (bad_input).
+inline std::string table_of_mat_file(std::string_view bytes, std::string_view file) {
+    return detail::mat_reader(bytes, file).take();
+}
+
+} // namespace quadrant::diagnosis
