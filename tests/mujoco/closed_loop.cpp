@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The plant that to_mjcf() writes, in MuJoCo and in closed loop with the machine file's controller, beside simulate_closed_loop(): two
-// simulators that share the controller and nothing else.
+// The plant that to_mjcf() writes, in MuJoCo and in closed loop with the machine file's controller, beside
+// simulate_closed_loop(): two simulators that share the controller and nothing else.
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/where/controller_box.hpp>

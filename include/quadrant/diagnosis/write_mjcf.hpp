@@ -129,10 +129,10 @@ private:
 
 } // namespace detail
 
-/// The plant of a machine as a MuJoCo model: mass or inertia, viscous and Coulomb friction (damping, frictionloss),
-/// spring, gravity on a rotary axis, a second mass, a constant force, the motor with its limit (control in the
-/// unit of the command). An axis is a joint of its name; axes do not move each other. Controllers stay outside, as
-/// MuJoCo has them. Notes name every key that MuJoCo cannot hold; the delay is one of them.
+/// The plant of a machine as a MuJoCo model: mass or inertia, viscous and Coulomb friction (damping,
+/// frictionloss), spring, gravity on a rotary axis, a second mass, a constant force, the motor with its limit
+/// (control in the unit of the command). An axis is a joint of its name; axes do not move each other.
+/// stay outside, as MuJoCo has them. Notes name every key that MuJoCo cannot hold; the delay is one of them.
 /// `substeps`: of the sample period.
 inline mjcf_model to_mjcf(const machine_description& machine, int substeps = 10) {
     mjcf_model out;
