@@ -196,6 +196,10 @@ private:
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const;
+    /// Where `step`, which has one effect more, only led the other numbers to a better place, the effect takes
+    /// nothing off: `best` goes on from those numbers without it, and what was tried beside it is forgotten.
+    /// True: it got better.
+    bool goes_on_without(candidate& best, const candidate& step) const;
     /// use(i, residual force of plant i), one after the other.
     template <class Use>
     void residuals(const std::vector<plant_model>& plants, const Use& use, bool behind_drive = false) const {
@@ -243,7 +247,8 @@ private:
     std::vector<std::string> excluded_;
     rules rules_;
     progress tell_;
-    candidate given_, calibrated_;
+    candidate given_;
+    mutable candidate calibrated_; ///< a step of the search may show where its fit stopped short
     mutable std::deque<candidate> tried_;
     mutable std::set<const effect*> missed_{};
     mutable bool cut_ = false;

@@ -309,6 +309,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             add(everyday());
             step = paying(next, best);
         }
+        if (step && goes_on_without(best, *step)) {
+            beam.assign(1, best);
+            continue;
+        }
         if (step) {
             const candidate chosen = *step;
             beam.assign(1, chosen);
@@ -484,6 +488,25 @@ QUADRANT_DIAGNOSIS_DECL bool search::calibrate_again(candidate& best,
     if (!(again.total > best.total + rules_.margin)) return false;
     for (candidate& known : tried_)
         if (same(known, again)) known = again;
+    best = std::move(again);
+    return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const candidate& step) const {
+    candidate again = best;
+    begin_at(again, step.fit.plant);
+    finish(record_, again);
+    if (!(again.total > best.total + rules_.margin)) return false;
+    std::erase_if(tried_, [&](const candidate& c) { // they went on from where the fit had stopped
+        return std::all_of(best.effects.begin(), best.effects.end(),
+                           [&](const effect* e) { return has(c, e); });
+    });
+    if (best.effects.empty()) {
+        calibrated_ = again;
+        cloud_.clear();
+    } else {
+        tried_.push_back(again);
+    }
     best = std::move(again);
     return true;
 }
