@@ -210,6 +210,8 @@ def narrow_and_dark(driver, page, data, shots):
     element(driver, "#compensated").click()
     wait(lambda: element(driver, "#forecast-took").text, 20, "a forecast at 390 px")
     fits(driver, "390 px, dark")
+    beyond = driver.execute_script("const t = document.querySelector('#gains .wide'); return t.scrollWidth - t.clientWidth")
+    check(beyond <= 0, f"390 px: the table of tracking errors is {beyond} px wider than its place")
     time.sleep(0.5)
     shoot(driver, shots / "web_390_dark.png")
     check(driver.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(17, 22, 28)", "dark")
