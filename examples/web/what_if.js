@@ -115,7 +115,7 @@ function gains_of(axis, several) {
     const title = several ? `Tracking error of axis ${axis.axis}` : 'Tracking error';
     const titles = ['', 'rms', 'peak', 'at reversals', 'command, rms'].map(textContent => make('th', {scope: 'col', textContent}));
     const rows = axis.rows.map(([name, ...values]) => make('tr', {}, make('th', {scope: 'row', textContent: name.replaceAll('_', ' ')}),
-        ...values.map(textContent => make('td', {textContent}))));
+        ...values.map(v => make('td', {textContent: v.replace(' ', '\u00a0').replace(' to ', '\u00a0to\u00a0')}))));
     const parts = [make('h3', {textContent: title})];
     if (rows.length) parts.push(make('div', {className: 'wide', tabIndex: 0, role: 'region', ariaLabel: title},
         make('table', {}, make('thead', {}, make('tr', {}, ...titles)), make('tbody', {}, ...rows))));

@@ -13,7 +13,9 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "report"))
+for folder in ("report", "diagnosis"):
+    sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / folder))
+import mat_file_test  # noqa: E402
 from browser_test import OVERFLOWING, check, shoot, show  # noqa: E402
 from selenium import webdriver  # noqa: E402
 from selenium.webdriver.chrome.options import Options  # noqa: E402
@@ -208,6 +210,8 @@ def narrow_and_dark(driver, page, data, shots):
     element(driver, "#compensated").click()
     wait(lambda: element(driver, "#forecast-took").text, 20, "a forecast at 390 px")
     fits(driver, "390 px, dark")
+    beyond = driver.execute_script("const t = document.querySelector('#gains .wide'); return t.scrollWidth - t.clientWidth")
+    check(beyond <= 0, f"390 px: the table of tracking errors is {beyond} px wider than its place")
     time.sleep(0.5)
     shoot(driver, shots / "web_390_dark.png")
     check(driver.execute_script("return getComputedStyle(document.body).backgroundColor") == "rgb(17, 22, 28)", "dark")
@@ -316,6 +320,19 @@ def gallery(driver, page, shots):
     shoot(driver, shots / "web_gallery.png")
 
 
+def mat_files(driver, page, work):
+    """A MAT-file is read like its table; a damaged one is refused with its byte."""
+    variables = mat_file_test.record()
+    for name, contents, words in (("log.mat", mat_file_test.mat(variables, packed=True), "log: 400 rows, one every 1 ms, axis x"),
+                                  ("cut.mat", mat_file_test.mat(variables)[:-100], "an element of"),
+                                  ("hdf5.mat", mat_file_test.mat([], text=b"MATLAB 7.3 MAT-file", version=0x0200), "save(..., '-v7')")):
+        open_page(driver, page)
+        (work / name).write_bytes(contents)
+        give(driver, work / name)
+        wait(lambda: words in element(driver, "#dropped").text, 10, f"{name}: {words}")
+    print("MAT-files: read, and refused with their byte")
+
+
 def other_columns(driver, page, root, shots):
     open_page(driver, page)
     give(driver, root / "examples/import/odrive.csv", root / "examples/import/odrive.map.json")
@@ -376,6 +393,7 @@ def main():
             narrow_and_dark(driver, given.page, data, given.shots)
             without_a_machine(driver, given.page, data, given.shots)
             other_columns(driver, given.page, given.source.resolve(), given.shots)
+            mat_files(driver, given.page, pathlib.Path(work))
             compare_two(driver, given.page, given.program, data, given.shots, pathlib.Path(work))
             gallery(driver, given.page, given.shots)
             accessible(driver, given.page, data, given.axe)
