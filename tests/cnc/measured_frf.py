@@ -57,9 +57,10 @@ for name, response in (("the axis itself", rigid), ("a weaker and later axis", s
     found = analysed(response)
     of_file = pid_of_the_mill(axis, period)
     at = lambda f: of_file(z_of(f)) * response(f) / rigid(f)  # the tachometer's part goes with the position's
-    rows = [(row, at(row[0])) for row in found["response"]["rows"]]
+    # Behind 0.4 of the rate the response falls steeply to its zero at half the rate: what lies between two lines is off by up to 6e-3.
+    rows = [(row, at(row[0])) for row in found["response"]["rows"] if row[0] < 0.4 / period]
     worst = max(abs(complex(row[1], row[2]) / wanted - 1) for row, wanted in rows if abs(wanted) < 100)
-    expect(worst < 2e-3, f"{name}: open loop, up to 40 dB: {worst:.1e} of the closed form at most")
+    expect(worst < 1e-3, f"{name}: open loop, up to 40 dB: {worst:.1e} of the closed form at most")
     crossing = next(b for a, b in zip(lines, lines[1:]) if abs(at(a)) >= 1 > abs(at(b)))
     fine = [crossing * (1 - 0.02 * k / 2000) for k in range(2000)]
     crossing = max(f for f in fine if abs(at(f)) >= 1)
