@@ -15,7 +15,7 @@ struct figure_words {
 };
 inline void say_proposal(std::vector<figure_words>& out, const proposal& p) {
     if (!p.gains) {
-        out.push_back({"proposed gains", "none", p.no_gains});
+        out.push_back({"proposed gains", "none: " + p.no_gains, "of a cascade (cascade_p_pi)"});
         return;
     }
     const proposed_gains& g = *p.gains;
@@ -36,21 +36,25 @@ inline void say_proposal(std::vector<figure_words>& out, const proposal& p) {
                        fmt::format("for a peak of {} dB; without it the velocity gain is {} V s/m",
                                    number(p.notch->prominence_dB), number(p.notch->without))});
     else
-        out.push_back({"proposed notch", "none", p.no_notch});
+        out.push_back({"proposed notch", "none: " + p.no_notch, "for the highest peak above the crossover"});
 }
 inline std::vector<figure_words> figures_of(const axis_analysis& a) {
     std::vector<figure_words> out;
     if (!a.lines.empty()) {
         const auto& f = a.figures;
+        const bool crosses = !a.told() || a.stable; // else a crossing is no margin
         out.push_back({"phase margin",
-                       f.phase
+                       !crosses ? "none: the loop is not stable"
+                       : f.phase
                            ? fmt::format("{} deg at {} Hz", number(f.phase->value), number(f.phase->at.value()))
                            : "none",
                        "how much later the loop may answer: 30 to 60 deg are usual"});
-        std::string gain = f.gain_rise ? fmt::format("{} dB", number(*f.gain_rise)) : "without bound";
+        std::string gain = f.gain_rise  ? fmt::format("{} dB", number(*f.gain_rise))
+                           : a.measured ? "no limit in the measured band"
+                                        : "without bound";
         if (f.gain_fall) gain += fmt::format("; it may fall by {} dB", number(*f.gain_fall));
-        out.push_back(
-            {"gain margin", gain, "how much the gain may rise until the loop is unstable: 6 dB are usual"});
+        out.push_back({"gain margin", crosses ? gain : "none: the loop is not stable",
+                       "how much the gain may rise until the loop is unstable: 6 dB are usual"});
         out.push_back(
             {"sensitivity, peak",
              fmt::format("{} at {} Hz", number(f.sensitivity_peak), number(f.margins.modulus.at.value())),
@@ -60,6 +64,7 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
                        "where the sensitivity comes up through -3 dB"});
         out.push_back({"bandwidth of tracking",
                        a.bandwidth_Hz ? fmt::format("{} Hz", number(*a.bandwidth_Hz))
+                       : a.measured   ? "not in the measured band"
                                       : "above what is known (0.4 of the sampling rate)",
                        "where the table over the reference falls through -3 dB"});
         out.push_back({"tracking, peak",
@@ -79,8 +84,9 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
                            y.settling ? fmt::format("settled in {} ms", ms(y.settling))
                                       : "not settled in 10 s");
     };
-    out.push_back({fmt::format("step of {} µm", number(1e6 * a.step.size_m)), step(a.step.as_it_is),
-                   "with friction, rounding and limits; from 10 to 90 %, and within 2 %"});
+    out.push_back(
+        {fmt::format("step of {} µm{}", number(1e6 * a.step.size_m), a.measured ? ", machine file" : ""),
+         step(a.step.as_it_is), "with friction, rounding and limits; from 10 to 90 %, and within 2 %"});
     if (a.step.differs())
         out.push_back(
             {"the same, linear part", step(a.step.linear), "without friction, play, rounding and limits"});

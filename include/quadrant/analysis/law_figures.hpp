@@ -25,8 +25,8 @@ inline void take_gain(law_figures& y, double decibels) {
 }
 } // namespace detail
 
-/// What a band says of a loop with open(f), sensitivity(f) and disturbance(f), such as one around a measured axis;
-/// the steps stay empty. Throws for a band that is none.
+/// What a band says of a loop with open(f), sensitivity(f) and disturbance(f), such as one around a measured
+/// axis; the steps stay empty. Throws for a band that is none.
 template <class Loop> law_figures band_figures(const Loop& loop, const band& searched) {
     const auto open = [&](frequency f) { return loop.open(f); };
     law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};
