@@ -130,6 +130,7 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         { printf '\007' && cat examples/programs/quadrant_cnc/milling_table.json; } >"$found/cnc"
         { printf '\010t_s,angle_deg,radius_m,nominal_radius_m\n' &&
             awk 'BEGIN { for (k = 0; k < 130; ++k) printf "%.2f,%d,%.7f,.1\n", k / 100, 3 * k, .1 + 1e-6 * (k % 3) }'; } >"$found/radius"
+        { printf '\011' && python3 tests/diagnosis/mat_file_test.py --write; } >"$found/mat"
         if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
             -artifact_prefix="$found/" "$found" >"$logs/$name.txt" 2>&1; then
             printf '%s: %s\n' "$name" "$(grep number_of_executed_units "$logs/$name.txt")"

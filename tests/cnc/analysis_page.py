@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""The page of quadrant-cnc analyse in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
+"""The pages of quadrant-cnc analyse, of a machine and of a measured axis, in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
 analysis_page.py PROGRAM ROOT SCRATCH     exit code 77: no browser"""
+import cmath
+import math
 import os
 import pathlib
 import subprocess
@@ -20,8 +22,19 @@ if not os.path.exists("/usr/bin/chromium") or not os.path.exists("/usr/bin/chrom
 
 program, root, scratch = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
 scratch.mkdir(parents=True, exist_ok=True)
-page = (scratch / "analysis.html").resolve()
-subprocess.run([program, "analyse", "--quiet", "--cnc", root / "examples/programs/quadrant_cnc/mill.json", "--report", page], check=True)
+mill = root / "examples/programs/quadrant_cnc/mill.json"
+rows = []
+for k in range(120):  # a double integrator with a mode at 180 Hz
+    f = 10 ** (k / 45)
+    r = 1j * f / 180
+    g = -1.5e-2 / f ** 2 * (1 - 0.5 * r * r / (1 + 0.04 * r + r * r)) * cmath.exp(-2j * math.pi * f * 5e-4)
+    rows.append(f"{f},{g.real},{g.imag}\n")
+(scratch / "measured.csv").write_text("frequency_Hz,real_m_per_V,imag_m_per_V\n" + "".join(rows))
+# What is asked for, its axes, and words that its page must have.
+pages = {"analysis": ([], 3, ("phase margin",)),
+         "measured": (["--axis", "x", "--frf", scratch / "measured.csv"], 1, ("proposed velocity gain", "proposed notch", "Measured response"))}
+for name, (asked_for, _, _) in pages.items():
+    subprocess.run([program, "analyse", "--quiet", "--cnc", mill, "--report", scratch / f"{name}.html", *asked_for], check=True)
 options = Options()
 for argument in ("--headless=new", "--no-sandbox", "--disable-gpu"):
     options.add_argument(argument)
@@ -30,30 +43,31 @@ options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "A
 browser = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
 bad = []
 try:
-    for width in (1280, 390):
-        for dark in (False, True):
-            browser.set_window_size(width, 900)
-            browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                                    {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
-            browser.get(page.as_uri())
-            shown = browser.execute_script("""
-                const drawn = [...document.querySelectorAll('svg.plane')];
-                const outside = drawn.flatMap(s => [...s.querySelectorAll('text')].filter(t => {
-                    const a = t.getBoundingClientRect(), b = s.getBoundingClientRect();
-                    return a.left < b.left - 1 || a.right > b.right + 1 || a.top < b.top - 1 || a.bottom > b.bottom + 1; }));
-                return {drawn: drawn.length, lines: drawn.every(s => s.querySelector('polyline.open, polyline.tracking')),
-                        small: drawn.filter(s => s.getBoundingClientRect().width < 200).length, outside: outside.map(t => t.textContent),
-                        wide: document.documentElement.scrollWidth > innerWidth, axes: document.querySelectorAll('section[data-axis-name]').length,
-                        rows: document.querySelectorAll('table.figures tr').length,
-                        names: drawn.every(s => s.getAttribute('aria-label')), words: document.body.innerText};""")
-            what = f"{width} px, {'dark' if dark else 'light'}"
-            good = (shown["axes"] == 3 and shown["drawn"] == 15 and shown["lines"] and shown["names"] and shown["small"] == 0
-                    and not shown["wide"] and not shown["outside"] and shown["rows"] >= 3 * 8
-                    and "phase margin" in shown["words"] and "nan" not in shown["words"])
-            print("ok  " if good else "BAD ", what, "" if good else {k: v for k, v in shown.items() if k != "words"})
-            bad += [] if good else [what]
-            if not dark:
-                browser.save_screenshot(str(scratch / f"analysis_{width}.png"))
+    for name, (_, axes, words) in pages.items():
+        for width in (1280, 390):
+            for dark in (False, True):
+                browser.set_window_size(width, 900)
+                browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                        {"features": [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]})
+                browser.get((scratch / f"{name}.html").resolve().as_uri())
+                shown = browser.execute_script("""
+                    const drawn = [...document.querySelectorAll('svg.plane')];
+                    const outside = drawn.flatMap(s => [...s.querySelectorAll('text')].filter(t => {
+                        const a = t.getBoundingClientRect(), b = s.getBoundingClientRect();
+                        return a.left < b.left - 1 || a.right > b.right + 1 || a.top < b.top - 1 || a.bottom > b.bottom + 1; }));
+                    return {drawn: drawn.length, lines: drawn.every(s => s.querySelector('polyline.open, polyline.tracking')),
+                            small: drawn.filter(s => s.getBoundingClientRect().width < 200).length, outside: outside.map(t => t.textContent),
+                            wide: document.documentElement.scrollWidth > innerWidth, axes: document.querySelectorAll('section[data-axis-name]').length,
+                            rows: document.querySelectorAll('table.figures tr').length,
+                            names: drawn.every(s => s.getAttribute('aria-label')), words: document.body.innerText};""")
+                what = f"{name}, {width} px, {'dark' if dark else 'light'}"
+                good = (shown["axes"] == axes and shown["drawn"] == 5 * axes and shown["lines"] and shown["names"] and shown["small"] == 0
+                        and not shown["wide"] and not shown["outside"] and shown["rows"] >= axes * 8
+                        and all(word in shown["words"] for word in words) and "nan" not in shown["words"])
+                print("ok  " if good else "BAD ", what, "" if good else {k: v for k, v in shown.items() if k != "words"})
+                bad += [] if good else [what]
+                if not dark:
+                    browser.save_screenshot(str(scratch / f"{name}_{width}.png"))
     said = browser.get_log("browser")
     asked = [e for e in browser.get_log("performance") if "Network.requestWillBeSent" in e["message"] and "file://" not in e["message"]]
     if said or asked:

@@ -37,6 +37,20 @@ for name in ("mill", "milling_table"):
     for fault in analysis.iter_errors(json.loads(ran.stdout)):
         faults.append(f"analysis of {name}: {fault.message[:200]}")
     checked += 1
+for last in (400, 12):  # a band that reaches far enough for gains, one that does not tell whether the loop is stable
+    (scratch / "measured.csv").write_text("frequency_Hz,magnitude_m_per_V,phase_deg\n" + "".join(f"{f},{0.015 / f**2},{-180 - 0.18 * f}\n" for f in range(1, last)))
+    ran = subprocess.run([program, "analyse", "--cnc", root / "examples/programs/quadrant_cnc/mill.json", "--axis", "x", "--frf", scratch / "measured.csv", "--json"],
+                         stdout=subprocess.PIPE, check=True)
+    said = json.loads(ran.stdout)
+    faults += [f"analysis of a measured axis: {fault.message[:200]}" for fault in analysis.iter_errors(said)]
+    found = said["axes"]["x"]["measured"]
+    expect(("proposed_control" in found) == (last == 400) and ("stability_not_told" in found) == (last == 12), f"measured up to {last} Hz: {found}")
+    if "proposed_control" in found:  # as a machine file takes it
+        machine = json.loads((root / "examples/programs/quadrant_cnc/mill.json").read_text())
+        machine["axes"]["x"]["control"] = found["proposed_control"]
+        (scratch / "proposed.json").write_text(json.dumps(machine))
+        expect(schema.is_valid(machine), f"not a control: {found['proposed_control']}")
+        subprocess.run([program, "analyse", "--quiet", "--cnc", scratch / "proposed.json"], check=True)
 keys = (root / "examples/programs/quadrant_cnc/cnc_keys.hpp").read_text(encoding="utf-8")
 
 

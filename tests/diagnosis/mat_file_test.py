@@ -115,6 +115,7 @@ def main(program):
                 ("complex", complex_, "byte 136: t_s: is complex"),
                 ("a bomb of a size", whole[:128] + variable("a", [[1.0]]).replace(struct.pack("<ii", 1, 1), struct.pack("<ii", 2 ** 30, 2 ** 30)),
                  "a: has more numbers than the file has bytes"),
+                ("a bomb of zeros", whole[:128] + element("<", 15, zlib.compress(bytes(257 << 20))), "its compressed variables hold more than 256 MiB"),
                 ("other lengths", mat([variable("t_s", [t]), variable("x_pos_m", [pos[:-1]])]), "x_pos_m has 399 rows, t_s has 400"),
                 ("only texts", mat([text_variable("note"), text_variable("run", STRUCT)]), "holds no vector of numbers"),
                 ("level 7.3", mat([], text=b"MATLAB 7.3 MAT-file, Platform: GLNXA64", version=0x0200), "save it in MATLAB with save(..., '-v7')"),
@@ -126,4 +127,7 @@ def main(program):
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "--write":  # one that is right, to standard output: a seed for the fuzzer
+        sys.stdout.buffer.write(mat(record(), packed=True))
+        sys.exit(0)
     sys.exit(main(sys.argv[1]))

@@ -3,6 +3,7 @@
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/circle/read_radius.hpp"
+#include "quadrant/diagnosis/import/mat_file.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "quadrant/path/cl_reader.hpp"
 #include "quadrant/path/gcode_reader.hpp"
@@ -69,6 +70,13 @@ void check_foreign_log(const std::string& text) {
     check_physics(in);
 }
 
+/// A MAT-file, as the table of text that import reads.
+void check_mat_file(const std::string& text) {
+    if (!is_mat_file(text)) return;
+    const std::string table = table_of_mat_file(text, "log.mat");
+    must_hold(table.find('\n') != std::string::npos);
+}
+
 /// Moves follow one another, each with a way to go and a feed.
 template <class Reader> void check_program(const std::string& text) {
     std::istringstream in(text);
@@ -123,7 +131,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                            check_program<quadrant::gcode_reader>,
                                                            check_program<quadrant::cl_reader>,
                                                            check_cnc,
-                                                           check_radius};
+                                                           check_radius,
+                                                           check_mat_file};
         readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);

@@ -10,21 +10,42 @@ namespace quadrant_cnc {
 
 void analyse(const analyse_options& o) {
     quadrant_page::outputs files;
-    files.reads("--cnc", o.cnc).writes("--report", o.report).writes("--json", o.json);
+    files.reads("--cnc", o.cnc).reads("--frf", o.frf).writes("--report", o.report).writes("--json", o.json);
     const cnc_description cnc = read_cnc(std::filesystem::path(o.cnc));
     machine_analysis out{.cnc_file = cnc.file, .period = cnc.servo_period_s, .axes = {}, .notes = {}};
+    std::optional<frf_file> frf;
+    if (!o.frf.empty()) {
+        if (o.axis.empty() && cnc.axes.size() > 1)
+            throw quadrant::diagnosis::bad_input(
+                cnc.file,
+                fmt::format("axes: has {}; --axis must say which of them --frf is of", cnc.axes.size()));
+        frf = read_frf(o.frf, cnc.servo_period_s);
+    }
     std::string names;
     for (const axis_description& a : cnc.axes) {
         names += fmt::format("{}{}", names.empty() ? "" : ", ", a.name());
         if (!o.axis.empty() && o.axis != a.name()) continue;
-        out.axes.push_back(analyse_axis(a, cnc.servo_period_s, cnc.seed, o.step_m));
+        out.axes.push_back(analyse_axis(a, cnc.servo_period_s, cnc.seed, o.step_m, frf ? &*frf : nullptr));
+        if (frf && !out.axes.back().measured)
+            throw quadrant::diagnosis::bad_input(
+                cnc.file,
+                fmt::format("{}.control: its loop must be stable and linear around the drive of this file, "
+                            "so that its law can be put around --frf; it is {}",
+                            a.path, out.axes.back().stable ? "not linear" : "not stable"));
     }
     if (out.axes.empty())
         throw quadrant::diagnosis::bad_input(cnc.file,
                                              fmt::format("axes: has no axis {}; it has {}", o.axis, names));
-    out.notes.push_back("The responses are those of the linear part: friction but the viscous one, play, steps "
-                        "and noise of the "
-                        "sensors, limits and the converter are left out. They lower what a machine reaches.");
+    if (frf)
+        out.notes.push_back(
+            fmt::format("The responses are those of the law of the machine file around the measured "
+                        "axis of {}, from {} to {} Hz; the step is that of the machine file.",
+                        frf->file, number(frf->from_Hz()), number(frf->to_Hz())));
+    else
+        out.notes.push_back(
+            "The responses are those of the linear part: friction but the viscous one, play, steps "
+            "and noise of the "
+            "sensors, limits and the converter are left out. They lower what a machine reaches.");
     if (!o.report.empty()) quadrant_page::write_output(o.report, html_report(out));
     if (!o.json.empty())
         quadrant_page::write_output(

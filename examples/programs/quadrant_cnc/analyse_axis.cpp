@@ -5,6 +5,10 @@
 #include "contour_plot.hpp"
 #include "law_of_drive.hpp"
 #include "linear_loop.hpp"
+#include "measured_loop.hpp"
+#include "propose.hpp"
+
+#include <quadrant/analysis/nyquist.hpp>
 
 namespace quadrant_cnc {
 
@@ -19,19 +23,45 @@ double force_a_volt(const axis_description& a) {
     return std::get<linear_motor_description>(a.drive).force_constant_N_per_V;
 }
 
-void read_tracking(axis_analysis& out, const an::impulse_test& test) {
+template <class Loop> void read_tracking(axis_analysis& out, const Loop& loop, frequency highest) {
     std::optional<double> before;
     for (const response_line& l : out.lines) {
-        if (l.frequency_Hz > test.highest().value()) break;
+        if (l.frequency_Hz > highest.value()) break;
         const double size = std::abs(l.tracking);
         if (size > out.tracking_peak) out.tracking_peak = size, out.tracking_peak_Hz = l.frequency_Hz;
         if (!out.bandwidth_Hz && before && size < std::numbers::sqrt2 / 2) {
             const auto below = [&](frequency f) {
-                return std::abs(test.tracking(f)) < std::numbers::sqrt2 / 2;
+                return std::abs(loop.tracking(f)) < std::numbers::sqrt2 / 2;
             };
             out.bandwidth_Hz = an::detail::bisect(below, an::hertz(*before), an::hertz(l.frequency_Hz)).value();
         }
         before = l.frequency_Hz;
+    }
+}
+
+template <class Loop>
+void read_lines(axis_analysis& out, const Loop& loop, const an::band& lines, frequency highest) {
+    for (const frequency& f : an::grid(lines))
+        out.lines.push_back(
+            {f.value(), loop.open(f), loop.sensitivity(f), f <= highest ? loop.tracking(f) : an::complex()});
+    read_tracking(out, loop, highest);
+}
+
+/// The law of the loop that runs around a measured axis.
+void read_measured(axis_analysis& out, const an::impulse_test& model, const frf_file& measured) {
+    const measured_loop loop(model, measured.frf.response());
+    const an::band band = loop.band();
+    an::band drawn = band;
+    drawn.per_decade = 150;
+    read_lines(out, loop, drawn, model.highest());
+    out.figures = an::band_figures(loop, band);
+    out.measured =
+        measured_axis{measured.file, measured.frf.lines.size(), measured.from_Hz(), measured.to_Hz()};
+    try {
+        // Two integrators: the phase begins between 0 and -360 deg, whether the law has one or not.
+        out.stable = an::unstable_poles([&](frequency f) { return loop.open(f); }, band, 2) == 0;
+    } catch (const quadrant::invalid_parameter& fault) {
+        out.measured->not_told = fault.what();
     }
 }
 
@@ -64,12 +94,14 @@ bool step_answer::differs() const {
            as_it_is.settling.has_value() != linear.settling.has_value();
 }
 
-axis_analysis analyse_axis(const axis_description& a, double period, std::uint64_t seed, double step_m) {
+axis_analysis analyse_axis(const axis_description& a, double period, std::uint64_t seed, double step_m,
+                           const frf_file* measured) {
     axis_analysis out;
     out.name = a.name();
     out.law = a.law.kind;
     out.period = period;
-    axis_loop linear(linear_part(a), period, seed), real(a, period, seed);
+    axis_loop linear(linear_part(a), period, seed, measured ? seen::by_encoder : seen::at_table),
+        real(a, period, seed);
     constexpr double metre = 1e-6;
     double command_a_step = 0;
     stepped(linear, period, metre, &command_a_step, nullptr);
@@ -78,12 +110,14 @@ axis_analysis analyse_axis(const axis_description& a, double period, std::uint64
     out.stable = test.decays();
     out.linear = test.linear();
     if (out.stable && out.linear) {
-        const frequency from = 2e-4 * test.nyquist();
-        for (const frequency& f : an::grid({from, 0.999 * test.nyquist(), 150}))
-            out.lines.push_back({f.value(), test.open(f), test.sensitivity(f),
-                                 f <= test.highest() ? test.tracking(f) : an::complex()});
-        out.figures = an::frequency_figures(test, from, test.nyquist());
-        read_tracking(out, test);
+        if (measured) {
+            read_measured(out, test, *measured);
+            out.measured->proposed = propose(*measured, a, period);
+        } else {
+            const frequency from = 2e-4 * test.nyquist();
+            read_lines(out, test, {from, 0.999 * test.nyquist(), 150}, test.highest());
+            out.figures = an::frequency_figures(test, from, test.nyquist());
+        }
         out.stiffness_N_per_m = out.figures.softest.value * force_a_volt(a);
         out.stiffness_Hz = out.figures.softest.at.value();
     }

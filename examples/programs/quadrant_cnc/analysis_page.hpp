@@ -135,10 +135,15 @@ private:
 
 inline std::string html_report(const machine_analysis& m) {
     using quadrant_page::joined;
-    std::string sections, notes;
-    bool stable = true, calm = true;
+    std::string sections, notes, measured;
+    bool stable = true, told = true, calm = true;
     for (const axis_analysis& a : m.axes) {
-        stable = stable && a.stable;
+        stable = stable && (a.stable || !a.told());
+        told = told && a.told();
+        if (a.measured)
+            measured = fmt::format("<dt>Measured response</dt><dd>{}, {} frequencies, {} to {} Hz</dd>",
+                                   escape(a.measured->file), a.measured->lines, number(a.measured->from_Hz),
+                                   number(a.measured->to_Hz));
         calm = calm && (a.lines.empty() || a.figures.sensitivity_peak <= largest_sensitivity);
         std::string rows;
         for (const figure_words& f : figures_of(a))
@@ -152,6 +157,7 @@ inline std::string html_report(const machine_analysis& m) {
     }
     for (const std::string& note : m.notes) notes += fmt::format("<li>{}</li>", escape(note));
     const char* badge = !stable ? "<span class=\"badge unexplained\">not stable</span>"
+                        : !told ? "<span class=\"badge partly_explained\">stability not told</span>"
                         : !calm ? "<span class=\"badge partly_explained\">sensitivity above 2</span>"
                                 : "<span class=\"badge no_gap\">stable, sensitivity up to 2</span>";
     return quadrant_gap::fill(
@@ -161,8 +167,8 @@ inline std::string html_report(const machine_analysis& m) {
          {"sentence", escape(sentence(m))},
          {"axes", sections},
          {"notes", notes.empty() ? "<p class=\"empty\">None.</p>" : "<ul>" + notes + "</ul>"},
-         {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd><dt>Servo period</dt><dd>{} ms</dd></dl>",
-                               escape(m.cnc_file), number(1e3 * m.period))},
+         {"files", fmt::format("<dl><dt>Machine</dt><dd>{}</dd>{}<dt>Servo period</dt><dd>{} ms</dd></dl>",
+                               escape(m.cnc_file), measured, number(1e3 * m.period))},
          {"css", joined(files::report_css) + joined(files::cnc_css)}});
 }
 

@@ -13,19 +13,48 @@ inline constexpr double largest_sensitivity = 2;
 struct figure_words {
     std::string name, value, says;
 };
+inline void say_proposal(std::vector<figure_words>& out, const proposal& p) {
+    if (!p.gains) {
+        out.push_back({"proposed gains", "none: " + p.no_gains, "of a cascade (cascade_p_pi)"});
+        return;
+    }
+    const proposed_gains& g = *p.gains;
+    out.push_back(
+        {"proposed velocity gain",
+         fmt::format("{} V s/m, integral {} V/m", number(g.velocity_gain), number(g.velocity_integral)),
+         fmt::format("of a cascade (cascade_p_pi), {}; more is kept off by its {} at {} Hz",
+                     p.velocity_filter_Hz > 0
+                         ? fmt::format("velocity filter {} Hz", number(p.velocity_filter_Hz))
+                         : p.estimator,
+                     g.velocity_limit, number(g.velocity_limit_Hz))});
+    out.push_back(
+        {"proposed position gain", fmt::format("{} 1/s", number(g.position_gain)),
+         fmt::format("more is kept off by its {} at {} Hz", g.position_limit, number(g.position_limit_Hz))});
+    if (p.notch)
+        out.push_back({"proposed notch",
+                       fmt::format("at {} Hz, width {}", number(p.notch->frequency_Hz), number(p.notch->width)),
+                       fmt::format("for a peak of {} dB; without it the velocity gain is {} V s/m",
+                                   number(p.notch->prominence_dB), number(p.notch->without))});
+    else
+        out.push_back({"proposed notch", "none: " + p.no_notch, "for the highest peak above the crossover"});
+}
 inline std::vector<figure_words> figures_of(const axis_analysis& a) {
     std::vector<figure_words> out;
     if (!a.lines.empty()) {
         const auto& f = a.figures;
+        const bool crosses = !a.told() || a.stable; // else a crossing is no margin
         out.push_back({"phase margin",
-                       f.phase
+                       !crosses ? "none: the loop is not stable"
+                       : f.phase
                            ? fmt::format("{} deg at {} Hz", number(f.phase->value), number(f.phase->at.value()))
                            : "none",
                        "how much later the loop may answer: 30 to 60 deg are usual"});
-        std::string gain = f.gain_rise ? fmt::format("{} dB", number(*f.gain_rise)) : "without bound";
+        std::string gain = f.gain_rise  ? fmt::format("{} dB", number(*f.gain_rise))
+                           : a.measured ? "no limit in the measured band"
+                                        : "without bound";
         if (f.gain_fall) gain += fmt::format("; it may fall by {} dB", number(*f.gain_fall));
-        out.push_back(
-            {"gain margin", gain, "how much the gain may rise until the loop is unstable: 6 dB are usual"});
+        out.push_back({"gain margin", crosses ? gain : "none: the loop is not stable",
+                       "how much the gain may rise until the loop is unstable: 6 dB are usual"});
         out.push_back(
             {"sensitivity, peak",
              fmt::format("{} at {} Hz", number(f.sensitivity_peak), number(f.margins.modulus.at.value())),
@@ -35,6 +64,7 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
                        "where the sensitivity comes up through -3 dB"});
         out.push_back({"bandwidth of tracking",
                        a.bandwidth_Hz ? fmt::format("{} Hz", number(*a.bandwidth_Hz))
+                       : a.measured   ? "not in the measured band"
                                       : "above what is known (0.4 of the sampling rate)",
                        "where the table over the reference falls through -3 dB"});
         out.push_back({"tracking, peak",
@@ -45,6 +75,7 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
              fmt::format("{} N/µm at {} Hz", number(1e-6 * a.stiffness_N_per_m), number(a.stiffness_Hz)),
              "the force that moves the table by a micrometre"});
     }
+    if (a.measured) say_proposal(out, a.measured->proposed);
     const auto step = [&](const quadrant::analysis::step_figures& y) {
         const auto ms = [](const auto& t) { return number(1e3 * t->value()); };
         return fmt::format("{}, overshoots by {} %, {}",
@@ -53,8 +84,9 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
                            y.settling ? fmt::format("settled in {} ms", ms(y.settling))
                                       : "not settled in 10 s");
     };
-    out.push_back({fmt::format("step of {} µm", number(1e6 * a.step.size_m)), step(a.step.as_it_is),
-                   "with friction, rounding and limits; from 10 to 90 %, and within 2 %"});
+    out.push_back(
+        {fmt::format("step of {} µm{}", number(1e6 * a.step.size_m), a.measured ? ", machine file" : ""),
+         step(a.step.as_it_is), "with friction, rounding and limits; from 10 to 90 %, and within 2 %"});
     if (a.step.differs())
         out.push_back(
             {"the same, linear part", step(a.step.linear), "without friction, play, rounding and limits"});
@@ -63,7 +95,8 @@ inline std::vector<figure_words> figures_of(const axis_analysis& a) {
     return out;
 }
 inline std::string state_of(const axis_analysis& a) {
-    return !a.stable   ? "not stable"
+    return !a.told()   ? "whether it is stable the measured band does not tell (" + a.measured->not_told + ")"
+           : !a.stable ? "not stable"
            : !a.linear ? "stable; its law is not linear, so it has no frequency response"
                        : "stable";
 }
@@ -72,13 +105,16 @@ inline std::string sentence(const machine_analysis& m) {
     std::string unstable;
     const axis_analysis *slowest = nullptr, *worst = nullptr;
     for (const axis_analysis& a : m.axes) {
-        if (!a.stable) unstable += (unstable.empty() ? "" : " and ") + a.name;
+        if (a.told() && !a.stable) unstable += (unstable.empty() ? "" : " and ") + a.name;
         if (a.lines.empty()) continue;
         if (!worst || a.figures.sensitivity_peak > worst->figures.sensitivity_peak) worst = &a;
         if (a.bandwidth_Hz && (!slowest || *a.bandwidth_Hz < *slowest->bandwidth_Hz)) slowest = &a;
     }
     if (!unstable.empty()) return fmt::format("Axis {} is not stable.", unstable);
-    std::string out = m.axes.size() == 1 ? "The axis is stable" : "Every axis is stable";
+    const bool told = std::all_of(m.axes.begin(), m.axes.end(), [](const auto& a) { return a.told(); });
+    std::string out = !told                ? "The band does not tell whether the axis is stable"
+                      : m.axes.size() == 1 ? "The axis is stable"
+                                           : "Every axis is stable";
     if (worst)
         out += fmt::format("; sensitivity {} at most (axis {})", number(worst->figures.sensitivity_peak),
                            worst->name);
@@ -104,9 +140,37 @@ inline nlohmann::ordered_json to_json(const quadrant::analysis::step_figures& y)
     if (y.settling) out["settling_s"] = y.settling->value();
     return out;
 }
+inline nlohmann::ordered_json to_json(const measured_axis& m) {
+    using json = nlohmann::ordered_json;
+    json out = {{"file", m.file}, {"lines", m.lines}, {"from_Hz", m.from_Hz}, {"to_Hz", m.to_Hz}};
+    if (!m.not_told.empty()) out["stability_not_told"] = m.not_told;
+    const proposal& p = m.proposed;
+    json control = {{"law", "cascade_p_pi"}};
+    if (p.gains) {
+        control["position_gain_per_s"] = p.gains->position_gain;
+        control["velocity_gain_V_s_per_m"] = p.gains->velocity_gain;
+        control["velocity_integral_V_per_m"] = p.gains->velocity_integral;
+        control["velocity_estimator"] = p.estimator;
+        if (p.velocity_filter_Hz > 0) control["velocity_filter_Hz"] = p.velocity_filter_Hz;
+        if (p.notch) control["notch"] = {{"frequency_Hz", p.notch->frequency_Hz}, {"width", p.notch->width}};
+        out["proposed_control"] = control;
+        out["proposed_for"] = {{"gain_margin_dB", p.wanted.gain_dB},
+                               {"phase_margin_deg", p.wanted.phase_deg},
+                               {"modulus_margin", p.wanted.modulus}};
+        out["velocity_gain_limited_by"] = p.gains->velocity_limit;
+        out["position_gain_limited_by"] = p.gains->position_limit;
+    } else {
+        out["no_gains"] = p.no_gains;
+    }
+    if (!p.no_notch.empty()) out["no_notch"] = p.no_notch;
+    return out;
+}
 inline nlohmann::ordered_json to_json(const axis_analysis& a) {
     using json = nlohmann::ordered_json;
-    json out = {{"law", a.law}, {"stable", a.stable}, {"linear", a.linear}};
+    json out = {{"law", a.law}};
+    if (a.told()) out["stable"] = a.stable;
+    out["linear"] = a.linear;
+    if (a.measured) out["measured"] = to_json(*a.measured);
     if (!a.lines.empty()) {
         const auto& f = a.figures;
         const auto margins = [](const std::vector<quadrant::analysis::margin>& all, const char* key) {

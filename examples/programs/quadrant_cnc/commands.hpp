@@ -17,6 +17,7 @@ struct analyse_options {
     std::string cnc, report; ///< files; empty: none
     std::string json;        ///< the same; "-": standard output
     std::string axis;        ///< empty: all
+    std::string frf;         ///< a measured response in place of the drive; empty: none
     double step_m = 0;       ///< 0: what takes half of the command's limit
     bool quiet = false;
 };

@@ -28,16 +28,20 @@ inline axis_description linear_part(axis_description a) {
     return a;
 }
 
+/// Which position of an axis is looked at.
+enum class seen { at_table, by_encoder };
+
 /// One axis in closed loop, whatever its drive and its law (quadrant::analysis::running_loop).
 class axis_loop {
 public:
-    axis_loop(const axis_description& a, double period, std::uint64_t seed)
+    axis_loop(const axis_description& a, double period, std::uint64_t seed, seen where = seen::at_table)
         : drive_(std::visit([&](const auto& d) { return make_drive(d, a.sensor, period, seed); }, a.drive)),
           control_(quadrant::diagnosis::made(a.law,
                                              {.limit_V = a.command.limit_V,
                                               .dac_bits = a.command.dac_bits,
                                               .dac_range_V = a.command.dac_range_V},
-                                             period)) {}
+                                             period)),
+          where_(where) {}
 
     void rest() {
         drive_->settle(0);
@@ -45,7 +49,9 @@ public:
     }
     std::size_t lead() const { return control_->lead(); }
     quadrant::analysis::loop_sample step(const axis_motion<>& asked, double push) {
-        const double place = drive_->place(), command = control_->step(asked, drive_->measured()) + push;
+        const axis_measurement<> now = drive_->measured();
+        const double place = where_ == seen::at_table ? drive_->place() : now.position.value(),
+                     command = control_->step(asked, now) + push;
         drive_->step(volts::from_value(command));
         return {command, place, control_->due()};
     }
@@ -54,6 +60,7 @@ public:
 private:
     std::unique_ptr<drive_side> drive_;
     std::unique_ptr<quadrant::diagnosis::running_controller> control_;
+    seen where_;
 };
 
 } // namespace quadrant_cnc

@@ -37,6 +37,10 @@ void add_analyse(CLI::App& app) {
         app.add_subcommand("analyse", "margins, bandwidth, stiffness and step response of each axis");
     command->add_option("--cnc", o->cnc, "the machine (JSON, docs/cnc.md)")->required();
     command->add_option("--axis", o->axis, "this one only");
+    command->add_option(
+        "--frf", o->frf,
+        "a measured frequency response of the axis (CSV: frequency_Hz, magnitude_m_per_V, phase_deg, "
+        "docs/howto/analyse_an_axis.md), in place of its drive");
     command
         ->add_option("--step", o->step_m,
                      "of the reference, in metres; without: what takes half of the command's limit")

@@ -18,25 +18,34 @@ struct law_figures {
     bool settles = false; ///< both steps die out in the time of the test: a loop that is not stable does not
 };
 
+namespace detail {
+inline void take_gain(law_figures& y, double decibels) {
+    if (decibels > 0 && (!y.gain_rise || decibels < *y.gain_rise)) y.gain_rise = decibels;
+    if (decibels < 0 && (!y.gain_fall || -decibels < *y.gain_fall)) y.gain_fall = -decibels;
+}
+} // namespace detail
+
+/// What a band says of a loop with open(f), sensitivity(f) and disturbance(f), such as one around a measured
+/// axis; the steps stay empty. Throws for a band that is none.
+template <class Loop> law_figures band_figures(const Loop& loop, const band& searched) {
+    const auto open = [&](frequency f) { return loop.open(f); };
+    law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};
+    for (const margin& m : y.margins.gain_crossings) detail::take_gain(y, m.value);
+    y.phase = y.margins.smallest_phase();
+    y.sensitivity_peak = 1 / y.margins.modulus.value;
+    y.bandwidth = sensitivity_bandwidth([&](frequency f) { return loop.sensitivity(f); }, searched);
+    y.softest = least([&](frequency f) { return 1.0 / loop.disturbance(f); }, searched);
+    return y;
+}
+
 /// What frequency says of a loop with open(f), sensitivity(f) and disturbance(f), such as `law_loop` and
 /// `impulse_test`, up to half its rate; the steps stay empty. At half the sampling rate L is real: that counts
 /// as a crossing of the phase when it is negative there.
 /// Source: [Franklin1998]. Throws for a band that is none.
 template <class Loop> law_figures frequency_figures(const Loop& loop, frequency from, frequency nyquist) {
-    const band searched{from, 0.999 * nyquist};
-    const auto open = [&](frequency f) { return loop.open(f); };
-    law_figures y{margins(open, searched), {}, {}, {}, 0, {}, {}, {}, {}};
+    law_figures y = band_figures(loop, {from, 0.999 * nyquist});
     const complex last = loop.open(nyquist);
-    auto crossings = y.margins.gain_crossings;
-    if (last.real() < 0) crossings.push_back({-decibel(std::abs(last)), nyquist});
-    for (const margin& m : crossings) {
-        if (m.value > 0 && (!y.gain_rise || m.value < *y.gain_rise)) y.gain_rise = m.value;
-        if (m.value < 0 && (!y.gain_fall || -m.value < *y.gain_fall)) y.gain_fall = -m.value;
-    }
-    y.phase = y.margins.smallest_phase();
-    y.sensitivity_peak = 1 / y.margins.modulus.value;
-    y.bandwidth = sensitivity_bandwidth([&](frequency f) { return loop.sensitivity(f); }, searched);
-    y.softest = least([&](frequency f) { return 1.0 / loop.disturbance(f); }, searched);
+    if (last.real() < 0) detail::take_gain(y, -decibel(std::abs(last)));
     return y;
 }
 

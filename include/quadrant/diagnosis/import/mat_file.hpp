@@ -49,6 +49,7 @@ public:
 private:
     static constexpr std::size_t header = 128;
     static constexpr std::uint32_t compressed = 15, matrix = 14;
+    static constexpr std::size_t most_inflated = std::size_t{1} << 28; ///< 33 million numbers
 
     struct element {
         std::uint32_t type;
@@ -120,8 +121,12 @@ private:
             const std::size_t before = p.total_out;
             stream.write(p, boost::beast::zlib::Flush::none, fault);
             if (!fault && p.total_out == before) break;
+            if (inflated_ + p.total_out > most_inflated)
+                refuse(e.at,
+                       fmt::format("its compressed variables hold more than {} MiB", most_inflated >> 20));
         }
         contents.resize(p.total_out);
+        inflated_ += p.total_out;
         if (fault != boost::beast::zlib::error::end_of_stream)
             refuse(e.at + 2 + p.total_in, "the zlib stream is broken");
         std::uint32_t sum = 0;
@@ -250,6 +255,7 @@ private:
 
     std::string_view file_, file_bytes_, bytes_; ///< bytes_: of the file, or what a compressed variable holds
     std::size_t at_ = header, inside_ = 0; ///< inside_: where in the file the compressed variable is; 0: none
+    std::size_t inflated_ = 0;             ///< bytes of the compressed variables so far
     bool swapped_ = false;
     std::vector<variable> variables_{};
 };
