@@ -3,6 +3,8 @@
 // whole.
 //   build/bench/benchmarks/diagnosis
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/predictor.hpp>
+#include <quadrant/diagnosis/model/plant_model.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
