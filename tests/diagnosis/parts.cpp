@@ -3,6 +3,7 @@
 
 #include <quadrant/diagnosis/controller/cascade_p_pi.hpp>
 #include <quadrant/diagnosis/effect/effects.hpp>
+#include <quadrant/diagnosis/fit/spatial_spectrum.hpp>
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>
 #include <quadrant/diagnosis/where/controller_floor.hpp>
 #include <quadrant/diagnosis/where/places.hpp>
@@ -23,6 +24,29 @@ std::vector<double> sine(double frequency, double period, std::size_t n) {
     return x;
 }
 } // namespace
+
+TEST_CASE("carried_peaks: a wave of the force constant is found through the windows in which there is a command") {
+    // Strokes of 110 mm: the command is large where they begin and end, and nearly nothing in between.
+    constexpr double period = 0.0086, travel = 0.11;
+    std::vector<double> z, command, force;
+    for (int stroke = 0; stroke < 6; ++stroke)
+        for (int k = 0; k < 2000; ++k) {
+            const double t = k / 2000.0, way = travel * (t - std::sin(two_pi * t) / two_pi);
+            z.push_back(stroke % 2 == 0 ? way : travel - way);
+            const double pull = std::pow(std::sin(two_pi * t), 5) * (stroke % 2 == 0 ? 1 : -1);
+            command.push_back(pull);
+            force.push_back(pull * (0.3 + 0.2 * std::sin(two_pi * z.back() / period + 0.4)));
+        }
+    std::vector<double> product(z.size());
+    for (std::size_t k = 0; k < z.size(); ++k) product[k] = force[k] * command[k];
+    const auto is = [&](double found) { return std::abs(1 / found - 1 / period) * travel < 0.5; };
+    const auto found = carried_peaks(force, command, z, travel / 2, travel / 400, 2);
+    REQUIRE(!found.empty());
+    CHECK(is(found.front()));
+    CHECK_FALSE(is(spatial_peaks(product, z, travel / 2, travel / 400, 2).front())); // a plain transform is misled
+    const std::vector<double> none(z.size(), 0.0);
+    CHECK(carried_peaks(force, none, z, travel / 2, travel / 400, 2).empty());
+}
 
 TEST_CASE("harmonics: even ones alone are told as the harmonics of half the period") {
     const auto told = [](std::vector<double> sizes) {

@@ -16,7 +16,7 @@ namespace detail {
 
 /// Beyond this ratio a unit is wrong: the smallest slips are 1000 (mm, mV), 57 (degrees) and 25.4 (inch); no
 /// machine is so far from what its owner believes.
-inline constexpr double slip_of_a_unit = 20;
+inline constexpr double slip_of_a_unit = 24;
 /// Between the two a ratio is only noted: a wrong mass, a soft controller or a poor regression can make it.
 inline constexpr double remarkable = 3;
 /// A turned sign is refused only when it is this many standard deviations sure, and explains a share of the

@@ -136,6 +136,19 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
                        result.name.c_str(), p.key.c_str()));
 }
 
+/// What the owner excludes although it explains the record better than what is named.
+inline void note_excluded(diagnosis_result& out, const std::vector<cause>& causes) {
+    const auto label = [](const std::string& name) {
+        const effect* e = effect_named(name);
+        return e ? e->label : std::string_view(name);
+    };
+    for (const cause& x : causes)
+        if (!x.better_excluded.empty())
+            out.notes.push_back(fmt::format("axis {}: {}, which the machine file excludes, explains the record "
+                                            "better than {} does: check excluded_effects.",
+                                            x.axis, label(x.better_excluded), label(x.effect)));
+}
+
 /// What the search did not come to before its time was up.
 inline void note_missed(diagnosis_result& out, const axis_case& c) {
     if (!c.models.over()) return;
@@ -241,6 +254,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     put_in_words(result.kind, result.calibrated_with_suspects);
     put_in_words(result.kind, causes);
     note_bounds(out, result);
+    note_excluded(out, causes);
     note_missed(out, c);
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
@@ -282,10 +296,12 @@ inline axis_case& need_blocks(axis_case& c, const std::string& file) {
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
 /// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
 /// Beside forces without a name a corrected model predicts best by standing still. A play hides the motor's
-/// motion, and a drive's loops are replayed with the readings.
+/// motion, an error of the reading is none, and a drive's loops are replayed with the readings.
 inline bool contradicts_motion(const axis_case& c) {
-    if (c.at_floor() || c.best().effects.empty() || c.models.over() || c.axis.drive.closes() ||
-        c.best().fit.plant.backlash > 0)
+    const auto reads = [](const effect* e) { return e->joins == joint::reading; };
+    const auto& effects = c.best().effects;
+    if (c.at_floor() || effects.empty() || c.models.over() || c.axis.drive.closes() ||
+        c.best().fit.plant.backlash > 0 || std::any_of(effects.begin(), effects.end(), reads))
         return false;
     return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
 }
@@ -302,6 +318,17 @@ inline bool answers_too_little(const axis_case& c) {
         return m.fit.plant.force_constant / m.fit.plant.moving_mass();
     };
     return answer(c.best()) < (1 - c.limits.least_shrink) * answer(c.path.front());
+}
+
+/// What is left in both logs, in energy [N^2].
+inline double left_in_both(const axis_case& c) {
+    return square(c.models.held_out_force(c.best())) + square(c.second_log(c.best()).force);
+}
+/// Whether the hold-out log shows a gap that the log holds little of: only the other way round is there
+/// something to fit.
+inline bool hides_what_the_other_shows(const axis_case& c) {
+    if (!c.tested_apart() || c.record.replayed() || c.settled_on_second || c.models.over()) return false;
+    return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
 }
 
 /// Effects of the caller's own have names of their own.
@@ -375,9 +402,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
         tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
-        std::vector<std::string> excluded = machine.excluded_effects;
-        if (transmission) // the two encoders show these themselves
-            excluded.insert(excluded.end(), {"backlash", "structural_resonance"});
+        exclusions excluded{machine.excluded_effects};
+        if (transmission) excluded.by_readings = {"backlash", "structural_resonance"}; // of the two encoders
         const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
         const rules limits = detail::for_one_of(r, axes_left--);
         // A servo's law on duty is soft, and a force moves it where it shows. A stiff loop hides it from the
@@ -409,6 +435,20 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                     "predicted best by {}.",
                     axis.name,
                     stands ? "standing where the axis moves" : "answering the measured command too little"));
+            }
+        }
+        if (!both && detail::hides_what_the_other_shows(*found)) {
+            tell("axis " + axis.name + ": again, fitted to the hold-out log");
+            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, machine.sample_period_s, excluded,
+                                                         limits, tell, held_by::readings);
+            if (exchanged->at_floor() ||
+                detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
+                found = std::move(exchanged);
+                found->exchanged = true;
+                out.notes.push_back(fmt::format(
+                    "axis {}: fitted to the hold-out log and judged on the log: what is wrong shows in the motion of "
+                    "the hold-out log only.",
+                    axis.name));
             }
         }
         detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);

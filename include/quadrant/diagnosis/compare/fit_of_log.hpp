@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../effect/exclusions.hpp"
 #include "../effect/rules.hpp"
 #include "../fit/record.hpp"
 #include "../log/log.hpp"
@@ -40,7 +41,7 @@ public:
 
 private:
     rules limits_;
-    std::vector<std::string> excluded_;
+    exclusions excluded_;
     axis_log log_;
     axis_record record_;
 };

@@ -20,7 +20,7 @@ inline axis_record prepared(const axis_description& axis, const axis_log& log, d
 
 QUADRANT_DIAGNOSIS_DECL log_of_axis::log_of_axis(const machine_description& machine,
                                                  const axis_description& axis, const machine_log& log, rules r)
-    : limits_(r), excluded_(machine.excluded_effects),
+    : limits_(r), excluded_{machine.excluded_effects},
       log_(with_neighbour(log, *named(log.axes, axis.name), machine.sample_period_s,
                           bandwidth_of(axis, *named(log.axes, axis.name), machine.sample_period_s))),
       record_(prepared(axis, log_, machine.sample_period_s)) {}

@@ -54,11 +54,16 @@ inline constexpr effect force_ripple{
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double travel = detail::travel(s);
-        std::vector<double> by_command(s.residual.size());
-        for (std::size_t k = 0; k < by_command.size(); ++k) by_command[k] = s.residual[k] * s.record.command[k];
+        // The command as the residual sees it: late by the delay, and below the same band.
+        const auto late = static_cast<std::size_t>(std::lround(s.leader.delay / s.record.period));
+        std::vector<double> command(s.residual.size());
+        for (std::size_t k = 0; k < command.size(); ++k) command[k] = s.record.command[k - std::min(k, late)];
+        command = zero_phase(command, s.record.bandwidth_Hz, s.record.period);
+        for (std::size_t k = 0; k < s.record.left_out.size(); ++k)
+            if (s.record.left_out[k]) command[k] = 0;
         std::vector<std::vector<parameter>> out;
         for (double period :
-             spatial_peaks(by_command, s.record.position, 0.5 * travel,
+             carried_peaks(s.residual, command, s.record.position, 0.5 * travel,
                            std::max(travel / 400, 8 * s.record.resolution), 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::force_ripple_harmonics, 1>("ripple_period_m", "ripple",
                                                                                period, travel, 0.9));

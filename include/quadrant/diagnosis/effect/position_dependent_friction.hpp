@@ -53,14 +53,16 @@ inline constexpr effect position_dependent_friction{
         if (!(s.leader.friction.coulomb > 0)) return {};
         const double travel = detail::travel(s);
         const double peak = s.record.scale.speed;
-        std::vector<double> against(s.residual.size());
-        for (std::size_t k = 0; k < against.size(); ++k) {
+        std::vector<double> direction(s.residual.size());
+        for (std::size_t k = 0; k < direction.size(); ++k) {
             const double v = s.record.velocity[k];
-            against[k] = std::abs(v) < 0.005 * peak ? 0 : v > 0 ? s.residual[k] : -s.residual[k];
+            direction[k] = std::abs(v) < 0.005 * peak ? 0 : v > 0 ? 1 : -1;
         }
+        for (std::size_t k = 0; k < s.record.left_out.size(); ++k)
+            if (s.record.left_out[k]) direction[k] = 0;
         std::vector<std::vector<parameter>> out;
         for (double period :
-             spatial_peaks(against, s.record.position, 2 * travel, travel / 50, 2, s.record.score.skip))
+             carried_peaks(s.residual, direction, s.record.position, 2 * travel, travel / 50, 2, s.record.score.skip))
             out.push_back(detail::repeating<detail::position_dependent_friction_harmonics, 1>(
                 "friction_position_period_m", "friction_position_amplitude", period, travel, 0.95));
         return out;

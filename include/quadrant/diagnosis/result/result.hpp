@@ -92,6 +92,7 @@ struct cause {
     std::string exciting_motion;
     std::string
         better_form; ///< of what a force that no list names predicts better as a function; empty: of nothing
+    std::string better_excluded{}; ///< which effect that the machine file excludes explains more; empty: none
 };
 
 /// Signals for the pictures, one entry a sample (t, ...), or a bin (frequency, ...).

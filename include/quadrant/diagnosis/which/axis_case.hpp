@@ -19,7 +19,7 @@ namespace quadrant::diagnosis {
 class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
-              const std::vector<std::string>& excluded, const rules& r, const progress& tell,
+              const exclusions& excluded, const rules& r, const progress& tell,
               held_by how = held_by::readings);
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
@@ -27,14 +27,15 @@ public:
 private:
     /// The log made ready. How many independent readings a path holds, only a model near the machine tells: the
     /// error of a wrong one is one long wave. So a first search looks for one.
-    axis_record record_of(double period, const std::vector<std::string>& excluded, const progress& tell,
+    axis_record record_of(double period, const exclusions& excluded, const progress& tell,
                           held_by how);
     std::optional<plant_model> nearest_; ///< of that search
 
 public:
     const axis_description& axis;
     const axis_log& log;
-    const axis_log* holdout;
+    bool exchanged = false;  ///< `log` is the hold-out log and `holdout` the log
+    const axis_log* holdout; ///< on which what was fitted to `log` is judged
     rules limits;
     double count;      ///< the step in which the position really moves [m]
     double resolution; ///< the described one, or the real one where that is coarser [m]

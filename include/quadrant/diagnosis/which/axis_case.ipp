@@ -5,27 +5,24 @@ namespace quadrant::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period,
-                                             const std::vector<std::string>& excluded, const rules& r,
+                                             const exclusions& excluded, const rules& r,
                                              const progress& tell, held_by how)
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
       record(record_of(period, excluded, tell, how)), models(record, a, excluded, r, tell) {
-    const auto is_excluded = [&](const char* effect) {
-        return std::find(excluded.begin(), excluded.end(), effect) != excluded.end();
-    };
     // A velocity drive's controller commands set-points; how far a difference there moves the axis no force
     // tells. What was measured behind an amplifier is not what the controller asked for.
     if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
         axis.actuator.command_is == command_origin::asked)
         controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                       coarse() ? count : axis.encoder.resolution_m);
-    if (controller && is_excluded("added_command")) controller->added.reset();
-    controller_unnamed = controller_differs() && !command_is_added() && is_excluded("controller_mismatch");
+    if (controller && excluded.contains("added_command")) controller->added.reset();
+    controller_unnamed = controller_differs() && !command_is_added() && excluded.contains("controller_mismatch");
     if (controller_unnamed) controller->mended = false;
     if (holdout)
         second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
                              axis, how, nearest_ ? &*nearest_ : nullptr);
-    count_unnamed = coarse() && is_excluded("encoder_quantization");
+    count_unnamed = coarse() && excluded.contains("encoder_quantization");
     follow(models.run());
     if (!tested_apart() || !record.replayed() || best().effects.empty()) return;
     const auto worth_of = [&](const candidate& m) { return worth(m); };
@@ -34,7 +31,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period,
-                                                         const std::vector<std::string>& excluded,
+                                                         const exclusions& excluded,
                                                          const progress& tell, held_by how) {
     const axis_record ready =
         in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);

@@ -68,6 +68,16 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which);
 /// none of them: two common effects may do what a rare one does.
 QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vector<rival>& names);
 
+/// What the owner excludes and explains the record better than the cause number `which`.
+struct excluded_rival {
+    const effect* name = nullptr; ///< of the best of them; null: there is none
+    double probability = 0;       ///< that it is there and the cause is not
+};
+/// The owner's word is evidence too: it is wrong in one of twenty. So a model with the excluded effect in the
+/// cause's place, or alone, must be as much better before the name falls. One that contains the cause is no
+/// rival.
+QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which);
+
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even
 /// ones alone repeat twice as often.
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values);

@@ -225,6 +225,27 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
                              score_temperature));
 }
 
+QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which) {
+    constexpr double owner_errs = 0.05;
+    const effect* own = c.best().effects[which];
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, own);
+    std::vector<candidate> models = c.models.with_excluded(c.path.front());
+    if (!others.empty())
+        for (candidate& m : c.models.with_excluded(c.models.with(others))) models.push_back(std::move(m));
+    std::erase_if(models, [&](const candidate& m) { return contains(m, c.best(), *own); });
+    const auto score = [&](const candidate& m) {
+        return m.total + (c.tested_apart() ? c.second_log(m).score : 0);
+    };
+    const double named = score(c.best());
+    excluded_rival out;
+    for (const candidate& m : models) {
+        const double odds = owner_errs * std::exp(std::min(50.0, (score(m) - named) / score_temperature));
+        if (odds / (1 + odds) > out.probability) out = {m.effects.back(), odds / (1 + odds)};
+    }
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values) {
     parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
     for (parameter_estimate& p : values) {
@@ -331,7 +352,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
         constexpr double least = 0.08;
-        const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]);
+        const auto excluded = detail::excluded_instead_of(c, i);
+        if (excluded.probability > 0.5) named.better_excluded = excluded.name->name;
+        const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) *
+                             (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
         if (detail::may_be_inside_its_tolerance(c, named.parameters)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../effect/exclusions.hpp"
 #include "../effect/rules.hpp"
 #include "../text/on_all_cores.hpp"
 #include "candidate.hpp"
@@ -16,7 +17,7 @@ namespace quadrant::diagnosis {
 /// One axis under diagnosis: the record, the described machine and the models tried so far.
 class search {
 public:
-    search(const axis_record& record, const axis_description& axis, std::vector<std::string> excluded, rules r,
+    search(const axis_record& record, const axis_description& axis, exclusions excluded, rules r,
            progress tell);
 
     const candidate& given() const { return given_; } ///< the machine file as it stands
@@ -64,6 +65,10 @@ public:
     bool is_calibration(const candidate& c, const effect* e) const;
 
     std::vector<const effect*> suspects() const;
+
+    /// `from` with each of the effects that the owner excludes, and would be suspects otherwise: they are never
+    /// named, but what explains the record far better than a name speaks against the name.
+    std::vector<candidate> with_excluded(const candidate& from) const;
 
     /// The forms without a name that compete. Along a motion a force that follows the command takes the command
     /// itself away, and would explain every record.
@@ -173,6 +178,8 @@ public:
     static bool same(const candidate& a, const candidate& b);
 
 private:
+    /// Whether an effect can act on this axis at all.
+    bool possible(const effect& e) const;
     /// Whether a number is a gain of velocity loops inside the drive. The force that moves an axis along its
     /// path does not depend on them; only a replay of the logged motion with another gain differs, by far more
     /// than two machines would.
@@ -196,6 +203,9 @@ private:
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const;
+    /// Each effect but the last was found while the others were missing. Each starts again beside the others,
+    /// and the best fit stays.
+    candidate started_again(candidate best) const;
     /// Where `step`, which has one effect more, only led the other numbers to a better place, the effect takes
     /// nothing off: `best` goes on from those numbers without it, and what was tried beside it is forgotten.
     /// True: it got better.
@@ -244,7 +254,7 @@ private:
 
     const axis_record& record_;
     const axis_description& axis_;
-    std::vector<std::string> excluded_;
+    exclusions excluded_;
     rules rules_;
     progress tell_;
     candidate given_;

@@ -5,7 +5,7 @@
 namespace quadrant::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_description& axis,
-                                       std::vector<std::string> excluded, rules r, progress tell)
+                                       exclusions excluded, rules r, progress tell)
     : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
     given_.fit.plant = plant_model(axis, record.scale.give());
     given_.fit.plant.drive.reading_age = record.reading_age;
@@ -161,19 +161,33 @@ QUADRANT_DIAGNOSIS_DECL bool search::is_calibration(const candidate& c, const ef
     return false;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool search::possible(const effect& e) const {
+    // What is logged behind the amplifier has passed everything that acts on the command.
+    if (axis_.actuator.command_is == command_origin::measured && e.joins == joint::command) return false;
+    if (e.rotary_only && axis_.kind == axis_kind::linear) return false;
+    return axis_.drive.closes() ? beside_drive(e) : e.box != "drive";
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> search::suspects() const {
     std::vector<const effect*> out;
-    // What is logged behind the amplifier has passed everything that acts on the command.
-    const bool measured = axis_.actuator.command_is == command_origin::measured;
-    const auto allowed = [&](const effect* e) {
-        return std::find(excluded_.begin(), excluded_.end(), e->name) == excluded_.end() &&
-               !(e->rotary_only && axis_.kind == axis_kind::linear) &&
-               !(measured && e->joins == joint::command) &&
-               (axis_.drive.closes() ? beside_drive(*e) : e->box != "drive");
-    };
+    const auto allowed = [&](const effect* e) { return !excluded_.contains(e->name) && possible(*e); };
     for (const effect* e : every_effect())
         if (e->starts && allowed(e)) out.push_back(e);
     std::copy_if(axis_.own_effects.begin(), axis_.own_effects.end(), std::back_inserter(out), allowed);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::with_excluded(const candidate& from) const {
+    std::vector<candidate> out;
+    std::vector<std::size_t> which;
+    for (const effect* e : every_effect())
+        if (e->starts && excluded_.by_owner_alone(e->name) && possible(*e) && !has(from, e)) {
+            which.push_back(out.size());
+            out.push_back(joined(from, e));
+        }
+    sketch_each(from, which, out, when_late::leave_out);
+    finish_best(which, rules_.finalists, out, when_late::leave_out);
+    std::erase_if(out, [](const candidate& c) { return c.missed || !std::isfinite(c.total); });
     return out;
 }
 
@@ -305,7 +319,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             continue;
         }
         const candidate* step = paying(next, best);
-        if (best.effects.empty() && !over() && !(step && (at_noise(*step) || near_floor(*step)))) {
+        if (best.effects.empty() && !over() &&
+            !(step && (at_noise(*step) || (near_floor(*step) && settled(*step))))) {
             add(everyday());
             step = paying(next, best);
         }
@@ -314,7 +329,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             continue;
         }
         if (step) {
-            const candidate chosen = *step;
+            const candidate chosen = started_again(*step);
             beam.assign(1, chosen);
             for (const auto& c : next)
                 if (beam.size() < rules_.beam && !same(c, chosen) &&
@@ -490,6 +505,23 @@ QUADRANT_DIAGNOSIS_DECL bool search::calibrate_again(candidate& best,
         if (same(known, again)) known = again;
     best = std::move(again);
     return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate search::started_again(candidate best) const {
+    const auto effects = best.effects;
+    for (std::size_t i = 0; i + 1 < effects.size() && !over(); ++i) {
+        std::vector<const effect*> others = effects;
+        std::erase(others, effects[i]);
+        const candidate without = with(others);
+        if (!std::isfinite(without.total)) continue;
+        candidate again = exchanged(best, without, effects[i]);
+        if (!(again.total > best.total + rules_.margin)) continue;
+        again.effects = effects;
+        for (candidate& known : tried_)
+            if (same(known, again)) known = again;
+        best = std::move(again);
+    }
+    return best;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const candidate& step) const {
