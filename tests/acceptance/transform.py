@@ -83,7 +83,9 @@ class Similarity:
         for axis in machine["axes"].values():
             for key in ("spring_N_per_m", "cogging_N", "friction_position_amplitude", "ripple"):
                 assert key not in axis["plant"], f"{key} refers to the zero of the position"
-        return {**machine, "sample_period_s": self.value("sample_period_s", machine["sample_period_s"]),
+        # A line has no weight that turns: what only an angle can have would be one more suspect, not another machine.
+        only = {"excluded_effects": machine.get("excluded_effects", []) + ["gravity"]} if self.rotary else {}
+        return {**machine, **only, "sample_period_s": self.value("sample_period_s", machine["sample_period_s"]),
                 "axes": {self.axis(a): self.box(v) for a, v in machine["axes"].items()}}
 
     def cell(self, key, text):

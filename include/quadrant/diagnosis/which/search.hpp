@@ -203,9 +203,6 @@ private:
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const;
-    /// Each effect but the last was found while the others were missing. Each starts again beside the others,
-    /// and the best fit stays.
-    candidate started_again(candidate best) const;
     /// Where `step`, which has one effect more, only led the other numbers to a better place, the effect takes
     /// nothing off: `best` goes on from those numbers without it, and what was tried beside it is forgotten.
     /// True: it got better.

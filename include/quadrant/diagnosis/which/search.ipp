@@ -329,7 +329,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             continue;
         }
         if (step) {
-            const candidate chosen = started_again(*step);
+            const candidate chosen = *step;
             beam.assign(1, chosen);
             for (const auto& c : next)
                 if (beam.size() < rules_.beam && !same(c, chosen) &&
@@ -505,23 +505,6 @@ QUADRANT_DIAGNOSIS_DECL bool search::calibrate_again(candidate& best,
         if (same(known, again)) known = again;
     best = std::move(again);
     return true;
-}
-
-QUADRANT_DIAGNOSIS_DECL candidate search::started_again(candidate best) const {
-    const auto effects = best.effects;
-    for (std::size_t i = 0; i + 1 < effects.size() && !over(); ++i) {
-        std::vector<const effect*> others = effects;
-        std::erase(others, effects[i]);
-        const candidate without = with(others);
-        if (!std::isfinite(without.total)) continue;
-        candidate again = exchanged(best, without, effects[i]);
-        if (!(again.total > best.total + rules_.margin)) continue;
-        again.effects = effects;
-        for (candidate& known : tried_)
-            if (same(known, again)) known = again;
-        best = std::move(again);
-    }
-    return best;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const candidate& step) const {
