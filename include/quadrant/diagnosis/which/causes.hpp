@@ -74,8 +74,8 @@ struct excluded_rival {
     double probability = 0;       ///< that it is there and the cause is not
 };
 /// The owner's word is evidence too: it is wrong in one of twenty. So a model with the excluded effect in the
-/// cause's place, or alone, must be as much better before the name falls. One that contains the cause is no
-/// rival.
+/// cause's place, or alone, must be as much better, beyond the margin of what is undecided, before the name
+/// falls. One that contains the cause is no rival.
 QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which);
 
 /// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even

@@ -240,7 +240,8 @@ QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, s
     const double named = score(c.best());
     excluded_rival out;
     for (const candidate& m : models) {
-        const double odds = owner_errs * std::exp(std::min(50.0, (score(m) - named) / score_temperature));
+        const double gain = score(m) - named - c.limits.margin;
+        const double odds = owner_errs * std::exp(std::min(50.0, gain / score_temperature));
         if (odds / (1 + odds) > out.probability) out = {m.effects.back(), odds / (1 + odds)};
     }
     return out;
