@@ -234,7 +234,7 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
             if (key.box() == "drive") continue; // a kind has some of them: below
             auto& box = x[std::string(key.box())];
             if (key.shape == key_shape::number)
-                fill(box, std::string(key.key()), next += 0.001);
+                fill(box, std::string(key.key()), key.rule.holds(next + 0.001) ? next += 0.001 : 1 + next);
             else
                 fill(box, std::string(key.key()), std::vector<double>{0.25, 0.75});
         }

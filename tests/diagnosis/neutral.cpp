@@ -33,6 +33,8 @@ const std::map<std::string, neutral_place>& places() {
         {"plant.delay_s", {0, 1e-12}},
         {"plant.coulomb_N", {0, 60e-9}},
         {"plant.static_N", {60, 60 + 60e-9, {{"plant.stribeck_velocity_m_per_s", 0.004}}}},
+        {"plant.stribeck_exponent",
+         {1, 1 + 1e-9, {{"plant.static_N", 90}, {"plant.stribeck_velocity_m_per_s", 0.004}}, false}},
         {"plant.viscous_asymmetry", {0, 1e-10}},
         {"plant.coulomb_asymmetry", {0, 1e-10}},
         {"plant.static_asymmetry",

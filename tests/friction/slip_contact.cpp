@@ -191,6 +191,42 @@ TEST_CASE("slip_contact: what no guide has is refused by name") {
                       "slip_contact.stiffness = -2e+06 N/m: must be finite and not below 0");
 }
 
+TEST_CASE("slip_contact: the excess falls by the shape, as that of the stribeck block, and in a lane as alone") {
+    const auto held = [](const auto& guide, auto v) { // the springs under a velocity that a heavy mass keeps
+        using number = decltype(v);
+        typename contact<number>::state s;
+        for (int k = 0; k < 20000; ++k) guide(s, number(1e12) * v, v);
+        number out(0);
+        for (const number& f : s.force) out = out + f;
+        return out;
+    };
+    using four = lanes<4>;
+    contact<four>::parameters together;
+    const std::array shapes{0.5, 1.0, 2.0, 4.0};
+    auto p = thesis_y(1e300);
+    together.level = quantity_of<signal::force, four>::from_value(four(100));
+    together.excess = quantity_of<signal::force, four>::from_value(four(50));
+    together.stribeck_velocity = quantity_of<signal::velocity, four>::from_value(four(2.2e-3));
+    for (std::size_t i = 0; i < 4; ++i) {
+        together.weights[i] = four(p.weights[i]);
+        together.stiffness[i] = gain_of<signal::force, signal::position, four>::from_value(four(p.stiffness[i].value()));
+        together.shape.set(i, shapes[i]);
+    }
+    for (const double v : {1e-3, 2.2e-3, 5e-3}) {
+        const four all = held(contact<four>(together, four(1e12), four(step)), four(v));
+        for (std::size_t i = 0; i < 4; ++i) {
+            CAPTURE(shapes[i]);
+            p.shape = shapes[i];
+            p.viscous = {};
+            const double alone = held(contact<>(p, 1e12, step), v);
+            CHECK(alone == doctest::Approx(100 + 50 * std::exp(-std::pow(v / 2.2e-3, shapes[i]))).epsilon(1e-9));
+            CHECK(all[i] == doctest::Approx(alone).epsilon(1e-12));
+        }
+    }
+    p.shape = 5;
+    CHECK_THROWS_WITH(contact<>(p, mass, step), "slip_contact.shape = 5: must lie between 0.25 and 4");
+}
+
 TEST_CASE("slip_contact: each direction breaks away at its own static level and falls with its own Stribeck "
           "velocity") {
     auto p = thesis_y(1e300);

@@ -198,6 +198,7 @@ TEST_CASE("servo_axis: lanes are axes of their own, neutral joints beside filled
     std::array<axis::parameters, 4> each{plain_axis(), full_axis(), full_axis(), plain_axis()};
     each[2].play = 0;
     each[2].second.mass = {};
+    each[1].friction.shape = 1.7;
     each[2].friction.excess = 0_N;
     each[3].friction.level = 10_N;
     for (std::size_t i = 0; i < 4; ++i) { // presliding friction of four springs with a finite attraction

@@ -21,7 +21,7 @@ namespace quadrant::diagnosis {
 namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
-    if (c.at_floor() && !c.count_unnamed && !c.controller_open()) {
+    if ((c.at_floor() || c.within_its_laws()) && !c.count_unnamed && !c.controller_open()) {
         const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
         // Suspects for what calibration leaves are no finding where that is immaterial.
         const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
@@ -70,6 +70,7 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
     } else {
         text += worded("%.3g N rms behind the command (floor %.3g N)", result.gap_after.force_rms_N,
                        c.floor_force());
+        if (c.within_its_laws()) text += ", no more than the laws of friction and of the causes are wrong by";
         auto views = regimes(c.models.held_out_residual(c.best()), c.record);
         std::erase_if(views, [](const place& v) { // an even spread over time says nothing
             return v.view == "time" && v.share.value > 0.35 && v.share.value < 0.65;
@@ -327,7 +328,9 @@ inline double left_in_both(const axis_case& c) {
 /// Whether the hold-out log shows a gap that the log holds little of: only the other way round is there
 /// something to fit.
 inline bool hides_what_the_other_shows(const axis_case& c) {
-    if (!c.tested_apart() || c.record.replayed() || c.settled_on_second || c.models.over()) return false;
+    if (!c.tested_apart() || c.record.replayed() || c.settled_on_second || c.controller_differs() ||
+        c.models.over())
+        return false;
     return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
 }
 
@@ -443,8 +446,9 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                                                          limits, tell, held_by::readings);
             if (exchanged->at_floor() ||
                 detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
+                exchanged->controller = found->controller; // replayed from the log, as ever
+                exchanged->exchanged = true;
                 found = std::move(exchanged);
-                found->exchanged = true;
                 out.notes.push_back(fmt::format(
                     "axis {}: fitted to the hold-out log and judged on the log: what is wrong shows in the motion of "
                     "the hold-out log only.",

@@ -16,7 +16,7 @@ namespace quadrant {
 /// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved
 /// together with the mass that it brakes.
 ///   M (v' - v)/h = drive - viscous v' - sum F_i',   F_i as in `maxwell_slip` with the level s(v) of the step's start,
-///   s(v) = level (1 + asymmetry sign v) (1 + change) + added + excess (1 + excess_asymmetry sign v) exp(-|v|/vs(sign v))
+///   s(v) = level (1 + asymmetry sign v) (1 + change) + added + excess (1 + excess_asymmetry sign v) exp(-(|v|/vs(sign v))^shape)
 /// `added`, a level that a load presses onto the contact, also stiffens each spring by weight_i added / give_i.
 /// A spring that sticks also resists with stiffness_i damping v (LuGre's sigma_1). Which springs stick is found
 /// in at most 2 N + 1 rounds, one in nearly all steps: the sum of their forces rises with the velocity.
@@ -27,11 +27,11 @@ namespace quadrant {
 /// added >= 0 [N] in, v' out.
 /// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many
 /// contacts by one law.
-/// Range: level, excess >= 0; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at
+/// Range: level, excess >= 0; 0.25 <= shape <= 4; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at
 /// once. A spring with the weight 0 and the stiffness 0 is not there.
 /// NaN and infinities pass on to v', for the plant to see. Runs in lanes.
 /// Throws "slip_contact.<field> = ...: must ...".
-/// Cost: 1 exponential (2 with a finite attraction), about 12 multiplications and, for N > 1, one division a
+/// Cost: 1 exponential (2 with a finite attraction; 1 and a logarithm more where shape is not 1), about 12 multiplications and, for N > 1, one division a
 /// round.
 template <std::size_t N, class Real = double>
 requires(N > 0) class slip_contact {
@@ -44,7 +44,8 @@ public:
         of<signal::force> level{};  ///< Fc, at speed; >= 0
         of<signal::force> excess{}; ///< Fs - Fc; >= 0
         of<signal::velocity> stribeck_velocity = of<signal::velocity>::from_value(number(1)); ///< vs; > 0
-        gain_of<signal::force, signal::velocity, number> viscous{};                           ///< >= 0
+        number shape{1};                                            ///< of |v|/vs; 0.25 ... 4
+        gain_of<signal::force, signal::velocity, number> viscous{}; ///< >= 0
         number asymmetry{0};             ///< of the level; -1 ... 1
         number excess_asymmetry{0};      ///< of the excess; -1 ... 1
         number velocity_asymmetry{0};    ///< of vs; above -1, below 1
@@ -73,6 +74,8 @@ public:
         const Real attraction = in_real<Real>(p.attraction).value();
         relaxes_ = any(less(attraction, Real(std::numeric_limits<double>::infinity())));
         attraction_step_ = attraction * h;
+        shape_ = Real(p.shape);
+        shaped_ = any(!equal(shape_, Real(1)));
         for (std::size_t i = 0; i < N; ++i) {
             weight_[i] = Real(p.weights[i]);
             stiffness_[i] = in_real<Real>(p.stiffness[i]).value();
@@ -137,6 +140,8 @@ private:
             side("slip_contact.asymmetry", p.asymmetry);
             side("slip_contact.excess_asymmetry", p.excess_asymmetry);
             side("slip_contact.viscous_asymmetry", p.viscous_asymmetry);
+            const double shape = detail::plain(lane(p.shape, i));
+            require(shape >= 0.25 && shape <= 4, "slip_contact.shape", shape, "must lie between 0.25 and 4");
             const double v = detail::plain(lane(p.velocity_asymmetry, i));
             require(std::abs(v) < 1, "slip_contact.velocity_asymmetry", v,
                     "must lie between -1 and 1, both excluded");
@@ -171,7 +176,13 @@ private:
                 excess = select(forward, excess, backward_.excess);
                 inverse = select(forward, inverse, backward_.inverse_velocity);
             }
-            level = level + excess * decayed(abs(v) * inverse);
+            Real slowness = abs(v) * inverse;
+            if (shaped_) { // a speed of nearly nothing has a logarithm too, and a bend there without end has a slope
+                using std::exp, std::log;
+                const auto moves = greater(slowness, Real(1e-18));
+                slowness = select(moves, exp(shape_ * log(select(moves, slowness, Real(1)))), Real(0));
+            }
+            level = level + excess * decayed(slowness);
         }
         Real kept(0);
         if (relaxes_) { // a level of zero has no distance to keep
@@ -258,9 +269,9 @@ private:
         return v;
     }
 
-    Real h_, damping_, attraction_step_{};
-    bool relaxes_ = false, falls_ = false,
-         falls_by_side_ = false; ///< a finite attraction; a level that falls with the speed
+    Real h_, damping_, attraction_step_{}, shape_{};
+    bool relaxes_ = false, falls_ = false, falls_by_side_ = false,
+         shaped_ = false; ///< a finite attraction; a level that falls with the speed, and otherwise than shape 1
     std::size_t springs_ = 1;
     std::array<Real, N> weight_{}, stiffness_{}, stiffening_{};
     side forward_, backward_;

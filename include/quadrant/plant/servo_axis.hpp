@@ -123,6 +123,7 @@ public:
         typed(f.level, [](const Single& p) { return p.friction.level; });
         typed(f.excess, [](const Single& p) { return p.friction.excess; });
         typed(f.stribeck_velocity, [](const Single& p) { return p.friction.stribeck_velocity; });
+        f.shape = each([](const Single& p) { return p.friction.shape; });
         typed(f.viscous, [](const Single& p) { return p.friction.viscous; });
         f.asymmetry = each([](const Single& p) { return p.friction.asymmetry; });
         f.excess_asymmetry = each([](const Single& p) { return p.friction.excess_asymmetry; });

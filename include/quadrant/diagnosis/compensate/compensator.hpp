@@ -25,7 +25,8 @@ inline level_block::parameters level_parameters(const plant_model& p) {
     const double narrow = f.excess > 0 ? std::min(widest, f.stribeck_velocity / 20) : widest;
     return {.law = {.coulomb = quantity_of<signal::force>::from_value(f.coulomb),
                     .static_level = quantity_of<signal::force>::from_value(f.coulomb + std::max(0.0, f.excess)),
-                    .stribeck_velocity = quantity_of<signal::velocity>::from_value(f.stribeck_velocity)},
+                    .stribeck_velocity = quantity_of<signal::velocity>::from_value(f.stribeck_velocity),
+                    .shape = f.stribeck_exponent},
             .force_constant = gain_of<signal::force, signal::voltage>::from_value(p.force_constant),
             .width = quantity_of<signal::velocity>::from_value(narrow),
             .rest = at_rest::off};
@@ -47,7 +48,8 @@ inline contact_block::parameters contact_parameters(const plant_model& p, double
     contact_block::parameters out;
     out.curve = {.coulomb = quantity_of<signal::voltage>::from_value(std::max(f.coulomb * volts, 1e-6 * level)),
                  .static_level = quantity_of<signal::voltage>::from_value(level),
-                 .stribeck_velocity = quantity_of<signal::velocity>::from_value(f.stribeck_velocity)};
+                 .stribeck_velocity = quantity_of<signal::velocity>::from_value(f.stribeck_velocity),
+                 .shape = f.stribeck_exponent};
     for (std::size_t i = 0; i < weights.size(); ++i) {
         out.weights[i] = weights[i] / sum;
         out.stiffness[i] =

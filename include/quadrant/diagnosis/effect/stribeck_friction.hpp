@@ -4,8 +4,9 @@
 
 namespace quadrant::diagnosis::suspect {
 
-/// F = (Fs - Fc) exp(-|v|/vs) sign(v) on top of the Coulomb level [Jamaludin2008] eq. (3.5). Joins the force,
-/// in the friction box. Shows as a residual that grows as the axis gets slower.
+/// F = (Fs - Fc) exp(-(|v|/vs)^d) sign(v) on top of the Coulomb level; d = 1: [Jamaludin2008] eq. (3.5), d = 2:
+/// LuGre's curve [Armstrong1994]. Joins the force, in the friction box. Shows as a residual that grows as the axis
+/// gets slower.
 inline constexpr effect stribeck_friction{
     .name = "stribeck_friction",
     .label = "Stribeck friction",
@@ -24,7 +25,12 @@ inline constexpr effect stribeck_friction{
                          .meaning = "speed at which the excess over coulomb_N has fallen to 1/e",
                          .at = member<&plant_description::stribeck_velocity_m_per_s>,
                          .needs = {"static_N"},
-                         .tolerance = true}},
+                         .tolerance = true},
+             machine_key{.name = "stribeck_exponent",
+                         .rule = detail::rule::exponent,
+                         .meaning = "of the speed over the Stribeck velocity: 1 falls evenly, 2 has a round top",
+                         .at = member<&plant_description::stribeck_exponent>,
+                         .needs = {"static_N", "stribeck_velocity_m_per_s"}}},
     .fault = [](const axis_description& a) -> key_fault {
         if (a.plant.static_N && *a.plant.static_N < a.plant.coulomb_N.value_or(0))
             return {"static_N", "must not lie below {}", "coulomb_N"};
@@ -73,13 +79,21 @@ inline constexpr effect stribeck_friction{
                             .low = 8e-4 * peak,
                             .high = 0.4 * peak,
                             .logarithmic = true,
+                            .step = 1e-3},
+                           {.key = "stribeck_exponent",
+                            .of = [](plant_model& p) -> double& { return p.friction.stribeck_exponent; },
+                            .start = s.leader.friction.stribeck_exponent,
+                            .low = 0.5,
+                            .high = 2.5,
+                            .logarithmic = true,
                             .step = 1e-3}});
         }
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"static_N", {p.friction.coulomb + p.friction.excess}},
-                {"stribeck_velocity_m_per_s", {p.friction.stribeck_velocity}}};
+                {"stribeck_velocity_m_per_s", {p.friction.stribeck_velocity}},
+                {"stribeck_exponent", {p.friction.stribeck_exponent}}};
     }};
 
 } // namespace quadrant::diagnosis::suspect

@@ -4,16 +4,16 @@
 
 namespace quadrant::diagnosis::detail {
 
-/// The log of one axis with the acceleration of the axis of its kind that moves most beside it, zero-phase
-/// filtered to the
-/// bandwidth of the residual force: what cross-coupling would follow.
+/// The log of one axis with the acceleration of the axis of its kind that moves most beside it: what
+/// cross-coupling would follow. It is filtered two octaves above the bandwidth of the residual force, so that
+/// nothing inside the band is lost; what noise it has above it the band leaves out.
 inline axis_log with_neighbour(const machine_log& log, const axis_log& own, double period,
                                double bandwidth_Hz) {
     axis_log out = own;
     double most = 0;
     for (const axis_log& other : log.axes) {
         if (other.name == own.name || other.still || other.kind != own.kind) continue;
-        auto a = derivative(derivative(zero_phase(other.position, bandwidth_Hz, period), period), period);
+        auto a = derivative(derivative(zero_phase(other.position, 4 * bandwidth_Hz, period), period), period);
         if (const double size = rms(a); size > most) {
             most = size;
             out.other_acceleration = std::move(a);

@@ -27,7 +27,7 @@ struct plant_description {
     double viscous_N_s_per_m = 0;
     double delay_s = 0; ///< from the sample instant to the command's first action; the hold is not part of it
     std::optional<double> coulomb_N;
-    std::optional<double> static_N, stribeck_velocity_m_per_s;
+    std::optional<double> static_N, stribeck_velocity_m_per_s, stribeck_exponent;
     std::optional<double> viscous_asymmetry, coulomb_asymmetry; ///< relative: level times (1 + a sign v)
     std::optional<double> static_asymmetry,
         stribeck_velocity_asymmetry;        ///< the same; absent: the excess and vs are symmetric

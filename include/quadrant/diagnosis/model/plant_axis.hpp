@@ -121,6 +121,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     typed(f.level, std::max(0.0, p.friction.coulomb));
     typed(f.excess, std::max(0.0, p.friction.excess));
     typed(f.stribeck_velocity, p.friction.stribeck_velocity);
+    f.shape = p.friction.stribeck_exponent;
     typed(f.viscous, p.friction.viscous_slope);
     f.asymmetry = p.friction.coulomb_asymmetry;
     f.excess_asymmetry = p.friction.excess_asymmetry;

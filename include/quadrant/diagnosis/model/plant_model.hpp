@@ -40,6 +40,7 @@ struct plant_model {
         double coulomb = 0;                                  ///< [N]
         double excess = 0;                                   ///< static minus Coulomb level [N]
         double stribeck_velocity = 1;                        ///< [m/s]
+        double stribeck_exponent = 1;                        ///< of the speed over it
         double viscous_asymmetry = 0;                        ///< relative, signed
         double coulomb_asymmetry = 0;                        ///< relative, signed
         double excess_asymmetry = 0, velocity_asymmetry = 0; ///< of excess and Stribeck velocity
@@ -113,6 +114,7 @@ struct plant_model {
         friction.coulomb = d.coulomb_N.value_or(0);
         friction.excess = d.static_N ? *d.static_N - friction.coulomb : 0;
         friction.stribeck_velocity = d.stribeck_velocity_m_per_s.value_or(1);
+        friction.stribeck_exponent = d.stribeck_exponent.value_or(1);
         friction.viscous_asymmetry = d.viscous_asymmetry.value_or(0);
         friction.coulomb_asymmetry = d.coulomb_asymmetry.value_or(0);
         friction.velocity_asymmetry = d.stribeck_velocity_asymmetry.value_or(0);

@@ -21,6 +21,8 @@ inline constexpr number_rule up_to_a_second{"must be a number from 0 to 1 (secon
                                             [](double x) { return x >= 0 && x <= 1; }, "up_to_a_second"};
 inline constexpr number_rule asymmetry{"must be a number between -1 and 1 (relative)",
                                        [](double x) { return x > -1 && x < 1; }, "asymmetry"};
+inline constexpr number_rule exponent{"must be a number from 0.25 to 4",
+                                      [](double x) { return x >= 0.25 && x <= 4; }, "exponent"};
 inline constexpr number_rule above_minus_one{"must be a number above -1 (relative)",
                                              [](double x) { return x > -1; }, "above_minus_one"};
 inline constexpr number_rule relative{"must be a number from 0 to below 1 (relative: 0.05 is 5 %)",

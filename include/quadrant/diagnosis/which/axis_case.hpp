@@ -30,6 +30,7 @@ private:
     axis_record record_of(double period, const exclusions& excluded, const progress& tell,
                           held_by how);
     std::optional<plant_model> nearest_; ///< of that search
+    bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
 
 public:
     const axis_description& axis;
@@ -67,6 +68,9 @@ public:
     /// Nothing is left that would matter: noise, or far less than the owner's tolerances make. No other cause
     /// can hide behind the names.
     bool at_floor() const { return settled && settled_on_second; }
+    /// What is left is, in every band of both logs, no more than the laws of friction and of the causes are
+    /// wrong by: no law is right to better than some five per cent. Above the floor, but explained.
+    bool within_its_laws() const;
     /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the
     /// owner's tolerances differ by from one another.
     bool calibrated_within_tolerances() const;

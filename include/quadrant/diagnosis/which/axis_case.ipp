@@ -61,6 +61,35 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_tolerances() const {
     return models.within_tolerances(there.ms, second->score, noise);
 }
 
+QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws(const axis_record& r,
+                                                        const std::vector<plant_model>& plants) const {
+    std::vector<std::vector<double>> e(plants.size());
+    r.observer.run(plants, e);
+    for (std::size_t k = 0; k < e[0].size(); ++k) e[2][k] -= e[0][k];
+    for (const channel& c : r.score.channels) {
+        const auto energy = [&](const std::vector<double>& x) {
+            const double size = rms(detail::seen(x, c));
+            return size * size;
+        };
+        const double of_noise = c.noise_gain * noise;
+        const double law = energy(e[2]) + law_error * law_error * energy(e[1]);
+        if (energy(e[0]) > of_noise * of_noise + law) return false;
+    }
+    return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
+    if (best().effects.empty() || record.replayed() || !models.near_its_laws(best())) return false;
+    plant_model stronger = best().fit.plant;
+    stronger.friction.coulomb *= 1 + law_error;
+    stronger.friction.excess *= 1 + law_error;
+    std::vector<plant_model> plants{best().fit.plant, path.front().fit.plant, stronger};
+    if (!settled && !within_its_laws(record, plants)) return false;
+    if (!tested_apart() || settled_on_second) return true;
+    for (plant_model& p : plants) p = restarted(p, *second);
+    return within_its_laws(*second, plants);
+}
+
 QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
     const candidate& m = applied();
     return claims > 0 && models.settled(m) && models.near_its_laws(m);
