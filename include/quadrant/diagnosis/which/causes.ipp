@@ -311,6 +311,17 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
     return false;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e) {
+    if (c.record.replayed() || !c.calibrated_within_tolerances()) return false;
+    const std::array plants{c.best().fit.plant, c.models.plant_without(c.best(), e)};
+    std::array<std::vector<double>, 2> innovation;
+    c.record.observer.run(plants, innovation);
+    auto& [left, does] = innovation;
+    for (std::size_t k = 0; k < does.size(); ++k) does[k] -= left[k];
+    return std::all_of(c.record.score.channels.begin(), c.record.score.channels.end(),
+                       [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
@@ -359,7 +370,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                              (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (detail::may_be_inside_its_tolerance(c, named.parameters)) {
+        if (detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e)) {
             constexpr double guess = 0.4;
             named.probability = std::min(named.probability, guess);
             named.group_probability = std::min(named.group_probability, guess);
