@@ -17,10 +17,11 @@ namespace {
 using namespace quadrant::diagnosis;
 
 struct init_options {
-    std::string out, log, command_is;
+    std::string out, log, command_is, drive;
     bool questions = false;
     init_request request;
     std::array<std::vector<std::string>, init_fields.size()> texts;
+    std::array<std::vector<std::string>, drive_init_fields.size()> drive_texts;
     terminal say;
 };
 
@@ -100,11 +101,25 @@ void run(init_options& o) {
         ask(o, kind_of(""));
         ask_origin(o);
     }
-    for (std::size_t i = 0; i < init_fields.size(); ++i)
-        for (const std::string& text : o.texts[i]) {
-            const auto [axis, value] = parse(init_fields[i], text, kind_of);
-            o.request.values[init_fields[i].option][axis] = value;
-        }
+    const auto take = [&](const auto& fields, const auto& texts) {
+        for (std::size_t i = 0; i < fields.size(); ++i)
+            for (const std::string& text : texts[i]) {
+                const auto [axis, value] = parse(fields[i], text, kind_of);
+                o.request.values[fields[i].option][axis] = value;
+            }
+    };
+    take(init_fields, o.texts);
+    take(drive_init_fields, o.drive_texts);
+    if (!o.drive.empty())
+        o.request.drive = static_cast<drive_kind>(std::find(drive_kinds.begin(), drive_kinds.end(), o.drive) -
+                                                  drive_kinds.begin());
+    else
+        for (std::size_t i = 0; i < drive_init_fields.size(); ++i)
+            if (!o.drive_texts[i].empty())
+                throw bad_input(
+                    fmt::format("--{}", drive_init_fields[i].option),
+                    "is of a drive with loops of its own: say which with --drive velocity, position "
+                    "or position_servo");
     if (o.command_is == name_of(command_origin::measured)) o.request.command_is = command_origin::measured;
     const auto begun = init_machine(o.request, log ? &*log : nullptr);
     write_output(o.out, begun.machine.dump(2) + "\n");
@@ -144,16 +159,23 @@ void add_init(CLI::App& app) {
     command->add_flag("--unchecked", o->request.unchecked,
                       "write the file although the log contradicts mass or force constant, with a note");
     command->add_flag("--questions", o->questions, "ask for what is not given, though no terminal listens");
-    for (std::size_t i = 0; i < init_fields.size(); ++i) {
-        const init_field& f = init_fields[i];
+    command
+        ->add_option(
+            "--drive", o->drive,
+            "a drive with loops of its own: velocity, position or position_servo; what is not given of "
+            "its loops is identified from the log")
+        ->check(CLI::IsMember(std::vector<std::string>(drive_kinds.begin() + 1, drive_kinds.end())));
+    const auto add_value = [&](const init_field& f, std::vector<std::string>& texts, const char* group) {
         const std::string unit = *f.unit ? fmt::format(" [{}]", f.unit) : "",
                           of_rotary = text_of(f.option, axis_kind::rotary);
         const std::string names = of_rotary == f.option ? fmt::format("--{}", f.option)
                                                         : fmt::format("--{},--{}", f.option, of_rotary);
-        command->add_option(names, o->texts[i], f.meaning + unit)
-            ->delimiter(',')
-            ->group("Values, for every axis or AXIS=VALUE,...");
-    }
+        command->add_option(names, texts, f.meaning + unit)->delimiter(',')->group(group);
+    };
+    for (std::size_t i = 0; i < init_fields.size(); ++i)
+        add_value(init_fields[i], o->texts[i], "Values, for every axis or AXIS=VALUE,...");
+    for (std::size_t i = 0; i < drive_init_fields.size(); ++i)
+        add_value(drive_init_fields[i], o->drive_texts[i], "Values of a drive with loops of its own");
     add_terminal_options(*command, o->say, "also every value with its meaning");
     command->callback([o] { refuse_in_name_of(o->out, [&] { run(*o); }); });
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "fit/drive_estimate.hpp"
 #include "fit/regression.hpp"
+#include "fit/with_drives.hpp"
 #include "import/units.hpp"
 #include "log/sensor_box.hpp"
 #include "machine_file/init_fields.hpp"
+#include "match.hpp"
 #include "read_machine.hpp"
 #include "write_machine.hpp"
 
@@ -16,9 +19,12 @@ struct init_request {
     std::vector<std::string> axes; ///< empty: those of the log, else "x"
     double sample_period_s = 0;    ///< 0: the log's
     std::string command_unit;      ///< V, A or N (Nm); empty: the log's, else V or Nm
-    bool rotary = false;           ///< every axis; with a log each says so itself
-    bool from_log = false;         ///< the log's own estimate of what is not given, where it is sure
-    bool unchecked = false;        ///< a mass that the log contradicts makes a note, not a refusal
+    /// Of every axis: a drive with loops of its own, whose numbers that nobody gives come from the log.
+    /// Current: it has none.
+    drive_kind drive = drive_kind::current;
+    bool rotary = false;    ///< every axis; with a log each says so itself
+    bool from_log = false;  ///< the log's own estimate of what is not given, where it is sure
+    bool unchecked = false; ///< a mass that the log contradicts makes a note, not a refusal
     command_origin command_is = command_origin::asked; ///< of every axis: where the log's command was taken
     std::map<std::string, std::map<std::string, double>> values; ///< option, then axis ("" is every axis)
 
@@ -100,6 +106,7 @@ private:
         kind_ = log ? log->kind : ask_.rotary ? axis_kind::rotary : axis_kind::linear;
         if (log && ask_.rotary && kind_ == axis_kind::linear)
             throw bad_input(log_->file, fmt::format("axis {} is linear, not rotary", axis));
+        if (ask_.drive != drive_kind::current) return begin_driven(axis, log);
         const std::string unit = !ask_.command_unit.empty() ? ask_.command_unit
                                  : log                      ? log->command_unit
                                  : ask_.rotary              ? "Nm"
@@ -115,8 +122,8 @@ private:
             log && !log->still ? regress(*log, json_["sample_period_s"].get<double>()) : axis_regression{};
         const double per_unit = constant.value_or(1);
         std::optional<double> mass = ask_.value("mass", axis);
-        const bool estimated =
-            !mass && ask_.from_log && (constant || is_force(unit)) && found.acceleration.sure();
+        const bool estimated = !mass && ask_.from_log && (constant || is_force(unit)) &&
+                               found.acceleration.sure() && found.acceleration.value > 0;
         if (estimated) mass = found.acceleration.value * per_unit;
         if (!mass || (!constant && !is_force(unit)))
             throw bad_input("init", missing(axis, unit, mass, constant, found));
@@ -154,6 +161,147 @@ private:
         describe(axis, found, per_unit);
     }
 
+    // ---- A drive with loops of its own.
+
+    /// Refuses what an axis with this drive cannot have, and puts what is given into its boxes.
+    void put_given(const std::string& axis) {
+        for (const init_field& f : init_fields) {
+            const auto given = ask_.value(f.option, axis);
+            if (!given) continue;
+            if (f.rotary_only && kind_ == axis_kind::linear)
+                throw bad_input("init", fmt::format("--{}: axis {} is linear", f.option, axis));
+            put(axis, f, f.key, *given, "given");
+        }
+        for (const init_field& f : drive_init_fields)
+            if (const auto given = ask_.value(f.option, axis)) put(axis, f, f.key, *given, "given");
+    }
+    bool gives(std::string_view option, const std::string& axis) const {
+        return ask_.value(std::string(option), axis).has_value();
+    }
+    void need(bool there, const std::string& axis, std::string_view what) const {
+        if (!there) throw bad_input("init", fmt::format("axis {}: {}", axis, text_of(what, kind_)));
+    }
+
+    void begin_driven(const std::string& axis, const axis_log* log) {
+        const bool servo = ask_.drive == drive_kind::position_servo;
+        json_["axes"][axis]["plant"] = nlohmann::ordered_json::object();
+        json_["axes"][axis]["drive"] = {{"kind", name_of(ask_.drive)}};
+        put_given(axis);
+        if (!servo)
+            need(gives("mass", axis), axis,
+                 "--mass is missing: the motion shows the gains of a drive beside the mass only");
+        need(!servo || gives("supply", axis), axis, "--supply is missing (the volts of a duty of 1)");
+        if (!log) return;
+        read_count(axis, *log);
+        if (log->still) throw bad_input(log_->file, fmt::format("axis {} never moves", axis));
+        const bool duty = !log->duty.empty() || log->command_unit == "duty" || log->command_unit == "V";
+        if (servo) {
+            need(
+                gives("mass", axis) || gives("force-constant", axis) || gives("gravity-torque", axis), axis,
+                "--mass, --force-constant or --gravity-torque is missing: without one of them all forces times "
+                "one factor move the axis alike");
+            need(duty || gives("servo-gain", axis) || gives("force-constant", axis), axis,
+                 "--servo-gain or --force-constant is missing: without a measured duty their product alone "
+                 "moves "
+                 "the axis");
+        }
+        estimate_drive_of(axis, *log);
+    }
+
+    /// The machine file so far, with numbers in the place of those that it needs and nobody knows.
+    axis_description placeholders(const std::string& axis) const {
+        nlohmann::ordered_json text = json_;
+        nlohmann::ordered_json& here = text["axes"][axis];
+        text["axes"] = {{axis, here}};
+        nlohmann::ordered_json& one = text["axes"][axis];
+        const auto hold = [&](const char* box, const std::string& key) {
+            if (!one[box].contains(key_of(key, kind_))) one[box][key_of(key, kind_)] = 1;
+        };
+        hold("plant", "mass_kg");
+        if (ask_.drive == drive_kind::position_servo) {
+            hold("plant", "force_constant_N_per_V");
+            hold("drive", "position_gain_per_m");
+        } else {
+            hold("drive", "velocity_gain_N_s_per_m");
+        }
+        if (ask_.drive == drive_kind::position) hold("drive", "position_gain_per_s");
+        if (ask_.drive == drive_kind::velocity) hold("drive", "velocity_per_V");
+        return read_machine(text.dump(), "init").axes.at(0);
+    }
+
+    void estimate_drive_of(const std::string& axis, const axis_log& log) {
+        axis_description description = placeholders(axis);
+        check_drive(description, log, "--drive", log_->file);
+        std::set<std::string> known;
+        for (const auto* fields : {init_fields.data(), drive_init_fields.data()})
+            for (std::size_t i = 0;
+                 i < (fields == init_fields.data() ? init_fields.size() : drive_init_fields.size()); ++i)
+                if (gives(fields[i].option, axis))
+                    known.insert(fmt::format("{}.{}", fields[i].box, fields[i].key));
+        const double period = json_["sample_period_s"].get<double>();
+        const drive_estimate found =
+            estimate_drive(description, with_drive(description, log, period), period, known);
+        if (description.drive.takes_position() && found.between != interpolation::hold)
+            json_["axes"][axis]["drive"]["interpolation"] = name_of(found.between);
+        std::string loose;
+        for (const identified_number& n : found.numbers) {
+            const init_field& f = field_of(n.key);
+            const std::string unit = text_of(f.unit, kind_),
+                              interval = fmt::format("{:.4g} to {:.4g}{}{}", n.low, n.high,
+                                                     unit.empty() ? "" : " ", unit);
+            const bool loop = std::string_view(f.box) == "drive";
+            if (n.identified()) {
+                put(axis, f, f.key, rounded(n.value),
+                    fmt::format("identified from the log, 95 % interval {}", interval));
+                put_tolerance(axis, n);
+            } else if (is_needed(n.key)) {
+                throw bad_input(log_->file, too_fast(axis, f, n, period));
+            } else if (loop || n.present()) {
+                loose +=
+                    fmt::format("{}{} ({})", loose.empty() ? "" : ", ", text_of(f.meaning, kind_), interval);
+            }
+        }
+        out_.notes.push_back(fmt::format("axis {}: the simulated path leaves {:.3g} {} rms of the log, whose "
+                                         "reading has {:.2g} {} of noise{}",
+                                         axis, found.path_rms, key_of("m", kind_), found.path_noise,
+                                         key_of("m", kind_),
+                                         loose.empty() ? "" : "; not identified from this log: " + loose));
+    }
+    static double rounded(double value) { // to five digits
+        return value == 0 ? 0 : std::stod(fmt::format("{:.5g}", value));
+    }
+    bool is_needed(std::string_view key) const {
+        const auto of_drive = [&](const key_of_drive& k) {
+            return key == fmt::format("drive.{}", k.name) && k.needs[static_cast<std::size_t>(ask_.drive)];
+        };
+        return key == "plant.mass_kg" || key == "plant.force_constant_N_per_V" ||
+               key == "drive.velocity_per_V" ||
+               std::any_of(drive_key_table.begin(), drive_key_table.end(), of_drive);
+    }
+    std::string too_fast(const std::string& axis, const init_field& f, const identified_number& n,
+                         double period) const {
+        return fmt::format(
+            "axis {}: {}", axis,
+            text_of(fmt::format("the log does not show {} ({:.3g} to {:.3g} {} with 95 %): give --{}, "
+                                "or record faster motion, or more often than every {:.3g} ms",
+                                f.meaning, n.low, n.high, f.unit, f.option, 1e3 * period),
+                    kind_));
+    }
+    static const init_field& field_of(std::string_view key) {
+        const auto is = [&](const init_field& f) { return key == fmt::format("{}.{}", f.box, f.key); };
+        const auto of_drive = std::find_if(drive_init_fields.begin(), drive_init_fields.end(), is);
+        return of_drive != drive_init_fields.end() ? *of_drive
+                                                   : *std::find_if(init_fields.begin(), init_fields.end(), is);
+    }
+    /// The half width of the interval, as the tolerance of the number, a thousandth at least.
+    void put_tolerance(const std::string& axis, const identified_number& n) {
+        for (const tolerance_name& t : tolerance_names(kind_))
+            if (n.key == (t.key->name.find('.') == std::string_view::npos ? "plant." + std::string(t.key->name)
+                                                                          : std::string(t.key->name)))
+                json_["axes"][axis]["tolerance"][key_of(t.name, kind_)] =
+                    rounded(std::clamp(n.half_width() / std::abs(n.value), 0.001, 0.99));
+    }
+
     std::string missing(const std::string& axis, const std::string& unit, const std::optional<double>& mass,
                         const std::optional<double>& constant, const axis_regression& found) const {
         std::string text = mass ? "--force-constant is missing" : "--mass is missing";
@@ -163,6 +311,8 @@ private:
             text += fmt::format("; the log speaks of about {:.4g} kg (--from-log takes it)",
                                 by_log * constant.value_or(1));
         if (told && mass) text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / by_log, unit);
+        if (found.acceleration.sure() && by_log < 0)
+            text += "; in the log the axis accelerates against its command: check the sign of one of the two";
         return fmt::format("axis {}: {}", axis, text_of(text, kind_));
     }
 
@@ -186,12 +336,15 @@ private:
         take("gravity-phase", found.weight, found.phase);
     }
 
-    void read_from_log(const std::string& axis, const axis_log& log) {
+    void read_count(const std::string& axis, const axis_log& log) {
         const double count = observed_count(log.position, log.position_step);
         if (!ask_.value("resolution", axis) && count > 0) {
             const init_field& f = field("resolution");
             put(axis, f, f.key, std::round(count * 1e12) / 1e12, "smallest step of the position in the log");
         }
+    }
+    void read_from_log(const std::string& axis, const axis_log& log) {
+        read_count(axis, log);
         const double most = std::max(std::abs(*std::max_element(log.command.begin(), log.command.end())),
                                      std::abs(*std::min_element(log.command.begin(), log.command.end())));
         const auto at_limit = std::count_if(log.command.begin(), log.command.end(),

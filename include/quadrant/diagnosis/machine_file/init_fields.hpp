@@ -34,6 +34,8 @@ inline constexpr std::array init_fields{
                "largest torque of the weight that the axis turns", 1e-4, 1e5, false, true},
     init_field{"gravity-phase", "plant", "gravity_phase_rad", "rad", "position at which that weight hangs down",
                1e-6, 6.3, false, true},
+    init_field{"constant-force", "plant", "constant_force_N", "N",
+               "force that acts all the time: gravity, an amplifier's offset", 1e-3, 1e5},
     init_field{"load-friction", "plant", "load_friction", "",
                "growth of the Coulomb friction with the transmitted force", 1e-3, 1},
     init_field{"tolerance-mass", "tolerance", "mass", "", "how well the mass is known, relative", 1e-3, 0.3},
@@ -68,6 +70,33 @@ inline constexpr std::array init_fields{
                5e3},
     init_field{"notch-width", "controller", "notch.width", "", "relative width between its -3 dB points", 1e-3,
                2},
+};
+
+/// The numbers of a drive with loops of its own (drive_keys.hpp says which kind has which).
+inline constexpr std::array drive_init_fields{
+    init_field{"velocity-per-volt", "drive", "velocity_per_V", "m/s per V", "velocity that one volt asks for",
+               1e-5, 10},
+    init_field{"drive-position-gain", "drive", "position_gain_per_s", "1/s", "P of the drive's position loop",
+               0.1, 1e3},
+    init_field{"drive-velocity-gain", "drive", "velocity_gain_N_s_per_m", "N s/m",
+               "P of the drive's velocity loop", 1e-4, 1e7},
+    init_field{"drive-velocity-integral", "drive", "velocity_integral_N_per_m", "N/m",
+               "I of the drive's velocity loop", 1e-4, 1e10},
+    init_field{"drive-velocity-filter", "drive", "velocity_filter_Hz", "Hz", "filter of the drive's velocity",
+               1, 1e4},
+    init_field{"drive-velocity-feedforward", "drive", "velocity_feedforward", "",
+               "share of the set-points' velocity that the drive adds", 0.01, 2},
+    init_field{"force-limit", "drive", "force_limit_N", "N", "largest force of the drive", 1e-3, 1e6},
+    init_field{"command-delay", "drive", "command_delay_s", "s",
+               "from the row to the drive's use of its command", 1e-6, 1},
+    init_field{"set-point-period", "drive", "set_point_period_s", "s", "between two set-points", 1e-5, 1},
+    init_field{"servo-gain", "drive", "position_gain_per_m", "duty per m", "P of a position servo", 1e-3, 1e4},
+    init_field{"minimum-duty", "drive", "minimum_duty", "", "duty added in the direction of the error", 1e-4,
+               0.5},
+    init_field{"maximum-duty", "drive", "maximum_duty", "", "largest duty", 0.05, 1},
+    init_field{"setpoint-rate-limit", "drive", "setpoint_rate_limit_m_per_s", "m/s",
+               "speed at which a servo follows a set-point at most", 1e-4, 1e3},
+    init_field{"supply", "drive", "supply_V", "V", "supply of a position servo", 1, 1e3},
 };
 
 } // namespace quadrant::diagnosis

@@ -53,12 +53,14 @@ public:
     using surroundings = typename Axis::surroundings;
 
     closed_axis(const typename Axis::parameters& p, const loop_numbers<Real>& n, Real step)
-        : numbers_(n), mechanics_(p, step, already_checked()), servo_(n.servo, step, already_checked()),
-          outer_(n.loop, step, already_checked()), inner_(n.loop.velocity, step, already_checked()) {}
+        : numbers_(n), half_step_(Real(0.5) * step), mechanics_(p, step, already_checked()),
+          servo_(n.servo, step, already_checked()), outer_(n.loop, step, already_checked()),
+          inner_(n.loop.velocity, step, already_checked()) {}
 
     /// Before the first step of a record: where axis and set-points are, and how fast the axis moves.
     void begin(Real position, Real velocity, Real set_point) {
         state_ = Axis::state::at(mechanics_.position_of(position), velocity);
+        velocity_before_ = velocity;
         loop_ = velocity_loop<Real>::state::at(velocity, Real(numbers_.start_force));
         follower_ = position_servo<Real>::state::at(set_point);
     }
@@ -82,24 +84,31 @@ public:
                      select(gives, loop_.filtered, loop.filtered)};
             follower_ = {select(gives, follower_.followed, follower.followed)};
         }
+        velocity_before_ = state_.v;
         mechanics_.advance(state_, u, now);
         return u;
     }
 
 private:
-    /// Duty of a servo, else force [N].
+    /// Duty of a servo, else force [N], from the motion in the middle of the step. A loop that saw the motion
+    /// at the step's beginning would be half a step late, and the axis would lose damping by it.
     Real given(Real set_point, Real its_velocity) {
-        if (numbers_.kind == drive_kind::position_servo) return servo_(follower_, set_point, state_.x);
-        if (numbers_.kind == drive_kind::velocity) return inner_(loop_, set_point, state_.v);
-        return outer_(loop_, set_point, its_velocity, state_.x, state_.v);
+        const auto moves = either(less(state_.v, Real(0)), greater(state_.v, Real(0)));
+        const Real v = select(moves, state_.v + Real(0.5) * (state_.v - velocity_before_), state_.v);
+        const Real x = state_.x + half_step_ * state_.v;
+        if (numbers_.kind == drive_kind::position_servo) return servo_(follower_, set_point, x);
+        if (numbers_.kind == drive_kind::velocity) return inner_(loop_, set_point, v);
+        return outer_(loop_, set_point, its_velocity, x, v);
     }
 
     loop_numbers<Real> numbers_;
+    Real half_step_;
     Axis mechanics_;
     position_servo<Real> servo_;
     position_loop<Real> outer_;
     velocity_loop<Real> inner_;
     typename Axis::state state_{};
+    Real velocity_before_{0}; ///< of the step
     typename velocity_loop<Real>::state loop_{};
     typename position_servo<Real>::state follower_{};
 };
