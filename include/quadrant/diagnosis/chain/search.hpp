@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../effect/effect_list.hpp"
 #include "../effect/rules.hpp"
 #include "../fit/scoring.hpp"
 #include "../which/chance.hpp"
