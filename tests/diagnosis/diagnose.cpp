@@ -203,7 +203,8 @@ TEST_CASE("diagnose: what shows in the motion of the hold-out log only is found 
     };
     machine real;
     const auto file = described(real);
-    std::vector<double> gentle(5000), brisk(5000); // one stroke each way and more, slowly, and four times as fast
+    std::vector<double> gentle(5000),
+        brisk(5000); // one stroke each way and more, slowly, and four times as fast
     for (std::size_t k = 0; k < gentle.size(); ++k) {
         const double t = static_cast<double>(k) * workshop::period;
         gentle[k] = 0.03 * (1 - std::cos(5 * t)) + 0.005 * (1 - std::cos(11 * t));

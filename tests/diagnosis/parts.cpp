@@ -25,7 +25,8 @@ std::vector<double> sine(double frequency, double period, std::size_t n) {
 }
 } // namespace
 
-TEST_CASE("carried_peaks: a wave of the force constant is found through the windows in which there is a command") {
+TEST_CASE(
+    "carried_peaks: a wave of the force constant is found through the windows in which there is a command") {
     // Strokes of 110 mm: the command is large where they begin and end, and nearly nothing in between.
     constexpr double period = 0.0086, travel = 0.11;
     std::vector<double> z, command, force;
@@ -43,7 +44,8 @@ TEST_CASE("carried_peaks: a wave of the force constant is found through the wind
     const auto found = carried_peaks(force, command, z, travel / 2, travel / 400, 2);
     REQUIRE(!found.empty());
     CHECK(is(found.front()));
-    CHECK_FALSE(is(spatial_peaks(product, z, travel / 2, travel / 400, 2).front())); // a plain transform is misled
+    CHECK_FALSE(
+        is(spatial_peaks(product, z, travel / 2, travel / 400, 2).front())); // a plain transform is misled
     const std::vector<double> none(z.size(), 0.0);
     CHECK(carried_peaks(force, none, z, travel / 2, travel / 400, 2).empty());
 }

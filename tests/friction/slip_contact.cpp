@@ -191,7 +191,8 @@ TEST_CASE("slip_contact: what no guide has is refused by name") {
                       "slip_contact.stiffness = -2e+06 N/m: must be finite and not below 0");
 }
 
-TEST_CASE("slip_contact: the excess falls by the shape, as that of the stribeck block, and in a lane as alone") {
+TEST_CASE(
+    "slip_contact: the excess falls by the shape, as that of the stribeck block, and in a lane as alone") {
     const auto held = [](const auto& guide, auto v) { // the springs under a velocity that a heavy mass keeps
         using number = decltype(v);
         typename contact<number>::state s;
@@ -209,7 +210,8 @@ TEST_CASE("slip_contact: the excess falls by the shape, as that of the stribeck 
     together.stribeck_velocity = quantity_of<signal::velocity, four>::from_value(four(2.2e-3));
     for (std::size_t i = 0; i < 4; ++i) {
         together.weights[i] = four(p.weights[i]);
-        together.stiffness[i] = gain_of<signal::force, signal::position, four>::from_value(four(p.stiffness[i].value()));
+        together.stiffness[i] =
+            gain_of<signal::force, signal::position, four>::from_value(four(p.stiffness[i].value()));
         together.shape.set(i, shapes[i]);
     }
     for (const double v : {1e-3, 2.2e-3, 5e-3}) {
@@ -219,7 +221,8 @@ TEST_CASE("slip_contact: the excess falls by the shape, as that of the stribeck 
             p.shape = shapes[i];
             p.viscous = {};
             const double alone = held(contact<>(p, 1e12, step), v);
-            CHECK(alone == doctest::Approx(100 + 50 * std::exp(-std::pow(v / 2.2e-3, shapes[i]))).epsilon(1e-9));
+            CHECK(alone ==
+                  doctest::Approx(100 + 50 * std::exp(-std::pow(v / 2.2e-3, shapes[i]))).epsilon(1e-9));
             CHECK(all[i] == doctest::Approx(alone).epsilon(1e-12));
         }
     }

@@ -442,17 +442,17 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         }
         if (!both && detail::hides_what_the_other_shows(*found)) {
             tell("axis " + axis.name + ": again, fitted to the hold-out log");
-            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, machine.sample_period_s, excluded,
-                                                         limits, tell, held_by::readings);
+            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, machine.sample_period_s,
+                                                         excluded, limits, tell, held_by::readings);
             if (exchanged->at_floor() ||
                 detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
                 exchanged->controller = found->controller; // replayed from the log, as ever
                 exchanged->exchanged = true;
                 found = std::move(exchanged);
-                out.notes.push_back(fmt::format(
-                    "axis {}: fitted to the hold-out log and judged on the log: what is wrong shows in the motion of "
-                    "the hold-out log only.",
-                    axis.name));
+                out.notes.push_back(fmt::format("axis {}: fitted to the hold-out log and judged on the log: "
+                                                "what is wrong shows in the motion of "
+                                                "the hold-out log only.",
+                                                axis.name));
             }
         }
         detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);

@@ -27,12 +27,12 @@ namespace quadrant {
 /// added >= 0 [N] in, v' out.
 /// State: per spring its force [N] and whether it slips; given and returned by the caller, who may step many
 /// contacts by one law.
-/// Range: level, excess >= 0; 0.25 <= shape <= 4; stiffness >= 0; attraction > 0, infinity: a spring that slips holds its share at
-/// once. A spring with the weight 0 and the stiffness 0 is not there.
+/// Range: level, excess >= 0; 0.25 <= shape <= 4; stiffness >= 0; attraction > 0, infinity: a spring that slips
+/// holds its share at once. A spring with the weight 0 and the stiffness 0 is not there.
 /// NaN and infinities pass on to v', for the plant to see. Runs in lanes.
 /// Throws "slip_contact.<field> = ...: must ...".
-/// Cost: 1 exponential (2 with a finite attraction; 1 and a logarithm more where shape is not 1), about 12 multiplications and, for N > 1, one division a
-/// round.
+/// Cost: 1 exponential (2 with a finite attraction; 1 and a logarithm more where shape is not 1), about 12
+/// multiplications and, for N > 1, one division a round.
 template <std::size_t N, class Real = double>
 requires(N > 0) class slip_contact {
 public:
@@ -46,11 +46,11 @@ public:
         of<signal::velocity> stribeck_velocity = of<signal::velocity>::from_value(number(1)); ///< vs; > 0
         number shape{1};                                            ///< of |v|/vs; 0.25 ... 4
         gain_of<signal::force, signal::velocity, number> viscous{}; ///< >= 0
-        number asymmetry{0};             ///< of the level; -1 ... 1
-        number excess_asymmetry{0};      ///< of the excess; -1 ... 1
-        number velocity_asymmetry{0};    ///< of vs; above -1, below 1
-        number viscous_asymmetry{0};     ///< -1 ... 1
-        std::array<number, N> weights{}; ///< shares of the level
+        number asymmetry{0};                                        ///< of the level; -1 ... 1
+        number excess_asymmetry{0};                                 ///< of the excess; -1 ... 1
+        number velocity_asymmetry{0};                               ///< of vs; above -1, below 1
+        number viscous_asymmetry{0};                                ///< -1 ... 1
+        std::array<number, N> weights{};                            ///< shares of the level
         std::array<gain_of<signal::force, signal::position, number>, N> stiffness{}; ///< >= 0
         std::array<of<signal::position>, N>
             give{}; ///< displacement at which a spring holds its share of an added level;
@@ -177,7 +177,7 @@ private:
                 inverse = select(forward, inverse, backward_.inverse_velocity);
             }
             Real slowness = abs(v) * inverse;
-            if (shaped_) { // a speed of nearly nothing has a logarithm too, and a bend there without end has a slope
+            if (shaped_) { // nearly no speed has a logarithm too
                 using std::exp, std::log;
                 const auto moves = greater(slowness, Real(1e-18));
                 slowness = select(moves, exp(shape_ * log(select(moves, slowness, Real(1)))), Real(0));
@@ -271,7 +271,8 @@ private:
 
     Real h_, damping_, attraction_step_{}, shape_{};
     bool relaxes_ = false, falls_ = false, falls_by_side_ = false,
-         shaped_ = false; ///< a finite attraction; a level that falls with the speed, and otherwise than shape 1
+         shaped_ =
+             false; ///< a finite attraction; a level that falls with the speed, and otherwise than shape 1
     std::size_t springs_ = 1;
     std::array<Real, N> weight_{}, stiffness_{}, stiffening_{};
     side forward_, backward_;

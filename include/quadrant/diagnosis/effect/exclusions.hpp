@@ -11,7 +11,7 @@ namespace quadrant::diagnosis {
 
 /// Effects that are no suspects of an axis.
 struct exclusions {
-    std::vector<std::string> by_owner;       ///< who may be wrong: they are weighed, never named
+    std::vector<std::string> by_owner;      ///< who may be wrong: they are weighed, never named
     std::vector<std::string> by_readings{}; ///< other readings show them, or that they are not there
 
     bool by_owner_alone(std::string_view effect) const {

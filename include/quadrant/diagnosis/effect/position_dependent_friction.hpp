@@ -61,8 +61,8 @@ inline constexpr effect position_dependent_friction{
         for (std::size_t k = 0; k < s.record.left_out.size(); ++k)
             if (s.record.left_out[k]) direction[k] = 0;
         std::vector<std::vector<parameter>> out;
-        for (double period :
-             carried_peaks(s.residual, direction, s.record.position, 2 * travel, travel / 50, 2, s.record.score.skip))
+        for (double period : carried_peaks(s.residual, direction, s.record.position, 2 * travel, travel / 50, 2,
+                                           s.record.score.skip))
             out.push_back(detail::repeating<detail::position_dependent_friction_harmonics, 1>(
                 "friction_position_period_m", "friction_position_amplitude", period, travel, 0.95));
         return out;

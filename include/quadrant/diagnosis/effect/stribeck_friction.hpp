@@ -5,8 +5,8 @@
 namespace quadrant::diagnosis::suspect {
 
 /// F = (Fs - Fc) exp(-(|v|/vs)^d) sign(v) on top of the Coulomb level; d = 1: [Jamaludin2008] eq. (3.5), d = 2:
-/// LuGre's curve [Armstrong1994]. Joins the force, in the friction box. Shows as a residual that grows as the axis
-/// gets slower.
+/// LuGre's curve [Armstrong1994]. Joins the force, in the friction box. Shows as a residual that grows as the
+/// axis gets slower.
 inline constexpr effect stribeck_friction{
     .name = "stribeck_friction",
     .label = "Stribeck friction",
@@ -28,7 +28,8 @@ inline constexpr effect stribeck_friction{
                          .tolerance = true},
              machine_key{.name = "stribeck_exponent",
                          .rule = detail::rule::exponent,
-                         .meaning = "of the speed over the Stribeck velocity: 1 falls evenly, 2 has a round top",
+                         .meaning =
+                             "of the speed over the Stribeck velocity: 1 falls evenly, 2 has a round top",
                          .at = member<&plant_description::stribeck_exponent>,
                          .needs = {"static_N", "stribeck_velocity_m_per_s"}}},
     .fault = [](const axis_description& a) -> key_fault {

@@ -73,10 +73,10 @@ inline std::vector<double> spatial_peaks(std::span<const double> signal, std::sp
     return detail::highest_peaks(powers, first - 1, line, travel, count);
 }
 
-/// Periods at which a signal follows carrier(k) (a cos + b sin)(2 pi z/period), the strongest first: by how much
-/// of the signal's energy the least squares of a and b take, beside a constant times the carrier. A carrier that
-/// is large in few places (a command that accelerates at the ends of strokes) looks at the wave through a comb
-/// of windows, whose side lobes are higher than other lines of a plain transform.
+/// Periods at which a signal follows carrier(k) (a cos + b sin)(2 pi z/period), the strongest first: by how
+/// much of the signal's energy the least squares of a and b take, beside a constant times the carrier. A
+/// carrier that is large in few places (a command that accelerates at the ends of strokes) looks at the wave
+/// through a comb of windows, whose side lobes are higher than other lines of a plain transform.
 inline std::vector<double> carried_peaks(std::span<const double> signal, std::span<const double> carrier,
                                          std::span<const double> z, double longest, double shortest,
                                          std::size_t count, std::size_t skip = 0) {
@@ -105,13 +105,13 @@ inline std::vector<double> carried_peaks(std::span<const double> signal, std::sp
                last = std::min(size / 4, static_cast<std::size_t>(1 / (shortest * line)));
     std::vector<double> taken(last >= first ? last - first + 1 : 0);
     for (std::size_t i = first; i <= last; ++i) {
-        const analysis::complex one = squares[i], two = squares[2 * i],
-                                b = with[i] - one * (level / weight);
+        const analysis::complex one = squares[i], two = squares[2 * i], b = with[i] - one * (level / weight);
         const double cc = (weight + two.real()) / 2 - one.real() * one.real() / weight + ridge;
         const double ss = (weight - two.real()) / 2 - one.imag() * one.imag() / weight + ridge;
         const double cs = two.imag() / 2 - one.real() * one.imag() / weight;
-        taken[i - first] = (ss * b.real() * b.real() - 2 * cs * b.real() * b.imag() + cc * b.imag() * b.imag()) /
-                           (cc * ss - cs * cs);
+        taken[i - first] =
+            (ss * b.real() * b.real() - 2 * cs * b.real() * b.imag() + cc * b.imag() * b.imag()) /
+            (cc * ss - cs * cs);
     }
     return detail::highest_peaks(taken, first, line, travel, count);
 }

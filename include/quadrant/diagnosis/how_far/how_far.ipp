@@ -6,10 +6,10 @@ namespace quadrant::diagnosis {
 QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<cause>& causes) const {
     stage before = at(case_.models.given(), case_.axis.controller);
     result.gap = numbers(before);
-    result.evaluated_on = case_.exchanged      ? "the log, fitted to the hold-out log"
+    result.evaluated_on = case_.exchanged        ? "the log, fitted to the hold-out log"
                           : case_.tested_apart() ? "the hold-out log"
-                          : case_.holdout      ? "the hold-out log, fitted as well"
-                                               : "held-out motion segments of the log";
+                          : case_.holdout        ? "the hold-out log, fitted as well"
+                                                 : "held-out motion segments of the log";
     result.signals.residual_before = before.force;
     if (before.loop) result.signals.simulated_position_before = before.loop->position;
 

@@ -27,8 +27,7 @@ public:
 private:
     /// The log made ready. How many independent readings a path holds, only a model near the machine tells: the
     /// error of a wrong one is one long wave. So a first search looks for one.
-    axis_record record_of(double period, const exclusions& excluded, const progress& tell,
-                          held_by how);
+    axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how);
     std::optional<plant_model> nearest_; ///< of that search
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
 

@@ -4,9 +4,8 @@
 namespace quadrant::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
-                                             const axis_log* other, double period,
-                                             const exclusions& excluded, const rules& r,
-                                             const progress& tell, held_by how)
+                                             const axis_log* other, double period, const exclusions& excluded,
+                                             const rules& r, const progress& tell, held_by how)
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
       record(record_of(period, excluded, tell, how)), models(record, a, excluded, r, tell) {
@@ -17,7 +16,8 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
         controller = judge_controller(*axis.controller, axis.actuator, log, record,
                                       coarse() ? count : axis.encoder.resolution_m);
     if (controller && excluded.contains("added_command")) controller->added.reset();
-    controller_unnamed = controller_differs() && !command_is_added() && excluded.contains("controller_mismatch");
+    controller_unnamed =
+        controller_differs() && !command_is_added() && excluded.contains("controller_mismatch");
     if (controller_unnamed) controller->mended = false;
     if (holdout)
         second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
@@ -30,8 +30,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
         follow(models.path_to(more));
 }
 
-QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period,
-                                                         const exclusions& excluded,
+QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const exclusions& excluded,
                                                          const progress& tell, held_by how) {
     const axis_record ready =
         in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);

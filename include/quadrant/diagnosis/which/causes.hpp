@@ -98,8 +98,9 @@ QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
 QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
                                                          const std::vector<parameter_estimate>& found);
 
-/// Whether, on a machine that is within the owner's tolerances without any cause, an effect with all other numbers
-/// kept does less than twice of what is left, in every band: it led the fit, and the others took the rest off.
+/// Whether, on a machine that is within the owner's tolerances without any cause, an effect with all other
+/// numbers kept does less than twice of what is left, in every band: it led the fit, and the others took the
+/// rest off.
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e);
 
 } // namespace detail

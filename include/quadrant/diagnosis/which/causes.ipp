@@ -366,8 +366,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         constexpr double least = 0.08;
         const auto excluded = detail::excluded_instead_of(c, i);
         if (excluded.probability > 0.5) named.better_excluded = excluded.name->name;
-        const double known = (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) *
-                             (1 - excluded.probability);
+        const double known =
+            (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
         if (detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e)) {
