@@ -12,13 +12,17 @@ mkdir -p "$build"
 sh "$root/examples/install.sh" g++ cmake ninja-build libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libssl-dev libjs-dygraphs
 
+# The sources, in as many compilations as there are cores: what they share is compiled once in each. That takes less
+# processor time in all, and up to 1.6 GB in place of 0.6 GB for each compiler.
+cores=$(nproc 2>/dev/null || echo 2)
+together=$((25 / cores + 1))
 build_it() {
     cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DQUADRANT_BUILD_TESTS=OFF \
-        -DQUADRANT_BUILD_BENCHMARKS=OFF &&
-        cmake --build "$build" --target quadrant-gap --parallel "$(nproc 2>/dev/null || echo 2)"
+        -DQUADRANT_BUILD_BENCHMARKS=OFF -DQUADRANT_TOGETHER=$together &&
+        cmake --build "$build" --target quadrant-gap --parallel "$cores"
 }
 program=$build/examples/quadrant-gap
-echo "building quadrant-gap (once; some minutes of processor time; what the compiler says: $log)"
+echo "building quadrant-gap (once; some 150 s of processor time, shared by $cores cores; what the compiler says: $log)"
 began=$(date +%s)
 build_it >"$log" 2>&1 || {
     tail -n 30 "$log" >&2

@@ -21,7 +21,7 @@ struct forecast_options {
     terminal say;
 };
 
-std::string summary(const forecast_result& f, bool verbose) {
+std::string forecast_summary(const forecast_result& f, bool verbose) {
     std::string text =
         wrapped(fmt::format("{} on a machine as the diagnosis of {} expects it", f.motion_file, f.machine_file),
                 0) +
@@ -58,7 +58,7 @@ void run(const forecast_options& o) {
     if (!o.json.empty())
         write_output(o.json,
                      to_json(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!o.say.quiet) std::fputs(summary(result, o.say.verbose).c_str(), files.words());
+    if (!o.say.quiet) std::fputs(forecast_summary(result, o.say.verbose).c_str(), files.words());
 }
 
 } // namespace

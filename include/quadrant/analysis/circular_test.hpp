@@ -2,6 +2,13 @@
 #pragma once
 #include "circle_fit.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// What the axis that reverses leaves in the circle.

@@ -2,8 +2,13 @@
 #pragma once
 #include "circle_fit.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace quadrant::analysis {
 

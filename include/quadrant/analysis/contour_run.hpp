@@ -4,8 +4,13 @@
 #include "../trajectory/interpolator.hpp"
 #include "contour_error.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <deque>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace quadrant::analysis {

@@ -4,6 +4,14 @@
 #include "minimise.hpp"
 #include "virgin_curve.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// Fitted springs of a `maxwell_slip`, knots rising.

@@ -4,8 +4,12 @@
 #include "estimate.hpp"
 #include "minimise.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace quadrant::analysis {
 

@@ -5,7 +5,14 @@
 #include "modal_search.hpp"
 #include "modes.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 namespace quadrant::analysis {
 

@@ -5,6 +5,13 @@
 #include "loop.hpp"
 #include "minimise.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// Which lines of an FRF, and where to look.

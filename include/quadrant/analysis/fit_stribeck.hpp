@@ -4,7 +4,12 @@
 #include "friction_map.hpp"
 #include "minimise.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace quadrant::analysis {
 

@@ -2,7 +2,10 @@
 #pragma once
 #include "estimate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 namespace quadrant::analysis {
 

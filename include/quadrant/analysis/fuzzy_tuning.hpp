@@ -3,7 +3,9 @@
 #include "../control/sliding_mode.hpp"
 #include "frf.hpp"
 
+#include <algorithm>
 #include <array>
+#include <complex>
 #include <cstdlib>
 #include <vector>
 

@@ -3,6 +3,12 @@
 #include "loop.hpp"
 #include "nyquist.hpp"
 
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// What an open loop has to keep from -1.

@@ -4,6 +4,11 @@
 #include "../block/axis_motion.hpp"
 #include "response.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
 #include <vector>
 
 namespace quadrant::analysis {

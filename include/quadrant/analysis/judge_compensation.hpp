@@ -4,6 +4,14 @@
 #include "frf.hpp"
 #include "quadrant_glitch.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <string>
+#include <vector>
+
 namespace quadrant::analysis {
 
 enum class compensation_size { cannot_tell, wrong_sign, not_at_all, too_weak, right, too_strong };

@@ -3,6 +3,10 @@
 #include "margins.hpp"
 #include "step_test.hpp"
 
+#include <complex>
+#include <optional>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// What is usually asked of one axis under a control law.

@@ -5,6 +5,9 @@
 #include "../observer/nominal_plant.hpp"
 #include "response.hpp"
 
+#include <complex>
+#include <numbers>
+
 namespace quadrant::analysis {
 
 /// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder and tachometer see it at the

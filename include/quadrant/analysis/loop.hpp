@@ -2,6 +2,9 @@
 #pragma once
 #include "response.hpp"
 
+#include <cmath>
+#include <complex>
+#include <numbers>
 #include <type_traits>
 
 namespace quadrant::analysis {

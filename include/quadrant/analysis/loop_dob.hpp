@@ -4,6 +4,10 @@
 #include "loop.hpp"
 #include "margins.hpp"
 
+#include <complex>
+#include <cstddef>
+#include <optional>
+
 namespace quadrant::analysis {
 
 /// Q and Q/Gn of an observer in continuous time, the Q of `disturbance_observer`. For the sampled block take

@@ -2,7 +2,14 @@
 #pragma once
 #include "response.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace quadrant::analysis {
 

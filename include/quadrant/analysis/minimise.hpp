@@ -3,6 +3,8 @@
 #include "least_squares.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace quadrant::analysis {
 

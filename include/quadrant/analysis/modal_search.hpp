@@ -3,7 +3,14 @@
 #include "least_squares.hpp"
 #include "response.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 namespace quadrant::analysis::detail {
 

@@ -2,7 +2,10 @@
 #pragma once
 #include "loop.hpp"
 
+#include <cmath>
+#include <complex>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 namespace quadrant::analysis {

@@ -4,7 +4,12 @@
 #include "frf.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
 #include <optional>
+#include <vector>
 
 namespace quadrant::analysis {
 

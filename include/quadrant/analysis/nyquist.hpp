@@ -2,6 +2,10 @@
 #pragma once
 #include "margins.hpp"
 
+#include <cmath>
+#include <complex>
+#include <cstddef>
+
 namespace quadrant::analysis {
 
 /// How many poles of the loop closed over L lie right of the axis (outside the circle, for a sampled L): 0 is

@@ -3,6 +3,13 @@
 #include "../observer/disturbance_observer.hpp"
 #include "frf.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// How a Q filter is judged against a measured axis.

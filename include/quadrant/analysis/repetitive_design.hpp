@@ -6,8 +6,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <vector>
 
 /// Filters, stability and performance of a `repetitive` memory loop, from the loop's complementary sensitivity
 /// T (position over reference, `loop.hpp` tracking()): a model or a measured FRF. [Jamaludin2008], repetitive

@@ -2,6 +2,11 @@
 #pragma once
 #include "quadrant_glitch.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 namespace quadrant::analysis {
 
 /// The spike that a reversal leaves in the tracking error of one axis; as `reversal_spike` of the circular test

@@ -4,8 +4,11 @@
 #include "../path/spline_path.hpp"
 #include "response.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 /// The contours that feed drives are usually tried on, in the xy plane around its origin, as moves for an

@@ -3,7 +3,9 @@
 #include "../filter/viscous_step.hpp"
 #include "law_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <vector>

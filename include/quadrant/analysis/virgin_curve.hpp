@@ -3,8 +3,12 @@
 #include "../friction/stribeck.hpp"
 #include "slow_branches.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace quadrant::analysis {
 

@@ -4,6 +4,7 @@
 #include "maps.hpp"
 
 #include <complex>
+#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>

@@ -2,6 +2,9 @@
 #pragma once
 #include "rst.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace quadrant {
 
 /// What a `generalized_predictive` law weighs.

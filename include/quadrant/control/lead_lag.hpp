@@ -2,6 +2,12 @@
 #pragma once
 #include "rst.hpp"
 
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
 namespace quadrant {
 
 /// What a lead-lag compensator shall make of the open loop.

@@ -3,6 +3,8 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
+#include <cstddef>
+
 namespace quadrant {
 
 /// Clips a wire to what the amplifier can do.

@@ -9,7 +9,10 @@
 #include "proportional.hpp"
 #include "proportional_integral.hpp"
 
+#include <array>
+#include <cstddef>
 #include <limits>
+#include <numbers>
 
 namespace quadrant {
 

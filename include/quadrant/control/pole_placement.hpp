@@ -2,6 +2,9 @@
 #pragma once
 #include "rst.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace quadrant {
 
 /// Where the poles of an `rst` loop shall lie.

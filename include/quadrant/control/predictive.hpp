@@ -5,6 +5,9 @@
 #include "axis_law.hpp"
 #include "predictive_design.hpp"
 
+#include <array>
+#include <complex>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 

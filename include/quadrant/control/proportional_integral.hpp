@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <concepts>
+#include <cstddef>
 #include <numbers>
 
 namespace quadrant {

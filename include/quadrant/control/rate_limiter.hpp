@@ -3,6 +3,8 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
+#include <cstddef>
+
 namespace quadrant {
 
 /// Bounds how fast a wire may change: a demand that must not jump.

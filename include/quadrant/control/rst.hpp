@@ -5,6 +5,12 @@
 #include "axis_law.hpp"
 #include "diophantine.hpp"
 
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
 namespace quadrant {
 
 namespace detail {

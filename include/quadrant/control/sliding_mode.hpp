@@ -6,6 +6,7 @@
 #include "axis_law.hpp"
 #include "proportional_integral.hpp"
 
+#include <complex>
 #include <limits>
 #include <numbers>
 

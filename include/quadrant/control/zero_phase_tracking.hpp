@@ -2,6 +2,9 @@
 #pragma once
 #include "pole_placement.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace quadrant {
 
 /// Zero phase error tracking: the same feedback, and a reference polynomial that cancels all poles of the loop

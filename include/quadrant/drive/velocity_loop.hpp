@@ -5,6 +5,7 @@
 #include "../friction/already_checked.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 

@@ -6,6 +6,9 @@
 #include "../base/standstill.hpp"
 #include "second_order.hpp"
 
+#include <complex>
+#include <numbers>
+
 namespace quadrant {
 
 /// Smooths a wire more steeply than `lowpass`: flat up to the corner, then 40 dB per decade.

@@ -6,6 +6,8 @@
 #include "../base/standstill.hpp"
 #include "second_order.hpp"
 
+#include <complex>
+
 namespace quadrant {
 
 /// Takes one structural resonance out of a wire: zero gain at the centre, one far from it.

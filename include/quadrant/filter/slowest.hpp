@@ -4,6 +4,7 @@
 #include "../base/signal.hpp"
 
 #include <concepts>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <type_traits>

@@ -4,6 +4,7 @@
 #include "../base/finite.hpp"
 
 #include <cmath>
+#include <cstddef>
 
 namespace quadrant {
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <tuple>
+#include <type_traits>
 
 namespace quadrant {
 

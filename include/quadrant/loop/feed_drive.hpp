@@ -13,6 +13,7 @@
 #include "../sensor/white_noise.hpp"
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 /// The blocks of two axes of one kind as one block in two lanes: the same template with another number type,
 /// and its parameters from those of both axes. An own block of a box becomes one by two overloads beside these,

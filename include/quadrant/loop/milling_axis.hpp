@@ -8,6 +8,7 @@
 
 #include <array>
 #include <tuple>
+#include <type_traits>
 
 namespace quadrant {
 

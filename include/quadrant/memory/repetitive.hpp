@@ -12,6 +12,7 @@
 #include <complex>
 #include <cstddef>
 #include <numbers>
+#include <type_traits>
 
 namespace quadrant {
 

@@ -3,6 +3,7 @@
 #include "repetitive.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace quadrant {

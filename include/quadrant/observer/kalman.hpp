@@ -4,8 +4,10 @@
 #include "../base/standstill.hpp"
 #include "dare.hpp"
 
+#include <array>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <numbers>
 
 namespace quadrant {

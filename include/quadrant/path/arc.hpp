@@ -4,6 +4,7 @@
 #include "point.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace quadrant {
 

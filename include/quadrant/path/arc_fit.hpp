@@ -2,6 +2,8 @@
 #pragma once
 #include "arc.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 

@@ -3,7 +3,14 @@
 #include "arc_fit.hpp"
 #include "cl_arguments.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace quadrant::detail {
 

@@ -2,6 +2,11 @@
 #pragma once
 #include "cl_statement.hpp"
 
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace quadrant::detail {
 
 /// What stands behind the major word of a statement, from left to right.

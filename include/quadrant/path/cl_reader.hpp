@@ -3,7 +3,14 @@
 #include "cl_arc.hpp"
 #include "spline_moves.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <iosfwd>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
 
 namespace quadrant {
 

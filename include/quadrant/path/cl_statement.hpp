@@ -2,6 +2,12 @@
 #pragma once
 #include "program_text.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace quadrant::detail {

@@ -3,6 +3,10 @@
 #include "program_text.hpp"
 
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
 
 namespace quadrant::detail {
 

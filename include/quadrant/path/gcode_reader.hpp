@@ -3,6 +3,13 @@
 #include "arc_fit.hpp"
 #include "gcode_block.hpp"
 
+#include <cmath>
+#include <cstddef>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+
 namespace quadrant {
 
 /// Reads a G-code program, one move at a time; memory does not grow with the program.

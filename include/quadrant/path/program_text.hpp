@@ -2,8 +2,10 @@
 #pragma once
 #include "move.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <deque>
 #include <fstream>
 #include <initializer_list>

@@ -3,6 +3,12 @@
 #include "program_text.hpp"
 #include "spline_path.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+
 namespace quadrant::detail {
 
 /// A run of places in a program, as moves that join without a corner. The way to each place has the feed and

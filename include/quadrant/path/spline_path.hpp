@@ -2,6 +2,9 @@
 #pragma once
 #include "spline.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <deque>
 #include <optional>
 #include <vector>

@@ -3,6 +3,8 @@
 #include "../base/finite.hpp"
 #include "periodic.hpp"
 
+#include <cstddef>
+
 namespace quadrant {
 
 /// The pull of the magnets on the iron: a force that depends on the position alone, command or not.

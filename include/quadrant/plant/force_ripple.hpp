@@ -4,6 +4,7 @@
 #include "periodic.hpp"
 
 #include <complex>
+#include <cstddef>
 
 namespace quadrant {
 

@@ -7,6 +7,8 @@
 #include "joint.hpp"
 #include "sprung_mass.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <type_traits>

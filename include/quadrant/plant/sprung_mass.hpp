@@ -5,6 +5,8 @@
 #include "../friction/already_checked.hpp"
 #include "oscillator.hpp"
 
+#include <cstddef>
+
 namespace quadrant {
 
 /// A second mass on a spring that rides on the axis and that the encoder does not see: anti-resonance at its

@@ -6,9 +6,11 @@
 #include "tool_entry.hpp"
 #include "turning_phase.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 namespace quadrant {

@@ -3,6 +3,8 @@
 #include "../base/finite.hpp"
 #include "../plant/periodic.hpp"
 
+#include <numbers>
+
 namespace quadrant {
 
 /// What an encoder's interpolation, or an eccentric scale, adds to the position.

@@ -3,6 +3,11 @@
 #include "path_shape.hpp"
 #include "speed_change.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
 namespace quadrant::trajectory {
 
 /// What a stretch of path is to the speed along it: one segment, or several that follow smoothly.

@@ -2,6 +2,11 @@
 #pragma once
 #include "look_ahead.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
 namespace quadrant::trajectory {
 
 /// What a path asks of the three axes at one moment.

@@ -4,6 +4,10 @@
 #include "corner.hpp"
 #include "profile.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 
 namespace quadrant::trajectory {

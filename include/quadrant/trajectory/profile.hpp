@@ -2,6 +2,10 @@
 #pragma once
 #include "speed_change.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 namespace quadrant::trajectory {
 
 /// One length in the shortest time, from one speed to another, both not negative: the speed goes to the highest

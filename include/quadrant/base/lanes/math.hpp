@@ -4,6 +4,9 @@
 #include "number.hpp"
 
 #include <cmath>
+#include <complex>
+#include <cstddef>
+#include <type_traits>
 
 /// The functions of <cmath> on lanes, found by argument-dependent lookup as those of `dual` are. In registers
 /// exp, log, sin and cos are xsimd's; docs/lanes.md says how far they lie from the C library's. tan, atan2 and

@@ -2,6 +2,8 @@
 #pragma once
 #include "math.hpp"
 
+#include <cstddef>
+
 namespace quadrant {
 
 /// Cosine and sine of an angle given in turns.
