@@ -383,10 +383,11 @@ private:
     Eigen::MatrixXd slopes(const candidate& c) const {
         const auto n = static_cast<Eigen::Index>(c.residual.size());
         Eigen::MatrixXd out(n, c.x.size());
-        for (Eigen::Index i = 0; i < c.x.size(); i += predictor::abreast - 1) {
+        constexpr auto moved = static_cast<Eigen::Index>(predictor::abreast) - 1;
+        for (Eigen::Index i = 0; i < c.x.size(); i += moved) {
             std::vector<plant_model> plants{c.plant};
             std::vector<double> step;
-            const Eigen::Index end = std::min<Eigen::Index>(i + predictor::abreast - 1, c.x.size());
+            const Eigen::Index end = std::min(i + moved, c.x.size());
             for (Eigen::Index j = i; j < end; ++j) {
                 const parameter& p = c.parameters[static_cast<std::size_t>(j)];
                 Eigen::VectorXd x = c.x;

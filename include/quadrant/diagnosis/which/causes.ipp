@@ -316,7 +316,7 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
     const std::array plants{c.best().fit.plant, c.models.plant_without(c.best(), e)};
     std::array<std::vector<double>, 2> innovation;
     c.record.observer.run(plants, innovation);
-    auto& [left, does] = innovation;
+    auto &left = innovation[0], &does = innovation[1];
     for (std::size_t k = 0; k < does.size(); ++k) does[k] -= left[k];
     return std::all_of(c.record.score.channels.begin(), c.record.score.channels.end(),
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
