@@ -150,13 +150,17 @@ namespace detail {
 inline std::string fit_into_page(std::string svg, std::size_t number, std::string_view label) {
     const std::size_t open = svg.find("<svg"), view = svg.find("viewBox", open),
                       canvas = svg.find("<g id=", open);
-    if (canvas == std::string::npos) return "";
+    if (canvas == std::string::npos || view == std::string::npos || svg.find("</svg>", canvas) == std::string::npos)
+        return ""; // lost on its way from gnuplot
     const std::string frame = svg.substr(view, svg.find('\n', view) - view);
     svg = fmt::format("<svg {} role=\"img\" aria-label=\"{}\">\n", frame, label) + svg.substr(canvas);
     for (const auto& [begin, end] :
          {std::pair<std::string_view, std::string_view>{"<filter", "</filter>"}, {"<title>", "</title>"}})
-        for (std::size_t at; (at = svg.find(begin)) != std::string::npos;)
-            svg.erase(at, svg.find(end, at) + end.size() - at);
+        for (std::size_t at; (at = svg.find(begin)) != std::string::npos;) {
+            const std::size_t last = svg.find(end, at);
+            if (last == std::string::npos) return "";
+            svg.erase(at, last + end.size() - at);
+        }
     for (const char* quote : {"\"", "'"}) {
         replace_all(svg, fmt::format("{0}black{0}", quote), fmt::format("{0}var(--ink){0}", quote));
         replace_all(svg, fmt::format("{0}gray{0}", quote), fmt::format("{0}var(--grid){0}", quote));

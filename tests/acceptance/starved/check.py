@@ -20,11 +20,15 @@ shim = scratch / "fail_nth.so"
 subprocess.run([compiler, "-std=c++20", "-O1", "-shared", "-fPIC", "-o", shim, Path(__file__).with_name("fail_nth.cpp")], check=True)
 
 data, imports = root / "examples/data", root / "examples/import"
+mill = root / "examples/programs/quadrant_cnc/mill.json"
 # What each program is asked for: its arguments, and the files that it writes.
 asked = {
     "quadrant-gap": [
         (["import", "--map", imports / "halsampler.map.json", imports / "halsampler.txt", "log.csv"], ["log.csv"]),
         (["simulate", "--machine", data / "machine.json", "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+    ],
+    "quadrant-cnc": [
+        (["analyse", "--cnc", mill, "--axis", "x", "--json", "figures.json", "--report", "axis.html"], ["figures.json", "axis.html"]),
     ],
 }
 PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
