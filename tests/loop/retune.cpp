@@ -4,8 +4,10 @@
 // is reached.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/series.hpp>
+#include <quadrant/control/dead_band.hpp>
 #include <quadrant/control/proportional.hpp>
 #include <quadrant/control/proportional_integral.hpp>
+#include <quadrant/control/rate_limiter.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
 #include <quadrant/filter/lowpass.hpp>
@@ -148,6 +150,38 @@ TEST_CASE("retune: a gain jumps by its change times the input") {
     CHECK(kv(2_mm).value() == doctest::Approx(0.32));
 }
 
+TEST_CASE("retune: a rate limiter jumps by at most the change of its rate times the period, a dead band by the "
+          "change of its width") {
+    random_numbers random;
+    std::array<verdict, 2> said;
+    for (int trial = 0; trial < 20000; ++trial) {
+        const auto x = random.signal(50); // 50 x 20 000 = 1e6 samples
+        const double size = largest(x);
+        const auto rate = [&] { return random.decades(1e-3, 1) * size / T.value(); };
+        const auto width = [&] { return random.decades(1e-3, 1) * size; };
+        const double r = rate(), next_r = rate(), w = width(), next_w = width();
+        using ramp = rate_limiter<signal::force>;
+        using band = dead_band<signal::force>;
+        const auto slope = [](double bare) { return bare * 1_N / 1_s; };
+        ramp kept({slope(r)}, T), twin = kept;
+        band kept_band({w * 1_N}, T), twin_band = kept_band;
+        for (std::size_t k = 0; k + 1 < x.size(); ++k)
+            step(kept, x[k]), step(twin, x[k]), step(kept_band, x[k]), step(twin_band, x[k]);
+        kept.retune(ramp({slope(next_r)}, T));
+        kept_band.retune(band({next_w * 1_N}, T));
+        said[0](step(kept, x.back()) - step(twin, x.back()), std::abs(next_r - r) * T.value(), 1e-14 * size);
+        said[1](step(kept_band, x.back()) - step(twin_band, x.back()), std::abs(next_w - w), 1e-14 * size);
+    }
+    for (const verdict& each : said) {
+        CHECK(each.broken == 0);
+        CHECK(each.most > 0.999);
+    }
+    rate_limiter<signal::force> slow({1000_N / 1_s}, T);
+    slow.retune({{2000_N / 1_s}, 2.0 * T}); // designed for another period
+    CHECK(slow.faulted());
+    CHECK(slow.given().rate == 1000_N / 1_s);
+}
+
 TEST_CASE_TEMPLATE("retune: the PI's next output moves by no more than its new gains would have moved it", Rule,
                    integral_clamp, conditional_integration, back_calculation) {
     using pi_loop = proportional_integral<signal::velocity, signal::voltage, Rule>;
@@ -259,7 +293,10 @@ TEST_CASE(
         for (std::size_t k = 0; k < 39; ++k)
             step(whole, x[k]), step(whole_twin, x[k]), step(line, x[k]), step(line_twin, x[k]),
                 step(cubic, x[k]), step(cubic_twin, x[k]);
-        whole.length(next_n), line.delay(next * T), cubic.delay(next * T);
+        if (trial % 3 == 0) // either way
+            whole.length(next_n), line.delay(next * T), cubic.delay(next * T);
+        else
+            whole.retune({{next_n}, T}), line.retune({{next * T}, T}), cubic.retune({{next * T}, T});
         const double by = std::abs(next - d), most = steepest(d, next), rounding = 1e-12 * largest(x);
         said[0](step(whole, x[39]) - step(whole_twin, x[39]),
                 std::abs(double(next_n) - double(n)) * steepest(double(n), double(next_n)), rounding);

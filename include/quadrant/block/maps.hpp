@@ -28,6 +28,22 @@ concept maps = signal_tag<In> && signal_tag<Out> && requires(B b, const quantity
     b.reset();
 };
 
+/// B takes the parameters of another B while it runs, or has none.
+template <class B>
+concept retunable = std::is_empty_v<typename B::parameters> || requires(B b, const B& next) {
+    b.retune(next);
+};
+/// B takes the parameters of another B while it runs, and is told at which input it shall give which output.
+template <class B, class In, class Out, class Real = real_of<B>>
+concept retunable_at = requires(B b, const B& next, quantity_of<In, Real> x, quantity_of<Out, Real> y) {
+    b.retune(next, x, y);
+};
+/// The frame of B's input moves while it runs.
+template <class B, class In, class Real = real_of<B>>
+concept shiftable = requires(B b, quantity_of<In, Real> by) {
+    b.shift(by);
+};
+
 namespace detail {
 /// Settles a block at x and tells what it then gives, without stepping it.
 template <class Block, class X> auto settled(Block& block, const X& x) {
@@ -39,12 +55,8 @@ template <class Block, class X> auto settled(Block& block, const X& x) {
 template <class Block, class X> auto foreseen(Block block, const X& x) noexcept { return block(x); }
 /// The parameters of another block of the same type, the state of this one; a block without parameters stays as
 /// it is.
-template <class Block> void retune(Block& block, const Block& next) noexcept {
-    if constexpr (requires { block.retune(next); })
-        block.retune(next);
-    else
-        static_assert(std::is_empty_v<typename Block::parameters>,
-                      "this block cannot be retuned while it runs");
+template <retunable Block> void retune(Block& block, const Block& next) noexcept {
+    if constexpr (requires { block.retune(next); }) block.retune(next);
 }
 template <class Block>
 concept responds = requires(const Block& block, frequency f) {

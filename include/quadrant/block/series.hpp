@@ -55,8 +55,11 @@ public:
         std::apply([&](auto&... block) { ((x = detail::settled(block, only_where(good, x))), ...); }, blocks_);
         out_.settle(good, x);
     }
-    void retune(const series& next) noexcept { retune_each(next, std::index_sequence_for<First, Rest...>()); }
-    void shift(value by) noexcept { ///< where each block has gain one at standstill
+    void retune(const series& next) noexcept requires(retunable<First>&&...&& retunable<Rest>) {
+        retune_each(next, std::index_sequence_for<First, Rest...>());
+    }
+    void shift(value by) noexcept ///< where each block has gain one at standstill
+        requires(shiftable<First, input>&&...&& shiftable<Rest, input>) {
         const auto good = finite(by);
         if (none(good)) return out_.raise();
         std::apply([&](auto&... block) { (block.shift(by), ...); }, blocks_);

@@ -20,6 +20,7 @@ template <class Value> constexpr Value beyond(const Value& x, const Value& half)
 /// threshold is the whole width.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, odd and continuous.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
+/// `retune(next)`: another width from the next step on, J <= |half_width' - half_width|.
 /// Range: half_width >= 0; 0 passes everything.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "dead_band.half_width = ...: must be finite and not below 0".
@@ -46,6 +47,11 @@ public:
     value operator()(value x) noexcept { return out_.keep(finite(x), shifted(x)); }
     void reset() noexcept { out_.reset(); }
     void settle(value x) noexcept { out_.settle(finite(x), shifted(x)); }
+
+    void retune(const dead_band& next) noexcept {
+        half_width_ = next.half_width_;
+        given_ = next.given_;
+    }
 
     bool faulted() const noexcept { return out_.faulted(); }
     mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }

@@ -12,7 +12,7 @@ namespace quadrant {
 /// Source: LinuxCNC limit2 (its maxv).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: the last output; `reset` leaves 0, `settle(x)` stands at x. limited() = the last sample could not
-/// follow.
+/// follow. `retune(next)`: another rate from the next step on, J <= |rate' - rate| T.
 /// Range: rate > 0, the same up and down; infinite = no bound.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "rate_limiter.rate = ...: must be above 0".
@@ -34,7 +34,7 @@ public:
         value y{}; ///< last output
     };
 
-    rate_limiter(const parameters& p, duration period) : given_(p) {
+    rate_limiter(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("rate_limiter.period", period);
         require_lanes([&](std::size_t i) { return detail::plain(lane(p.rate, i)) > 0; }, "rate_limiter.rate",
                       p.rate, "must be above 0 (infinite: no bound)");
@@ -58,6 +58,12 @@ public:
         out_.settle(good, x);
     }
 
+    void retune(const rate_limiter& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        most_ = next.most_;
+        given_ = next.given_;
+    }
+
     bool limited() const noexcept { return any(limited_); } ///< some lane was
     mask_of<Real> limited_lanes() const noexcept { return limited_; }
     bool faulted() const noexcept { return out_.faulted(); }
@@ -67,6 +73,7 @@ public:
 
 private:
     parameters given_;
+    duration period_;
     value most_;
     state state_;
     mask_of<Real> limited_{};

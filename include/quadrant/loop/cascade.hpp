@@ -34,6 +34,30 @@ concept axis_boxes = requires {
     requires maps<decltype(B::dac), command_of<B>, command_of<B>, real_of_boxes<B>>;
 };
 
+/// What the verb `retune` of a cascade asks of its slots, beside what every sample asks. A loop of boxes that
+/// cannot do it runs, and its `retune` is refused with the slot and the missing verb.
+template <class B>
+concept retunable_axis_boxes = axis_boxes<B> && requires {
+    requires retunable<decltype(B::reference_velocity)>;
+    requires retunable<decltype(B::reference_acceleration)>;
+    requires retunable<decltype(B::measured_velocity)>;
+    requires retunable<decltype(B::position_loop)>;
+    requires retunable<decltype(B::velocity_feedforward)>;
+    requires retunable_at<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
+    requires retunable<decltype(B::resonance)>;
+    requires shiftable<decltype(B::resonance), command_of<B>, real_of_boxes<B>>;
+    requires retunable<decltype(B::acceleration_feedforward)>;
+    requires retunable<decltype(B::friction)>;
+    requires retunable<decltype(B::amplifier)>;
+    requires retunable<decltype(B::dac)>;
+};
+/// What the verb `shift` of a cascade asks of its slots.
+template <class B>
+concept shiftable_axis_boxes = axis_boxes<B> && requires {
+    requires shiftable<decltype(B::reference_velocity), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::measured_velocity), signal::position, real_of_boxes<B>>;
+};
+
 /// Every wire of the diagram, readable after every step.
 template <signal_tag Command, class Real> struct cascade_wires {
     quantity_of<signal::position, Real> reference, measured, position_error;
@@ -167,7 +191,7 @@ template <axis_boxes Boxes> struct cascade {
     /// Other parameters from the next step on, each box as its own retune says; what gains and feedforward
     /// change goes into
     /// the integral: the last step, done once more, would give the same command.
-    void retune(const Boxes& next) noexcept {
+    void retune(const Boxes& next) noexcept requires retunable_axis_boxes<Boxes> {
         const command before = wire.inertia + wire.friction;
         detail::retune(box.reference_velocity, next.reference_velocity);
         detail::retune(box.reference_acceleration, next.reference_acceleration);
@@ -192,7 +216,7 @@ template <axis_boxes Boxes> struct cascade {
     }
     /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no
     /// command changes.
-    void shift(position by) noexcept {
+    void shift(position by) noexcept requires shiftable_axis_boxes<Boxes> {
         box.reference_velocity.shift(by);
         box.measured_velocity.shift(by);
         wire.reference += by;

@@ -55,6 +55,33 @@ concept milling_boxes = requires {
     requires maps<decltype(B::dac), command_of<B>, command_of<B>, real_of_boxes<B>>;
 };
 
+/// What the verb `retune` of a milling_axis asks of its slots, beside what every sample asks.
+template <class B>
+concept retunable_milling_boxes = milling_boxes<B> && requires {
+    requires retunable<decltype(B::memory)>;
+    requires retunable<decltype(B::position_loop)>;
+    requires retunable<decltype(B::reference_velocity)>;
+    requires retunable<decltype(B::reference_notch)>;
+    requires retunable<decltype(B::measured_velocity)>;
+    requires retunable<decltype(B::measured_notch)>;
+    requires retunable_at<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
+    requires retunable<decltype(B::inertia)>;
+    requires retunable<decltype(B::drag)>;
+    requires retunable<decltype(B::disturbance)>;
+    requires retunable<decltype(B::travel)>;
+    requires retunable<decltype(B::friction)>;
+    requires retunable<decltype(B::amplifier)>;
+    requires retunable<decltype(B::dac)>;
+};
+/// What the verb `shift` of a milling_axis asks of its slots.
+template <class B>
+concept shiftable_milling_boxes = milling_boxes<B> && requires {
+    requires shiftable<decltype(B::reference_velocity), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::measured_velocity), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::disturbance), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::travel), signal::position, real_of_boxes<B>>;
+};
+
 /// Every wire of the diagram, readable after every step.
 template <signal_tag Command, class Real> struct milling_wires {
     quantity_of<signal::position, Real> reference, measured, position_error, learned;
@@ -196,7 +223,7 @@ template <milling_boxes Boxes> struct milling_axis {
     /// Other parameters from the next step on, each box as its own retune says; `ahead` as in the last step.
     /// What gains and
     /// feedforward change goes into the integral: the last step, done once more, would give the same command.
-    void retune(const Boxes& next, const motion& ahead) noexcept {
+    void retune(const Boxes& next, const motion& ahead) noexcept requires retunable_milling_boxes<Boxes> {
         detail::retune(box.memory, next.memory);
         detail::retune(box.position_loop, next.position_loop);
         detail::retune(box.reference_velocity, next.reference_velocity);
@@ -224,7 +251,7 @@ template <milling_boxes Boxes> struct milling_axis {
     }
     /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no
     /// command changes.
-    void shift(position by) noexcept {
+    void shift(position by) noexcept requires shiftable_milling_boxes<Boxes> {
         box.reference_velocity.shift(by);
         box.measured_velocity.shift(by);
         box.disturbance.shift(by);

@@ -19,7 +19,8 @@ namespace quadrant {
 /// parameters, `settle(x)` fills it with x. `length(n)` changes the length between two steps: a longer delay
 /// reads inputs that were really there (zeros before the first), a shorter one skips some; nothing is ever read
 /// that was not put in. At a change the output jumps by x[k-n'] - x[k-n]: at most |n' - n| times the largest
-/// step of those inputs. `shift(by)`: the frame moves.
+/// step of those inputs. `retune(next)`: the length that `next` has, with the same J.
+/// `shift(by)`: the frame moves.
 /// Range: 0 <= length <= Capacity; length(n) above saturates, and limited() tells. Length 0 is a piece of wire.
 /// NaN and infinities: holds the last output, takes nothing in (the line stands still), raises faulted().
 /// Throws "delay_line.length = ...: must not exceed the capacity (...)".
@@ -73,6 +74,12 @@ public:
         out_.keep(out_.last() + by);
     }
 
+    void retune(const delay_line& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        length_ = next.length_;
+        limited_ = next.limited_;
+        given_ = next.given_;
+    }
     void length(std::size_t periods) noexcept {
         limited_ = periods > Capacity;
         length_ = limited_ ? Capacity : periods;
@@ -110,6 +117,10 @@ public:
     delay_line(const parameters& p, duration period)
         : lane_by_lane<one, Real>([&](std::size_t i) { return typename one::parameters{p.length[i]}; }, period),
           given_(p) {}
+    void retune(const delay_line& next) noexcept {
+        this->retune_each(next);
+        given_ = next.given_;
+    }
     const parameters& given() const noexcept { return given_; }
 
 private:

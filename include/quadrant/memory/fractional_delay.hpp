@@ -26,8 +26,8 @@ concept delay_order = Order == 1 || (Order == 3 && Capacity >= 1);
 /// State: the last Capacity + Order + 1 inputs, whatever the delay; `reset` leaves zeros and the delay of the
 /// parameters, `settle(x)` fills it with x. `delay(d)` changes the delay between two steps.
 /// At a change the output jumps by at most g |d' - d|/T times the largest step of the inputs that are read
-/// between, and beside,
-/// both delays: g = 1 (Order 1), 4/3 (Order 3), the steepest slope of the cubic. `shift(by)`: the frame moves.
+/// between, and beside, both delays: g = 1 (Order 1), 4/3 (Order 3), the steepest slope of the cubic.
+/// `retune(next)`: the delay that `next` has, with the same J. `shift(by)`: the frame moves.
 /// Range: Order 1 (straight line): 0 <= delay <= Capacity periods; Order 3 (cubic): one period <= delay <=
 /// Capacity periods, because it needs a sample on either side. delay(d) outside saturates, and limited() tells.
 /// Exact for polynomials up to Order, for any signal at whole periods; gain at 1/8 of the sampling rate and
@@ -95,6 +95,13 @@ public:
         out_.keep(out_.last() + by);
     }
 
+    void retune(const fractional_delay& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        weight_ = next.weight_;
+        first_ = next.first_;
+        limited_ = next.limited_;
+        given_ = next.given_;
+    }
     void delay(quantity<si::time, number> d) noexcept {
         if (none(finite(d))) return out_.raise();
         number periods = d.value() / number(period_.value());
@@ -156,6 +163,10 @@ public:
               },
               period),
           given_(p) {}
+    void retune(const fractional_delay& next) noexcept {
+        this->retune_each(next);
+        given_ = next.given_;
+    }
     void delay(quantity<si::time, Real> d) noexcept {
         for (std::size_t i = 0; i < lane_count<Real>; ++i)
             this->of(i).delay(in_real<typename Real::single>(lane(d, i)));

@@ -63,6 +63,9 @@ protected:
     template <class ParametersOf>
     lane_by_lane(const ParametersOf& parameters_of, duration period)
         : lane_by_lane(parameters_of, period, std::make_index_sequence<size>()) {}
+    void retune_each(const lane_by_lane& next) noexcept { ///< lane i as lane i of `next`
+        for (std::size_t i = 0; i < size; ++i) each_[i].retune(next.each_[i]);
+    }
 
 private:
     template <class ParametersOf, std::size_t... I>
