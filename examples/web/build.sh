@@ -35,7 +35,7 @@ part() { # NAME HEADER...
 part diagnose diagnose next/next_experiment
 part compare compare compare/finding compare/fit_of_log compare/values compare/with_causes
 part apply apply read_diagnosis read_machine text/json_text effect/effect_list
-part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/drive_estimate fit/record fit/drive_noise model/linear_past model/sample_loss
+part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/drive_estimate fit/record fit/drive_noise fit/command_noise model/linear_past model/sample_loss
 part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
 part case which/axis_case which/block_places where/places how_far/how_far how_far/closed_loop how_far/driven_loop
 part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start

@@ -69,6 +69,19 @@ TEST_CASE("diagnose: a constant force, and its second reading") {
     CHECK(d.next.expected_gain == 0);
     CHECK(d.next.reference.empty());
 }
+TEST_CASE("diagnose: what is smaller than what every law of friction is wrong by is no claim") {
+    machine real;
+    auto file = described(real);
+    file.axes[0].plant.coulomb_N = real.coulomb;
+    real.cogging = 0.02 * real.coulomb;
+    const auto slight = diagnosed(file, real);
+    CAPTURE(said(slight));
+    CHECK(claims(slight).empty());
+    CHECK(std::string(name_of(slight.verdict)) == "within_tolerance");
+    real.cogging = 0.2 * real.coulomb;
+    named(diagnosed(file, real), "cogging", "cogging_N", 0.2 * real.coulomb, 0.1);
+}
+
 TEST_CASE("diagnose: another controller, by replay, with its key") {
     machine real;
     const auto file = described(real);
@@ -210,9 +223,9 @@ TEST_CASE("diagnose: what shows in the motion of the hold-out log only is found 
         gentle[k] = 0.03 * (1 - std::cos(5 * t)) + 0.005 * (1 - std::cos(11 * t));
         brisk[k] = 0.03 * (1 - std::cos(20 * t)) + 0.005 * (1 - std::cos(44 * t));
     }
-    const double limit = 0.5 * highest(run(real, 2.5, 1, brisk));
-    REQUIRE(highest(run(real, 2.5, 1, gentle)) < limit);
-    real.drive_limit = limit;
+    const double reached = 0.5 * highest(run(real, 2.5, 1, brisk));
+    REQUIRE(highest(run(real, 2.5, 1, gentle)) < reached);
+    real.drive_limit = reached;
     const auto log = as_log(run(real, 2.5, 1, gentle)), holdout = as_log(run(real, 2.5, 2, brisk));
     const auto d = diagnose(file, log, &holdout);
     CAPTURE(said(d));

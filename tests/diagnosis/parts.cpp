@@ -118,6 +118,44 @@ TEST_CASE("residual force floor: white noise on the position leaves what is fore
     CHECK(rms(force) == doctest::Approx(residual_force_floor(mass, sigma, period, 100)).epsilon(0.03));
 }
 
+TEST_CASE("noise of a measured command: found under what moves the axis, none where a filter took it off") {
+    std::mt19937 random(11);
+    std::normal_distribution<double> noise(0, 0.02);
+    std::vector<double> command(6000), filtered(6000);
+    double held = 0;
+    for (std::size_t k = 0; k < command.size(); ++k) {
+        const double t = 0.001 * static_cast<double>(k),
+                     moves = 3 * std::sin(2 * t) + (k / 700 % 2 ? 1.0 : -1.0);
+        const double n = noise(random);
+        command[k] = moves + n;
+        filtered[k] = moves + (held += 0.1 * (n - held));
+    }
+    CHECK(white_noise_in(command) / 0.02 == doctest::Approx(1).epsilon(0.05));
+    CHECK(white_noise_in(filtered) < 0.0015);                      // its density is down to 1/19^2
+    CHECK(white_noise_in(std::span(command).first(400)) == 0);     // too short to tell
+    CHECK(white_noise_in(std::vector<double>(2000, 1.5)) < 1e-12); // a standing command has none
+}
+
+TEST_CASE("noise of a measured command: leaves in the bands and in the residual force what is forecast") {
+    const double period = 0.001, force = 2, mass = 5, pole = 0.9;
+    std::mt19937 random(12);
+    std::normal_distribution<double> noise(0, force);
+    std::vector<double> forces(200000);
+    for (double& f : forces) f = noise(random);
+    const auto innovation = detail::innovation_of(forces, mass, period, pole, 0);
+    for (const std::size_t rows : {1u, 20u, 100u}) {
+        CAPTURE(rows);
+        channel band;
+        band.mean = rows;
+        band.command_noise = command_noise_in(band, force, mass, period, pole);
+        CHECK(rms(detail::running_means(innovation, rows)) ==
+              doctest::Approx(band.command_noise).epsilon(0.05).scale(0));
+        CHECK(band.of_noise(0) == doctest::Approx(band.command_noise * band.command_noise).scale(0));
+    }
+    CHECK(rms(zero_phase(forces, 100, period)) ==
+          doctest::Approx(force * white_noise_below(100, period)).epsilon(0.03));
+}
+
 TEST_CASE("residual force: a force that the model lacks is seen with its size and sign") {
     // A free mass under 10 N that the model does not know; residual force is what the model pushes too much.
     const double period = 0.0005, mass = 50;

@@ -24,8 +24,9 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
     if ((c.at_floor() || c.within_its_laws()) && !c.count_unnamed && !c.controller_open()) {
         const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
         // Suspects for what calibration leaves are no finding where that is immaterial.
-        const bool silent = causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
-                                               c.models.immaterial(c.path.front()));
+        const bool silent =
+            causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
+                               (c.models.immaterial(c.path.front()) || c.calibrated_within_its_laws()));
         if (!silent)
             return std::all_of(causes.begin(), causes.end(), claimed) || c.claims_suffice()
                        ? verdict::explained

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "apply.hpp"
+#include "fit/neighbour.hpp"
+#include "fit/record.hpp"
+#include "how_far/closed_loop.hpp"
 #include "match.hpp"
 #include "simulate.hpp"
 #include "write_diagnosis.hpp"
+
+#include <random>
 
 namespace quadrant::diagnosis {
 
@@ -28,8 +33,10 @@ inline axis_log recorded(const axis_description& axis, const axis_log& motion, d
     return out;
 }
 
-/// White noise of an axis' position beside its rounding, from the floor that the diagnosis says.
+/// White noise of an axis' position beside its rounding, from the floor that the diagnosis says. In the floor
+/// of a measured command stands that command's noise, too: then the rounding alone.
 inline double noise_beside_rounding(const axis_description& axis, const axis_result& found, double period) {
+    if (axis.actuator.command_is == command_origin::measured) return 0;
     const double floor = residual_force_floor(axis.plant.mass_kg, 1, period, found.gap_after.bandwidth_Hz);
     const double all = found.gap_after.noise_floor_force_rms_N / floor, count = axis.encoder.resolution_m;
     return std::sqrt(std::max(0.0, all * all - count * count / 12));

@@ -42,6 +42,8 @@
 #include "effect/effect_list.ipp"
 #include "fit/bounded_step.hpp"
 #include "fit/bounded_step.ipp"
+#include "fit/command_noise.hpp"
+#include "fit/command_noise.ipp"
 #include "fit/drive_estimate.hpp"
 #include "fit/drive_estimate.ipp"
 #include "fit/drive_noise.hpp"

@@ -13,10 +13,7 @@ FRICTION = {"coulomb_friction", "stribeck_friction"}
 DEFAULT = ("table.raised.attraction.sine100", "cnc.diamond")
 
 # What is not as it should be, and why. A case of these that is as it should be fails the check: its line then goes.
-NOT_YET = {
-    "cnc.sine10": "its friction falls and rises with two velocities, the file has one: on y the rest, 4 % of the friction, is a group of "
-                  "0.85 around friction that differs by direction",
-}
+NOT_YET = {}
 
 
 def run(*words):

@@ -34,19 +34,28 @@ inline constexpr effect coulomb_friction{
                   },
               .slow_shows_it = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double jump =
-            0.5 * (detail::mean_residual(s, [&](std::size_t k) { return s.record.velocity[k] > 0; }) -
-                   detail::mean_residual(s, [&](std::size_t k) { return s.record.velocity[k] < 0; }));
+        const auto forwards = [&](std::size_t k) { return s.record.velocity[k] > 0; };
+        const auto backwards = [&](std::size_t k) { return s.record.velocity[k] < 0; };
+        const double jump = 0.5 * (detail::mean_residual(s, forwards) - detail::mean_residual(s, backwards));
+        // On a record that goes one way the few rows of the other say little: then what resists the motion.
+        double resists = 0;
+        for (std::size_t k = 0; k < s.residual.size(); ++k)
+            resists += (forwards(k) ? 1 : backwards(k) ? -1 : 0) * s.residual[k] / double(s.residual.size());
         const double scale = 1e-4 * s.force_scale(); // below every friction that matters to the command
-        const double start =
-            std::max({s.leader.friction.coulomb + jump, 0.3 * s.leader.friction.coulomb, scale});
-        return {{{.key = "coulomb_N",
-                  .of = [](plant_model& p) -> double& { return p.friction.coulomb; },
-                  .start = start,
-                  .low = std::min(0.1 * start, scale),
-                  .high = 20 * start + 100 * scale,
-                  .logarithmic = true,
-                  .step = 1e-3}}};
+        const auto beginning = [&](double more) {
+            return std::max({s.leader.friction.coulomb + more, 0.3 * s.leader.friction.coulomb, scale});
+        };
+        std::vector<std::vector<parameter>> out;
+        for (const double start : {beginning(jump), beginning(resists)})
+            if (out.empty() || start > 2 * out.front().front().start)
+                out.push_back({{.key = "coulomb_N",
+                                .of = [](plant_model& p) -> double& { return p.friction.coulomb; },
+                                .start = start,
+                                .low = std::min(0.1 * start, scale),
+                                .high = 20 * start + 100 * scale,
+                                .logarithmic = true,
+                                .step = 1e-3}});
+        return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"coulomb_N", {p.friction.coulomb}}};

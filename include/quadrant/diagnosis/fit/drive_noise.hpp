@@ -6,6 +6,7 @@
 #include "scoring.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace quadrant::diagnosis {
 
@@ -25,9 +26,12 @@ QUADRANT_DIAGNOSIS_DECL double drift_pole_of(const plant_model& described, doubl
 
 namespace detail {
 
-/// The innovations that this wrong reading leaves in an observer around a free mass.
+/// The innovations that this wrong reading leaves in an observer around a free mass. `reading`: by how much the
+/// row in the middle is read wrong; 0: of the force alone.
 QUADRANT_DIAGNOSIS_DECL std::vector<double> innovation_of(const std::vector<double>& reaction, double mass,
-                                                          double period, double pole);
+                                                          double period, double pole, double reading = 1);
+/// Means over m rows, from every row that has as many behind it.
+QUADRANT_DIAGNOSIS_DECL std::vector<double> running_means(const std::vector<double>& e, std::size_t m);
 /// Gains of a channel for noise that makes these innovations of a single wrong reading: of white noise, and of
 /// the worst tone.
 QUADRANT_DIAGNOSIS_DECL void set_gains(channel& c, const std::vector<double>& e);

@@ -31,12 +31,12 @@ QUADRANT_DIAGNOSIS_DECL double drift_pole_of(const plant_model& described, doubl
 namespace detail {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> innovation_of(const std::vector<double>& reaction, double mass,
-                                                          double period, double pole) {
+                                                          double period, double pole, double reading) {
     const double to_position = 1 - pole * pole, to_velocity = (1 - pole) * (1 - pole) / period;
     std::vector<double> out(reaction.size());
     double x = 0, v = 0;
     for (std::size_t k = 0; k < out.size(); ++k) {
-        out[k] = (k == out.size() / 2 ? 1 : 0) - x;
+        out[k] = (k == out.size() / 2 ? reading : 0) - x;
         x += to_position * out[k];
         v += to_velocity * out[k];
         const double a = reaction[k] / mass;
@@ -46,16 +46,17 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> innovation_of(const std::vector<doub
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL std::vector<double> running_means(const std::vector<double>& e, std::size_t m) {
+    std::vector<double> sum(e.size() + 1, 0.0), mean(e.size(), 0.0);
+    for (std::size_t k = 0; k < e.size(); ++k) sum[k + 1] = sum[k] + e[k];
+    for (std::size_t k = 0; k + m <= e.size(); ++k) mean[k] = (sum[k + m] - sum[k]) / static_cast<double>(m);
+    return mean;
+}
+
 QUADRANT_DIAGNOSIS_DECL void set_gains(channel& c, const std::vector<double>& e) {
-    const std::size_t n = e.size(), m = c.mean;
-    std::vector<double> sum(n + 1, 0.0), mean(n, 0.0);
-    for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + e[k];
-    double square = 0;
-    for (std::size_t k = 0; k + m <= n; ++k) {
-        mean[k] = (sum[k + m] - sum[k]) / static_cast<double>(m);
-        square += mean[k] * mean[k];
-    }
-    c.noise_gain = std::sqrt(square);
+    const std::size_t n = e.size();
+    const auto mean = running_means(e, c.mean);
+    c.noise_gain = std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
     constexpr std::size_t tones = 200;
     double worst = 0;
     for (std::size_t i = 0; i < tones;

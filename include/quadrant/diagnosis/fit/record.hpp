@@ -3,6 +3,7 @@
 #include "../../base/version.hpp"
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
+#include "command_noise.hpp"
 #include "drive_noise.hpp"
 #include "fit.hpp"
 #include "scales.hpp"
@@ -24,6 +25,8 @@ struct axis_record {
     /// Force that a drive's replay makes of one wrong reading, see reaction_to_reading() [N/m]; empty: the
     /// command is logged.
     std::vector<double> reaction{};
+    double command_noise =
+        0; ///< white noise of a measured command, as it stands in the residual force: rms [N]
     /// Where something was measured behind the drive: when within a row it and the position were read here, as
     /// the described drive has it best, see driven_motion::with_timing() [s].
     double reading_age = 0, tap_lateness = 0;
@@ -61,6 +64,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& pl
 /// `reaction`: of a drive whose replay is fed the position.
 QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
                                                     double bandwidth_Hz, std::span<const double> reaction = {});
+
+/// The same of a record: with what the replay of its drive makes of that noise, and the noise of a measured
+/// command.
+QUADRANT_DIAGNOSIS_DECL double force_floor(const axis_record& r, double mass, double sigma);
 
 /// White noise of the position in the innovations of a model, robust against what the model does not explain;
 /// not below the rounding of `resolution` [m].

@@ -50,6 +50,10 @@ QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, d
     return sigma * std::sqrt(sum);
 }
 
+QUADRANT_DIAGNOSIS_DECL double force_floor(const axis_record& r, double mass, double sigma) {
+    return std::hypot(residual_force_floor(mass, sigma, r.period, r.bandwidth_Hz, r.reaction), r.command_noise);
+}
+
 QUADRANT_DIAGNOSIS_DECL double position_noise(const std::vector<double>& innovation, const scoring& s,
                                               double resolution) {
     std::vector<double> half_difference(innovation.size());
@@ -262,6 +266,12 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
             if (!slow) c.rounding = std::max(1.0, c.noise_gain);
             c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
         }
+    }
+    if (a.actuator.command_is == command_origin::measured && !r.observer.drive) {
+        const double force = described.force_constant * white_noise_in(r.command);
+        r.command_noise = force * white_noise_below(r.bandwidth_Hz, r.period);
+        for (channel& c : r.score.channels)
+            c.command_noise = command_noise_in(c, force, described.mass, r.period, r.observer.pole());
     }
     if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
     return r;

@@ -25,8 +25,14 @@ struct channel {
     double noise_gain = 1;             ///< rms of the means for white noise of the reading with rms 1
     double rounding =
         1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
+    double command_noise = 0;                    ///< rms of the means for the noise of a measured command [m]
     std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
+
+    /// Mean square of what noise leaves in the means: that of the reading, of rms sigma, and of the command.
+    double of_noise(double sigma) const {
+        return noise_gain * sigma * (noise_gain * sigma) + command_noise * command_noise;
+    }
 };
 
 /// How innovations become a score. A block of a channel counts nu/2 log(mean square + floor^2): free of scale,

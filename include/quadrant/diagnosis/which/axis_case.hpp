@@ -30,6 +30,8 @@ private:
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how);
     std::optional<plant_model> nearest_; ///< of that search
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
+    /// This model, the calibrated machine, and this model with stronger friction.
+    std::vector<plant_model> beside_stronger_friction(const plant_model& m) const;
 
 public:
     const axis_description& axis;
@@ -70,6 +72,9 @@ public:
     /// What is left is, in every band of both logs, no more than the laws of friction and of the causes are
     /// wrong by: no law is right to better than some five per cent. Above the floor, but explained.
     bool within_its_laws() const;
+    /// The same of the machine as calibrated, without any cause: what was found in it says no more than that
+    /// its friction follows another law.
+    bool calibrated_within_its_laws() const;
     /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the
     /// owner's tolerances differ by from one another.
     bool calibrated_within_tolerances() const;

@@ -70,21 +70,34 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws(const axis_record& r,
             const double size = rms(detail::seen(x, c));
             return size * size;
         };
-        const double of_noise = c.noise_gain * noise;
         const double law = energy(e[2]) + law_error * law_error * energy(e[1]);
-        if (energy(e[0]) > of_noise * of_noise + law) return false;
+        if (energy(e[0]) > c.of_noise(noise) + law) return false;
     }
     return true;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
-    if (best().effects.empty() || record.replayed() || !models.near_its_laws(best())) return false;
-    plant_model stronger = best().fit.plant;
+QUADRANT_DIAGNOSIS_DECL std::vector<plant_model>
+axis_case::beside_stronger_friction(const plant_model& m) const {
+    plant_model stronger = m;
     stronger.friction.coulomb *= 1 + law_error;
     stronger.friction.excess *= 1 + law_error;
-    std::vector<plant_model> plants{best().fit.plant, path.front().fit.plant, stronger};
+    return {m, path.front().fit.plant, stronger};
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
+    if (best().effects.empty() || record.replayed() || !models.near_its_laws(best())) return false;
+    auto plants = beside_stronger_friction(best().fit.plant);
     if (!settled && !within_its_laws(record, plants)) return false;
     if (!tested_apart() || settled_on_second) return true;
+    for (plant_model& p : plants) p = restarted(p, *second);
+    return within_its_laws(*second, plants);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
+    if (record.replayed() || !models.near_its_laws(path.front())) return false;
+    auto plants = beside_stronger_friction(path.front().fit.plant);
+    if (!within_its_laws(record, plants)) return false;
+    if (!tested_apart()) return true;
     for (plant_model& p : plants) p = restarted(p, *second);
     return within_its_laws(*second, plants);
 }

@@ -114,12 +114,16 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
         // unexplained are not told apart by it, nor are two that are one model (docs/formats.md) while their
         // predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
+        // A name that does far less than the one that it would stand in for does not stand in for it: in its
+        // model something beside it does.
+        const bool stands_in = &r == &out.front() || r.unlisted() || c.record.closed() ||
+                               c.models.force_of(r.model, *r.name) > c.models.force_of(c.best(), *own) / 3;
         // Not told apart: by neither log.
         const double more = excess() / unexplained + excess_on_second(r.model);
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within = pays && leaner && !c.record.closed() && !r.unlisted() && unexplained > 0 &&
-                            more < 1; // more flexible and no better: no second reading
-        const bool equivalent = may_be_one(*r.name, *own) && !c.record.closed() &&
+        const bool within = pays && leaner && stands_in && !c.record.closed() && !r.unlisted() &&
+                            unexplained > 0 && more < 1; // more flexible and no better: no second reading
+        const bool equivalent = may_be_one(*r.name, *own) && stands_in && !c.record.closed() &&
                                 excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
@@ -132,7 +136,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
             if (&r != &out.front())
                 out.front().weight = std::max(out.front().weight, std::exp(-less) / commoner * r.weight);
         }
-        r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01));
+        r.same = !r.unlisted() && (within || equivalent || (pays && stands_in && r.weight > 0.01));
     }
     double sum = 0;
     for (const auto& r : out) sum += r.weight;
@@ -328,6 +332,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                                                         const std::vector<std::vector<detail::rival>>& rivals) {
     const auto& effects = c.best().effects;
     std::vector<cause> out;
+    const bool of_laws = !effects.empty() && c.calibrated_within_its_laws();
     for (std::size_t i = 0; i < effects.size(); ++i) {
         const effect& e = *effects[i];
         cause named;
@@ -370,7 +375,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e)) {
+        if (of_laws || detail::may_be_inside_its_tolerance(c, named.parameters) ||
+            detail::drowns_in_the_rest(c, e)) {
             constexpr double guess = 0.4;
             named.probability = std::min(named.probability, guess);
             named.group_probability = std::min(named.group_probability, guess);

@@ -64,6 +64,14 @@ QUADRANT_DIAGNOSIS_DECL double search::force_without(const candidate& whole, con
     return rms(residual(c));
 }
 
+QUADRANT_DIAGNOSIS_DECL double search::force_of(const candidate& whole, const effect& e) const {
+    std::array<std::vector<double>, 2> left;
+    residuals({whole.fit.plant, plant_without(whole, e)},
+              [&](std::size_t i, std::vector<double> r) { left[i] = std::move(r); });
+    for (std::size_t k = 0; k < left[0].size(); ++k) left[1][k] -= left[0][k];
+    return rms(left[1]);
+}
+
 QUADRANT_DIAGNOSIS_DECL plant_model search::plant_without(const candidate& whole, const effect& e) const {
     plant_model out = whole.fit.plant, described = given_.fit.plant;
     const auto values = e.read(out);
@@ -218,7 +226,7 @@ QUADRANT_DIAGNOSIS_DECL double search::noise(const candidate& c) const {
 
 QUADRANT_DIAGNOSIS_DECL double search::structure(const std::vector<double>& ms, const channel& c,
                                                  double sigma) const {
-    const double limit = 4 * (square(c.noise_gain * sigma) + square(c.rounding * record_.resolution / 2));
+    const double limit = 4 * (c.of_noise(sigma) + square(c.rounding * record_.resolution / 2));
     double sum = 0;
     for (double block : ms) sum += 0.5 * c.nu * std::max(0.0, std::log(block / limit));
     return sum;
@@ -260,8 +268,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::settled(const std::vector<std::vector<doubl
 }
 
 QUADRANT_DIAGNOSIS_DECL double search::floor_force(double noise) const {
-    return residual_force_floor(axis_.plant.mass_kg, noise, record_.period, record_.bandwidth_Hz,
-                                record_.reaction);
+    return force_floor(record_, axis_.plant.mass_kg, noise);
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::at_noise(const candidate& c) const {
@@ -417,7 +424,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candid
     if (left(more) > left(less) / fall) return false;
     const double sigma = noise(more);
     for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
-        const double of_noise = square(record_.score.channels[i].noise_gain * sigma);
+        const double of_noise = record_.score.channels[i].of_noise(sigma);
         const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[i]) - of_noise); };
         if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
     }
@@ -446,7 +453,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::is_of_feedback(const parameter& p) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL double search::left_in(const std::vector<double>& ms, const channel& c, double sigma) {
-    return mean_of(ms) - square(c.noise_gain * sigma);
+    return mean_of(ms) - c.of_noise(sigma);
 }
 
 QUADRANT_DIAGNOSIS_DECL double search::friction_level(const plant_model& p) const {

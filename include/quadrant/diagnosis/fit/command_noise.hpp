@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../../analysis/frf.hpp"
+#include "../../base/version.hpp"
+#include "drive_noise.hpp"
+#include "scoring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace quadrant::diagnosis {
+
+/// White noise that a logged signal may carry, rms: as much as its power density is anywhere, at its lowest
+/// in half of the stretches (Hann windows, half overlapped). What moves the axis stands on top of it, steps in
+/// few of the stretches; a filter behind the measurement leaves a frequency with less, and then none is assumed.
+/// 0 of fewer than 512 rows.
+QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x);
+
+/// What such noise of a measured command, as a force of rms `force`, leaves in the means of a channel behind an
+/// observer around a free mass: rms [m].
+QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, double mass, double period,
+                                                double pole);
+
+/// rms of white noise of rms 1 behind the zero-phase low-pass of the residual force.
+QUADRANT_DIAGNOSIS_DECL double white_noise_below(double bandwidth_Hz, double period);
+
+} // namespace quadrant::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "command_noise.ipp"
+#endif

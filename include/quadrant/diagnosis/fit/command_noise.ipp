@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x) {
+    constexpr std::size_t shortest = 32, longest = 1024, bands = 8;
+    std::size_t rows = shortest;
+    while (rows < longest && 32 * rows <= x.size()) rows *= 2;
+    if (x.size() < 16 * rows) return 0;
+    std::vector<double> shape(rows);
+    double of_shape = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+        shape[i] = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(rows));
+        of_shape += shape[i] * shape[i];
+    }
+    const std::size_t each = rows / 2 / bands; // lines a band
+    std::array<std::vector<double>, bands> power;
+    std::vector<analysis::complex> work(rows);
+    for (std::size_t first = 0; first + rows <= x.size(); first += rows / 2) {
+        double mean = 0;
+        for (std::size_t i = 0; i < rows; ++i) mean += x[first + i] / double(rows);
+        for (std::size_t i = 0; i < rows; ++i) work[i] = shape[i] * (x[first + i] - mean);
+        analysis::fft(work);
+        for (std::size_t band = 0; band < bands; ++band) {
+            double sum = 0;
+            for (std::size_t i = 0; i < each; ++i) sum += std::norm(work[band * each + i]);
+            power[band].push_back(sum / double(each));
+        }
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (auto& band : power) least = std::min(least, quantile(std::move(band), 0.5));
+    return std::sqrt(least / of_shape);
+}
+
+QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, double mass, double period,
+                                                double pole) {
+    const auto forgotten = static_cast<std::size_t>(30 / (1 - pole));
+    std::vector<double> impulse(2 * (c.mean + forgotten), 0.0);
+    impulse[c.mean] = force;
+    const auto mean = detail::running_means(detail::innovation_of(impulse, mass, period, pole, 0), c.mean);
+    return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
+}
+
+QUADRANT_DIAGNOSIS_DECL double white_noise_below(double bandwidth_Hz, double period) {
+    std::vector<double> impulse(4001, 0.0);
+    impulse[impulse.size() / 2] = 1;
+    const auto passed = zero_phase(impulse, bandwidth_Hz, period);
+    return std::sqrt(std::inner_product(passed.begin(), passed.end(), passed.begin(), 0.0));
+}
+
+} // namespace quadrant::diagnosis
