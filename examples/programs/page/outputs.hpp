@@ -2,10 +2,13 @@
 #pragma once
 #include <quadrant/diagnosis/text/output_file.hpp>
 
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 /// The files that a program is told to read and to write: no output destroys an input or another output.
@@ -81,6 +84,22 @@ inline int ended(int code, const char* program) {
     if (std::fflush(stdout) == 0 && !lost) return code;
     std::fprintf(stderr, "%s: standard output cannot be written\n", program);
     return code == 0 ? unwritten : code;
+}
+
+/// From now on memory that is refused ends the program at once, with one line and the code 2. For programs that
+/// make JSON: the destructor of an nlohmann::json allocates (json_value::destroy), so std::bad_alloc
+/// there, or while another one passes, would be std::terminate. No destructor runs: what is not
+/// finished has no name yet (output_file), and such a program keeps no scratch folder.
+inline void end_without_memory(const char* program) {
+    static const char* name;
+    name = program;
+    std::set_new_handler([] {
+        constexpr int refused = 2;
+        static std::atomic_flag said;
+        while (said.test_and_set()) pause(); // another thread ends the program
+        std::fprintf(stderr, "%s%s: out of memory\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", name);
+        std::_Exit(refused);
+    });
 }
 
 /// The exit code of `program()`. What it throws (bad input, what this computer refuses, no memory to set up the

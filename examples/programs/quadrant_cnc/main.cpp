@@ -80,5 +80,6 @@ int run_program(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+    quadrant_page::end_without_memory("quadrant-cnc");
     return quadrant_page::guarded("quadrant-cnc", bad_input_code, [&] { return run_program(argc, argv); });
 }

@@ -130,6 +130,7 @@ int run_program(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+    quadrant_page::end_without_memory("quadrant-reproduce");
     return quadrant_page::guarded("quadrant-reproduce", bad_input_code,
                                   [&] { return run_program(argc, argv); });
 }

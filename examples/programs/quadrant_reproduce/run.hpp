@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace quadrant_reproduce {
 
@@ -25,7 +26,8 @@ inline void put_together(std::vector<picture>& all, picture more) {
 }
 
 /// Runs the cases on all cores; `tell(id, done, of)` hears of each that has ended, one at a time. A case that
-/// throws leaves one row that says so. No number that is not finite leaves here.
+/// throws leaves one row that says so; but std::bad_alloc is thrown on, for a table made in want of memory says
+/// nothing of the experiment. No number that is not finite leaves here.
 template <class Tell> std::vector<section> run_all(const std::vector<experiment>& chosen, Tell&& tell) {
     std::vector<const run_case*> cases;
     for (const experiment& e : chosen)
@@ -38,6 +40,8 @@ template <class Tell> std::vector<section> run_all(const std::vector<experiment>
         [&](std::size_t k) {
             try {
                 found[k] = cases[k]->run();
+            } catch (const std::bad_alloc&) {
+                throw;
             } catch (const std::exception& e) {
                 found[k].rows = {{cases[k]->id, "failed", "", {}, {}, {}, {}, e.what()}};
             }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Loaded before the C library (LD_PRELOAD): of the allocations from the beginning of main() on, number
 // QUADRANT_FAIL_AT fails, once. With QUADRANT_COUNT_TO their number is written into that file when the program
-// ends. Constants that allocate are made before main(): without memory for them a program has read and written
-// nothing.
+// ends. What it starts (gnuplot) has all memory. Constants that allocate are made before main(): without memory
+// for them a program has read and written nothing.
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
@@ -31,6 +31,7 @@ bool refused() noexcept {
 
 int counted_main(int argc, char** argv, char** environment) {
     if (const char* at = std::getenv("QUADRANT_FAIL_AT")) fails_at = std::atol(at);
+    unsetenv("LD_PRELOAD");
     began = true;
     return program(argc, argv, environment);
 }
