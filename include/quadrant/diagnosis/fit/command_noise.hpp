@@ -18,8 +18,8 @@ namespace quadrant::diagnosis {
 
 /// White noise that a logged signal may carry, rms: as much as its power density is anywhere, at its lowest
 /// in half of the stretches (Hann windows, half overlapped). What moves the axis stands on top of it, steps in
-/// few of the stretches; a filter behind the measurement leaves a frequency with less, and then none is assumed.
-/// 0 of fewer than 512 rows.
+/// few of the stretches; a filter behind the measurement leaves a frequency with less, and then none is
+/// assumed. 0 of fewer than 512 rows.
 QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x);
 
 /// What such noise of a measured command, as a force of rms `force`, leaves in the means of a channel behind an
