@@ -91,7 +91,7 @@ TEST_CASE(
 }
 TEST_CASE("contour error: when the window was left the whole path is searched again") {
     sampled_path path(sampled_circle(30, 1000), 1_mm);
-    CHECK(mm(path(at(30, 0.1)).error) == doctest::Approx(0).epsilon(1e-3));
+    CHECK(std::abs(mm(path(at(30, 0.1)).error)) < 1e-3);
     CHECK(std::abs(mm(path(at(0, 30.01)).error) + 0.01) < 2e-4); // a quarter of a turn further
     path.reset();
     CHECK(std::abs(mm(path(at(-30.01, 0)).error) + 0.01) < 2e-4);

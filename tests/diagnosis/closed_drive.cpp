@@ -64,7 +64,8 @@ TEST_CASE("closed drive: a profile velocity holds a servo back") {
     for (double& r : m.set_point) r = 1;
     m.set_point[0] = 0;
     const auto x = path(p, m);
-    CHECK((x[400] - x[200]) / (200 * period) == doctest::Approx(0.2).epsilon(1e-3));
+    // The arm has swung out by then.
+    CHECK((x[599] - x[499]) / (100 * period) == doctest::Approx(0.2).epsilon(1e-3));
 }
 TEST_CASE("closed drive: what its velocity loop remembers takes a constant force over") {
     plant_description d;

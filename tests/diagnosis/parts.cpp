@@ -227,8 +227,8 @@ TEST_CASE("plant model: moves as the library's linear motor does, and sticks") {
         motor(q::quantity<q::si::electric_potential>::from_value(u));
         for (int i = 0; i < 20; ++i) axis.advance(s, u, {});
     }
-    // 65 mm of motion; the contact's give of 0.2 um in four reversals is the difference.
-    CHECK(s.x == doctest::Approx(motor.now().x.value()).epsilon(1e-4));
+    // 65 mm of motion; two contacts that give and break away otherwise differ by 50 um behind four reversals.
+    CHECK(std::abs(s.x - motor.now().x.value()) < 1e-4);
     s = {};
     for (int k = 0; k < 40000; ++k)
         axis.advance(s, 0.085 * std::min(1.0, k / 20000.0), {}); // up to 85 N, below the 90 N that break away

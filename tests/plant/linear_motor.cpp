@@ -109,7 +109,7 @@ TEST_CASE("linear_motor: above breakaway it starts, and then goes on below break
     CHECK(m.now().v > 0_mps);
     for (int k = 0; k < 400; ++k) m(volts(1.01 * 177 / 1450));
     CHECK(m.now().v > 10_mmps);
-    for (int k = 0; k < 4000; ++k) m(volts(150.0 / 1450));
+    for (int k = 0; k < 8000; ++k) m(volts(150.0 / 1450));                 // ten time constants
     CHECK(m.now().v.value() == doctest::Approx(28.0 / 850).epsilon(1e-4)); // (150 - 122)/b, 33 mm/s
     m.settle(m.now().x);
     m(volts(150.0 / 1450));

@@ -131,7 +131,8 @@ TEST_CASE(
         without.advance(b, command(k), {});
         a.shift(1e-6 * std::sin(0.3 * k), 1e-3 * std::cos(0.3 * k)); // an observer corrects both
         b.shift(1e-6 * std::sin(0.3 * k), 1e-3 * std::cos(0.3 * k));
-        REQUIRE(with.load_velocity(a) == doctest::Approx(without.load_velocity(b)).epsilon(1e-3));
+        if (k > 0) // before, nothing has crossed the play
+            REQUIRE(with.load_velocity(a) == doctest::Approx(without.load_velocity(b)).epsilon(1e-3));
     }
 }
 

@@ -29,57 +29,49 @@ template <unsigned Extensions> struct x86 {};
 /// Any other processor: no choice between sets, and the compiler vectorises what it can.
 struct other {};
 
-// An internal constant, not an inline one: it differs between translation units.
-namespace {
-constexpr unsigned extensions_here = 0
-#ifdef __SSE2__
-                                     | sse2
-#endif
-#ifdef __SSE3__
-                                     | sse3
-#endif
-#ifdef __SSSE3__
-                                     | ssse3
-#endif
-#ifdef __SSE4_1__
-                                     | sse4_1
-#endif
-#ifdef __SSE4_2__
-                                     | sse4_2
-#endif
-#ifdef __AVX__
-                                     | avx
-#endif
-#ifdef __AVX2__
-                                     | avx2
-#endif
-#ifdef __FMA__
-                                     | fma
-#endif
-#ifdef __AVX512F__
-                                     | avx512f
-#endif
-#ifdef __AVX512VL__
-                                     | avx512vl
-#endif
-#ifdef __AVX512BW__
-                                     | avx512bw
-#endif
-#ifdef __AVX512DQ__
-                                     | avx512dq
-#endif
-#ifdef __BMI2__
-                                     | bmi2
-#endif
-#if __has_include(<xsimd/xsimd.hpp>)
-                                     | xsimd
-#endif
-    ;
-} // namespace
-
 /// The instruction set that this translation unit is compiled for.
 #ifdef __SSE2__
-using here = x86<extensions_here>;
+using here = x86<sse2
+#    ifdef __SSE3__
+                 | sse3
+#    endif
+#    ifdef __SSSE3__
+                 | ssse3
+#    endif
+#    ifdef __SSE4_1__
+                 | sse4_1
+#    endif
+#    ifdef __SSE4_2__
+                 | sse4_2
+#    endif
+#    ifdef __AVX__
+                 | avx
+#    endif
+#    ifdef __AVX2__
+                 | avx2
+#    endif
+#    ifdef __FMA__
+                 | fma
+#    endif
+#    ifdef __AVX512F__
+                 | avx512f
+#    endif
+#    ifdef __AVX512VL__
+                 | avx512vl
+#    endif
+#    ifdef __AVX512BW__
+                 | avx512bw
+#    endif
+#    ifdef __AVX512DQ__
+                 | avx512dq
+#    endif
+#    ifdef __BMI2__
+                 | bmi2
+#    endif
+#    if __has_include(<xsimd/xsimd.hpp>)
+                 | xsimd
+#    endif
+                 >;
 #else
 using here = other;
 #endif

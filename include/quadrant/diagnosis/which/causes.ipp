@@ -375,7 +375,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        if (of_laws || detail::may_be_inside_its_tolerance(c, named.parameters) ||
+        // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
+        const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
+        if ((of_laws && like_friction) || detail::may_be_inside_its_tolerance(c, named.parameters) ||
             detail::drowns_in_the_rest(c, e)) {
             constexpr double guess = 0.4;
             named.probability = std::min(named.probability, guess);
