@@ -108,6 +108,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
         if (!c.tested_apart() || !(unexplained_there > 0)) return here;
         return here + std::max(0.0, there - square(c.second_log(m).force)) / unexplained_there;
     };
+    std::optional<double> of_own;
+    const auto force_of_own = [&] {
+        if (!of_own) of_own = c.models.force_of(c.best(), *own);
+        return *of_own;
+    };
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
         // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
@@ -116,15 +121,18 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
         const bool pays = r.model.total > without.total + c.limits.margin;
         // A name that does far less than the one that it would stand in for does not stand in for it: in its
         // model something beside it does.
-        const bool stands_in = &r == &out.front() || r.unlisted() || c.record.closed() ||
-                               c.models.force_of(r.model, *r.name) > c.models.force_of(c.best(), *own) / 3;
-        // Not told apart: by neither log.
-        const double more = excess() / unexplained + excess_on_second(r.model);
+        const auto stands_in = [&] {
+            return &r == &out.front() || r.unlisted() || c.record.closed() ||
+                   c.models.force_of(r.model, *r.name) > force_of_own() / 3;
+        };
+        // Not told apart: by neither log. A name that is more flexible and no better is no second reading.
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
-        const bool within = pays && leaner && stands_in && !c.record.closed() && !r.unlisted() &&
-                            unexplained > 0 && more < 1; // more flexible and no better: no second reading
-        const bool equivalent = may_be_one(*r.name, *own) && stands_in && !c.record.closed() &&
-                                excess() < std::max(alike * energy, square(law_error * explained_by(c, which)));
+        const bool near = pays && leaner && !c.record.closed() && !r.unlisted() && unexplained > 0;
+        const double more = near ? excess() / unexplained + excess_on_second(r.model) : 1;
+        const bool within = near && more < 1 && stands_in();
+        const bool equivalent =
+            may_be_one(*r.name, *own) && !c.record.closed() &&
+            excess() < std::max(alike * energy, square(law_error * explained_by(c, which))) && stands_in();
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
@@ -136,7 +144,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
             if (&r != &out.front())
                 out.front().weight = std::max(out.front().weight, std::exp(-less) / commoner * r.weight);
         }
-        r.same = !r.unlisted() && (within || equivalent || (pays && stands_in && r.weight > 0.01));
+        r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01 && stands_in()));
     }
     double sum = 0;
     for (const auto& r : out) sum += r.weight;

@@ -178,6 +178,7 @@ public:
 
     static bool has(const candidate& c, const effect* e);
     static bool same(const candidate& a, const candidate& b);
+    static bool has_all(const candidate& c, const candidate& of);
 
 private:
     /// Whether an effect can act on this axis at all.
@@ -206,8 +207,8 @@ private:
     /// better.
     bool calibrate_again(candidate& best, const std::vector<candidate>& next) const;
     /// Where `step`, which has one effect more, only led the other numbers to a better place, the effect takes
-    /// nothing off: `best` goes on from those numbers without it, and what was tried beside it is forgotten.
-    /// True: it got better.
+    /// nothing off: `best` goes on from those numbers without it, and what was tried beside it and may have
+    /// stopped short of the step is forgotten. True: it got better.
     bool goes_on_without(candidate& best, const candidate& step) const;
     /// use(i, residual force of plant i), one after the other.
     template <class Use>

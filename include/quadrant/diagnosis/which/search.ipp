@@ -339,7 +339,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
             const candidate chosen = *step;
             beam.assign(1, chosen);
             for (const auto& c : next)
-                if (beam.size() < rules_.beam && !same(c, chosen) &&
+                if (beam.size() < rules_.beam && !has_all(c, chosen) &&
                     c.total - best.total >
                         std::max(rules_.margin, rules_.abreast * (chosen.total - best.total)))
                     beam.push_back(c);
@@ -443,8 +443,11 @@ QUADRANT_DIAGNOSIS_DECL bool search::has(const candidate& c, const effect* e) {
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::same(const candidate& a, const candidate& b) {
-    return a.effects.size() == b.effects.size() &&
-           std::all_of(a.effects.begin(), a.effects.end(), [&](const effect* e) { return has(b, e); });
+    return a.effects.size() == b.effects.size() && has_all(a, b);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::has_all(const candidate& c, const candidate& of) {
+    return std::all_of(of.effects.begin(), of.effects.end(), [&](const effect* e) { return has(c, e); });
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::is_of_feedback(const parameter& p) const {
@@ -519,9 +522,13 @@ QUADRANT_DIAGNOSIS_DECL bool search::goes_on_without(candidate& best, const cand
     begin_at(again, step.fit.plant);
     finish(record_, again);
     if (!(again.total > best.total + rules_.margin)) return false;
-    std::erase_if(tried_, [&](const candidate& c) { // they went on from where the fit had stopped
-        return std::all_of(best.effects.begin(), best.effects.end(),
-                           [&](const effect* e) { return has(c, e); });
+    // What was tried had gone on from where the fit had stopped. Where the step is still worth its place, the
+    // others matter that the same gain would bring beside it.
+    const double gain = again.total - best.total;
+    const bool stays = pays(step, again);
+    std::erase_if(tried_, [&](const candidate& c) {
+        const bool near = !stays || c.total + gain > step.total - rules_.margin;
+        return same(c, best) || (has_all(c, best) && near);
     });
     if (best.effects.empty()) {
         calibrated_ = again;
@@ -640,9 +647,7 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_best(std::vector<std::size_t>& which
 
 QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, const effect* added) const {
     for (const candidate& c : tried_)
-        if (c.effects.size() == from.effects.size() + 1 && has(c, added) &&
-            std::all_of(from.effects.begin(), from.effects.end(), [&](const effect* e) { return has(c, e); }))
-            return &c;
+        if (c.effects.size() == from.effects.size() + 1 && has(c, added) && has_all(c, from)) return &c;
     return nullptr;
 }
 
