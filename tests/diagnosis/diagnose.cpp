@@ -82,6 +82,15 @@ TEST_CASE("diagnose: what is smaller than what every law of friction is wrong by
     named(diagnosed(file, real), "cogging", "cogging_N", 0.2 * real.coulomb, 0.1);
 }
 
+TEST_CASE("diagnose: friction's law is wrong by a force, and a delay is claimed however small its force is") {
+    machine real;
+    real.coulomb = 400;
+    auto file = described(real);
+    file.axes[0].plant.coulomb_N = real.coulomb;
+    real.delay += 0.0003;
+    named(diagnosed(file, real), "time_delay", "delay_s", real.delay, 0.05);
+}
+
 TEST_CASE("diagnose: another controller, by replay, with its key") {
     machine real;
     const auto file = described(real);

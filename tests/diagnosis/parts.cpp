@@ -5,6 +5,7 @@
 #include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/fit/spatial_spectrum.hpp>
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>
+#include <quadrant/diagnosis/how_far/how_far.hpp>
 #include <quadrant/diagnosis/where/controller_floor.hpp>
 #include <quadrant/diagnosis/where/places.hpp>
 #include <quadrant/diagnosis/which/causes.hpp>
@@ -511,4 +512,39 @@ TEST_CASE("diagnose: a value that stopped at the end of its range is marked, one
     c.fit.x[1] = 0;
     mark_bounds(c, found);
     CHECK(found[1].on_bound);
+}
+
+TEST_CASE("doubt_by_loop: claims with which the loop goes further from the log are suspects") {
+    const auto left = [](std::vector<double> said, const std::vector<double>& errors) {
+        std::vector<cause> causes(said.size());
+        for (std::size_t i = 0; i < said.size(); ++i)
+            causes[i].probability = causes[i].group_probability = said[i];
+        doubt_by_loop(causes, errors);
+        for (std::size_t i = 0; i < said.size(); ++i) {
+            CHECK(causes[i].probability == causes[i].group_probability);
+            said[i] = causes[i].probability;
+        }
+        return said;
+    };
+    using probabilities = std::vector<double>;
+    CHECK(left({0.9}, {1, 0.1}) == probabilities{0.9});
+    CHECK(left({0.9}, {1, 1.05}) == probabilities{0.9}); // no clear difference
+    CHECK(left({0.9}, {1, 1.2}) == probabilities{0.4});
+    CHECK(left({0.9, 0.8}, {1, 1.5, 0.1}) == probabilities{0.9, 0.8}); // both together mend it
+    CHECK(left({0.9, 0.8}, {1, 0.1, 0.2}) == probabilities{0.9, 0.4});
+    CHECK(left({0.9, 0.1}, {1, 0.1, 0.2}) == probabilities{0.9, 0.1}); // only a suspect
+    CHECK(left({0.9}, {}) == probabilities{0.9});                      // no loop
+}
+
+TEST_CASE("search: a law holds another in its place, beside the same names") {
+    const auto with = [](std::vector<const effect*> some) { return candidate{.effects = std::move(some)}; };
+    const effect *cutting = effect_named("cutting_force"), *constant = effect_named("constant_force"),
+                 *coulomb = effect_named("coulomb_friction");
+    CHECK(search::holds(with({cutting}), with({constant})));
+    CHECK(search::holds(with({coulomb, cutting}), with({constant, coulomb})));
+    CHECK_FALSE(search::holds(with({constant}), with({cutting})));
+    CHECK_FALSE(search::holds(with({cutting}), with({coulomb})));
+    CHECK_FALSE(search::holds(with({cutting}), with({cutting})));
+    CHECK_FALSE(search::holds(with({cutting, coulomb}), with({constant})));
+    CHECK_FALSE(search::holds(with({cutting, constant}), with({cutting, coulomb})));
 }

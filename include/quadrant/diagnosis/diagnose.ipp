@@ -119,14 +119,6 @@ inline void put_in_words(axis_kind kind, std::vector<cause>& causes) {
 
 /// One block and no hold-out log: nothing is left to test a cause on that was not fitted.
 inline bool untested(const axis_case& c) { return !c.second && c.record.segments < 2; }
-/// A cause that nothing has tested is a suspect, as one of a controller that the replay does not confirm.
-inline void to_suspects(std::vector<cause>& causes) {
-    constexpr double guess = 0.4;
-    for (cause& x : causes) {
-        x.probability = std::min(x.probability, guess);
-        x.group_probability = std::min(x.group_probability, guess);
-    }
-}
 
 /// A value that the tolerance stopped: either the tolerance is too narrow, or something else acts.
 inline void note_bounds(diagnosis_result& out, const axis_result& result) {
@@ -211,7 +203,8 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     auto rivals = rivals_by_weight(c);
     auto causes = plant_causes(c, rivals);
     const bool guess = untested(c);
-    if (guess) to_suspects(causes);
+    if (guess) detail::to_suspects(causes);
+    doubt_by_loop(causes, how_far(c).loop_errors());
     put_as_applied(c, causes, rivals);
     if (guess) {
         out.notes.push_back(

@@ -23,8 +23,9 @@ struct rules {
     double abreast = 0;       ///< least share of the best way's gain at which another is followed beside it
     std::size_t threads = 0;  ///< 0: as many as there are cores; the result is the same
     std::size_t finalists =
-        4;              ///< of each round are fitted to the end; the others showed little at a first look
-    int first_look = 2; ///< steps from each start
+        4;                  ///< of each round are fitted to the end; the others showed little at a first look
+    double near_best = 0.5; ///< share of the best's gain with which a first look is fitted to the end as well
+    int first_look = 2;     ///< steps from each start
     /// Rows that these looks and finalists are for. A shorter record affords more of them in the same time, and
     /// needs them: a few blocks tell little after a step or two.
     std::size_t rows_of_a_look = 14000;
@@ -43,6 +44,7 @@ inline rules fast_rules() {
     rules r;
     r.abreast = 0.8;
     r.finalists = 2;
+    r.near_best = 0.8;
     r.first_look = 1;
     r.near_rivals = true;
     r.forms = 1;

@@ -17,6 +17,9 @@ public:
           draws_(segment_draws(judged_.segments)) {}
 
     void measure(axis_result& result, std::vector<cause>& causes) const;
+    /// Position error times command error of the closed loop on the calibrated machine, and with each cause
+    /// more. Empty where the loop cannot be closed, and where samples are lost: others in each run.
+    std::vector<double> loop_errors() const;
 
 private:
     struct stage {
@@ -25,6 +28,8 @@ private:
     };
 
     stage at(const candidate& model, const std::optional<controller_description>& controller) const;
+    std::optional<closed_loop_run> loop(const plant_model& plant,
+                                        const std::optional<controller_description>& controller) const;
     static std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b);
     segment_energy energy(const std::vector<double>& x) const;
     estimate interval(const segment_energy& e) const;
@@ -43,6 +48,11 @@ private:
     const axis_record judged_;
     const std::vector<std::vector<double>> draws_;
 };
+
+/// What takes the residual force down is right in the loop as well: claims with which the simulated loop goes
+/// further from the log than with fewer of them become suspects. `errors`: how_far::loop_errors, of the causes
+/// in this order.
+QUADRANT_DIAGNOSIS_DECL void doubt_by_loop(std::span<cause> causes, const std::vector<double>& errors);
 
 } // namespace quadrant::diagnosis
 

@@ -64,11 +64,35 @@ how_far::at(const candidate& model, const std::optional<controller_description>&
     } else {
         s.force = case_.models.held_out_residual(model);
     }
-    if (case_.axis.drive.closes()) {
-        if (can_close(case_.axis, log_)) s.loop = simulate_driven(case_.axis, plant, judged_.period, log_);
-    } else if (controller && log_.has_reference)
-        s.loop = simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
+    s.loop = loop(plant, controller);
     return s;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::optional<closed_loop_run>
+how_far::loop(const plant_model& plant, const std::optional<controller_description>& controller) const {
+    if (case_.axis.drive.closes()) {
+        if (can_close(case_.axis, log_)) return simulate_driven(case_.axis, plant, judged_.period, log_);
+    } else if (controller && log_.has_reference) {
+        return simulate_closed_loop(*controller, case_.axis, plant, judged_.period, log_);
+    }
+    return {};
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
+    std::vector<double> out;
+    if (case_.controller_open()) return out; // another controller ran
+    std::optional<controller_description> controller;
+    if (case_.axis.controller) controller = case_.mended();
+    for (const candidate& model : case_.path) {
+        if (model.fit.plant.loss > 0) return {};
+        const plant_model plant = case_.holdout ? restarted(model.fit.plant, judged_) : model.fit.plant;
+        const auto run = loop(plant, controller);
+        if (!run) return {};
+        const std::vector<double> all(judged_.segments, 1.0);
+        out.push_back(energy(difference(run->position, log_.position)).rms(all) *
+                      energy(difference(run->command, log_.command)).rms(all));
+    }
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::difference(const std::vector<double>& a,
@@ -155,6 +179,18 @@ QUADRANT_DIAGNOSIS_DECL void how_far::draw(axis_signals& s, const stage& after) 
     }
     spectrum(s.residual_before, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_before);
     spectrum(s.residual_after, judged_.period, judged_.bandwidth_Hz, s.frequency_Hz, s.spectrum_after);
+}
+
+QUADRANT_DIAGNOSIS_DECL void doubt_by_loop(std::span<cause> causes, const std::vector<double>& errors) {
+    constexpr double clearly = 1.1;
+    std::size_t claims = 0;
+    for (std::size_t i = 0; i < causes.size(); ++i)
+        if (causes[i].group_probability >= 0.5) claims = i + 1;
+    if (claims == 0 || errors.empty()) return;
+    const auto best =
+        std::min_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(claims) + 1);
+    if (errors[claims] > clearly * *best)
+        detail::to_suspects(causes.subspan(static_cast<std::size_t>(best - errors.begin())));
 }
 
 } // namespace quadrant::diagnosis

@@ -103,6 +103,9 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
 /// rest off.
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e);
 
+/// Causes that nothing has tested are suspects, as are those that a test contradicts.
+QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes);
+
 } // namespace detail
 
 /// The causes behind the command wire, in the order of the path, with probabilities, intervals and second

@@ -252,7 +252,10 @@ QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, s
     const double named = score(c.best());
     excluded_rival out;
     for (const candidate& m : models) {
-        const double gain = score(m) - named - c.limits.margin;
+        // That two names are wrong at once is as rare as an owner who errs.
+        const double more =
+            static_cast<double>(m.effects.size()) - static_cast<double>(c.best().effects.size());
+        const double gain = score(m) - named - c.limits.margin * more;
         const double odds = owner_errs * std::exp(std::min(50.0, gain / score_temperature));
         if (odds / (1 + odds) > out.probability) out = {m.effects.back(), odds / (1 + odds)};
     }
@@ -334,6 +337,14 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
+QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
+    constexpr double guess = 0.4;
+    for (cause& x : causes) {
+        x.probability = std::min(x.probability, guess);
+        x.group_probability = std::min(x.group_probability, guess);
+    }
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
@@ -386,11 +397,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
         if ((of_laws && like_friction) || detail::may_be_inside_its_tolerance(c, named.parameters) ||
-            detail::drowns_in_the_rest(c, e)) {
-            constexpr double guess = 0.4;
-            named.probability = std::min(named.probability, guess);
-            named.group_probability = std::min(named.group_probability, guess);
-        }
+            detail::drowns_in_the_rest(c, e))
+            detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }
     return out;

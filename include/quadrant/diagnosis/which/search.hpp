@@ -179,6 +179,8 @@ public:
     static bool has(const candidate& c, const effect* e);
     static bool same(const candidate& a, const candidate& b);
     static bool has_all(const candidate& c, const candidate& of);
+    /// The same names but for one, which is another law that holds the one in its place as a part.
+    static bool holds(const candidate& more, const candidate& less);
 
 private:
     /// Whether an effect can act on this axis at all.
@@ -249,6 +251,9 @@ private:
             use(which.subspan(first, std::min(size, which.size() - first)));
         });
     }
+    /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already.
+    void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
+                     std::vector<candidate>& models) const;
     const candidate* tried(const candidate& from, const effect* added) const;
     std::string describe(const candidate& c) const;
 

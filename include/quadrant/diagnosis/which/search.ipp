@@ -94,6 +94,7 @@ search::with_each(const candidate& from, const std::vector<const effect*>& among
     }
     sketch_each(from, rank, out, when_late::leave_out);
     finish_best(rank, rules_.finalists * effort(), out, when_late::leave_out);
+    finish_near(rank, rules_.finalists * effort(), from, out);
     for (std::size_t i : rank) {
         if (out[i].missed) {
             missed_.insert(out[i].effects.back());
@@ -576,7 +577,24 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& 
     std::stable_sort(next.begin(), next.end(),
                      [&](const auto& a, const auto& b) { return worth(a) > worth(b); });
     const auto found = std::find_if(next.begin(), next.end(), [&](const auto& c) { return pays(c, best); });
-    return found == next.end() ? nullptr : &*found;
+    if (found == next.end()) return nullptr;
+    const candidate* step = &*found;
+    for (const candidate& c : next) // what a name adds to another that it holds must pay as one more name would
+        if (holds(*step, c) && pays(c, best) &&
+            step->total - c.total <
+                std::max(rules_.margin, rules_.relative_margin * (c.total - calibrated_.total)))
+            step = &c;
+    return step;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::holds(const candidate& more, const candidate& less) {
+    if (more.effects.size() != less.effects.size()) return false;
+    return std::any_of(more.effects.begin(), more.effects.end(), [&](const effect* whole) {
+        return std::all_of(
+                   less.effects.begin(), less.effects.end(),
+                   [&](const effect* e) { return e->name == whole->holds || (e != whole && has(more, e)); }) &&
+               !whole->holds.empty() && !has(less, whole);
+    });
 }
 
 QUADRANT_DIAGNOSIS_DECL candidate search::joined(const candidate& from, const effect* added) {
@@ -643,6 +661,23 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_best(std::vector<std::size_t>& which
     });
     in_groups(std::span(which).subspan(fitted), 1,
               [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
+}
+
+QUADRANT_DIAGNOSIS_DECL void search::finish_near(const std::vector<std::size_t>& which, std::size_t fitted,
+                                                 const candidate& from, std::vector<candidate>& models) const {
+    double most = 0; // gained by one of them
+    for (const std::size_t i : which)
+        if (std::isfinite(models[i].total)) most = std::max(most, models[i].total - from.total);
+    if (!(most > rules_.margin)) return;
+    std::vector<std::size_t> near;
+    for (std::size_t j = std::min(fitted, which.size()); j < which.size(); ++j)
+        if (models[which[j]].total - from.total > rules_.near_best * most) near.push_back(which[j]);
+    in_groups(near, 4, [&](std::span<const std::size_t> some) {
+        if (over()) return;
+        std::vector<candidate*> each;
+        for (const std::size_t i : some) each.push_back(&models[i]);
+        finish(record_, each);
+    });
 }
 
 QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, const effect* added) const {
