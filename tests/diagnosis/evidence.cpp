@@ -119,3 +119,29 @@ TEST_CASE("process: a period with which the motion repeats tells nothing of a pr
         CHECK_FALSE(quadrant::diagnosis::detail::motion_repeats(strokes, rows));
     }
 }
+
+TEST_CASE("search: what comes near the best at a first look is fitted to the end, however many looked better") {
+    workshop::machine real;
+    auto axis = workshop::described(real).axes[0];
+    axis.plant.coulomb_N = real.coulomb;
+    real.viscous *= 2;
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto record = prepare(log, workshop::period, workshop::count,
+                                scales_of(axis.plant, log, workshop::period, workshop::count));
+    const auto gained = [&](std::size_t finalists, double near_best) {
+        rules r;
+        r.finalists = finalists;
+        r.near_best = near_best;
+        r.first_look = 1;
+        const search models(record, axis, {}, r, [](const std::string&) {});
+        const auto found =
+            models.with_each(models.calibrated(), {&suspect::viscous_friction, &suspect::coulomb_friction});
+        REQUIRE(found.size() == 2);
+        const auto& viscous = found[found[0].effects[0] == &suspect::viscous_friction ? 0 : 1];
+        return viscous.total - models.calibrated().total;
+    };
+    constexpr double never = 2;
+    const double sketched = gained(0, never), fitted = gained(2, never);
+    CHECK(fitted > sketched + rules{}.margin); // a first look is not the end
+    CHECK(gained(0, rules{}.near_best) == fitted);
+}

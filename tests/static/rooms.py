@@ -8,6 +8,8 @@ holds the parts of a call of the same name (compare.hpp, compare/).
 
 Numbered examples are for reading: no test includes one. A test includes from tests/, what it tests from examples/programs
 and examples/linuxcnc, and what writes the docs from docs/generators; no program and no generator includes a test.
+
+At the top stand these folders and no other; `build` and those of a tool, which begin with a dot, are not looked at.
 """
 import os
 import pathlib
@@ -99,6 +101,11 @@ for folder, may, found_in in (
             target = next((p for p in places if p.is_file()), None)  # none: made by the build, or of the library
             if target and not target.is_relative_to(root / "include") and not any(target.is_relative_to(root / f) for f in may):
                 faults.append(f"{source.relative_to(root)}: includes {target.relative_to(root)}; a file of {folder} does not")
+
+TOP = {"include", "tests", "benchmarks", "examples", "docs", "packaging"}
+there = {p.name for p in root.iterdir() if p.is_dir() and p.name != "build" and not p.name.startswith(".")}
+if there != TOP:
+    faults.append(f"at the top stand {sorted(there)}, not {sorted(TOP)}")
 
 for fault in faults:
     print(fault)

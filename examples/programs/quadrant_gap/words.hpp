@@ -215,8 +215,6 @@ inline std::string waveform_in_words(const diagnosis_result& d, const cause& c) 
     return in_words(*c.waveform, voice_of(d, c.axis).in_command_unit("V"));
 }
 
-inline bool claimed(const cause& c) { return std::max(c.probability, c.group_probability) >= 0.5; }
-
 /// "cogging", or "a or b" when the record does not say which.
 inline std::string claim(const cause& c) {
     if (c.probability >= 0.5) return name_of_effect(c.effect);

@@ -79,7 +79,6 @@ private:
     using json = nlohmann::ordered_json;
 
     bool taken(const cause& c) const { return std::max(c.probability, c.group_probability) >= at_least_; }
-    static bool claimed(const cause& c) { return c.group_probability >= 0.5; }
 
     axis_kind kind_of(const std::string& axis) const {
         const auto found = std::find_if(read_.axes.begin(), read_.axes.end(),

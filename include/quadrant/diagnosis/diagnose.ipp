@@ -22,7 +22,6 @@ namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
     if ((c.at_floor() || c.within_its_laws()) && !c.count_unnamed && !c.controller_open()) {
-        const auto claimed = [](const cause& x) { return x.group_probability >= 0.5; };
         // Suspects for what calibration leaves are no finding where that is immaterial.
         const bool silent =
             causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
@@ -36,8 +35,7 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
                               c.models.structure(given, c.noise) < c.limits.structure;
         return as_given ? verdict::no_gap : verdict::within_tolerance;
     }
-    const bool blamed =
-        std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.group_probability >= 0.5; });
+    const bool blamed = std::any_of(causes.begin(), causes.end(), claimed);
     if (!blamed && !c.count_unnamed && !c.controller_open() && c.calibrated_within_tolerances())
         return verdict::within_tolerance;
     const bool helps =
@@ -204,7 +202,8 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     auto causes = plant_causes(c, rivals);
     const bool guess = untested(c);
     if (guess) detail::to_suspects(causes);
-    doubt_by_loop(causes, how_far(c).loop_errors());
+    const how_far shrinks(c);
+    if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
     if (guess) {
         out.notes.push_back(
@@ -225,7 +224,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
         const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
         causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
     }
-    how_far(c).measure(result, causes);
+    shrinks.measure(result, causes);
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
     const verdict behind = result.verdict = judge(c, causes);
@@ -239,8 +238,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     const auto views = regimes(c.models.residual(c.models.given()), c.record);
     result.where.insert(result.where.end(), views.begin(), views.end());
     for (cause& x : causes)
-        if (x.effect != "controller_mismatch")
-            mark_bounds(x.group_probability >= 0.5 ? c.applied() : c.best(), x.parameters);
+        if (x.effect != "controller_mismatch") mark_bounds(claimed(x) ? c.applied() : c.best(), x.parameters);
     mark_bounds(c.applied(), result.calibrated);
     mark_bounds(c.best(), result.calibrated_with_suspects);
     if (of_transmission) join_transmission(out, result, causes, *of_transmission);

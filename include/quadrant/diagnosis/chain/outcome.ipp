@@ -117,7 +117,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axi
             const auto more = places_of_reversals(r, a.best, share);
             out.places.insert(out.places.end(), more.begin(), more.end());
         }
-        all_claimed &= c.group_probability >= 0.5;
+        all_claimed &= claimed(c);
         out.causes.push_back(std::move(c));
     }
     const double floor = r.noise() * r.noise(), after = a.best.held_out * a.best.held_out;
@@ -133,8 +133,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axi
                                    : fmt::format("between {} and {}: no cause tells which", d.from, d.to),
                           {rest, rest, rest},
                           "replay"});
-    const bool claims = std::any_of(out.causes.begin(), out.causes.end(),
-                                    [](const cause& c) { return c.group_probability >= 0.5; });
+    const bool claims = std::any_of(out.causes.begin(), out.causes.end(), claimed);
     out.verdict = at_floor ? out.causes.empty()
                                  ? (out.calibrated.empty() ? verdict::no_gap : verdict::within_tolerance)
                              : all_claimed ? verdict::explained

@@ -5,6 +5,8 @@
 #include "../which/causes.hpp"
 #include "driven_loop.hpp"
 
+#include <span>
+
 namespace quadrant::diagnosis {
 
 /// How far the gap shrinks: the gap of the machine file as given, after each cause, and with everything added,
@@ -27,6 +29,8 @@ private:
         std::optional<closed_loop_run> loop;
     };
 
+    /// The fitted plant, from where the record begins that is judged.
+    plant_model plant_of(const candidate& model) const;
     stage at(const candidate& model, const std::optional<controller_description>& controller) const;
     std::optional<closed_loop_run> loop(const plant_model& plant,
                                         const std::optional<controller_description>& controller) const;

@@ -52,12 +52,15 @@ QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<c
         result.signals.command_added = case_.controller->added->waveform.values;
 }
 
+QUADRANT_DIAGNOSIS_DECL plant_model how_far::plant_of(const candidate& model) const {
+    return case_.holdout ? restarted(model.fit.plant, judged_) : model.fit.plant;
+}
+
 QUADRANT_DIAGNOSIS_DECL how_far::stage
 how_far::at(const candidate& model, const std::optional<controller_description>& controller) const {
     stage s;
-    plant_model plant = model.fit.plant;
+    const plant_model plant = plant_of(model);
     if (case_.holdout) {
-        plant = restarted(plant, judged_);
         std::vector<double> e, a;
         judged_.observer.run(plant, e, &a);
         s.force = residual_of(judged_, plant, a);
@@ -85,8 +88,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
     if (case_.axis.controller) controller = case_.mended();
     for (const candidate& model : case_.path) {
         if (model.fit.plant.loss > 0) return {};
-        const plant_model plant = case_.holdout ? restarted(model.fit.plant, judged_) : model.fit.plant;
-        const auto run = loop(plant, controller);
+        const auto run = loop(plant_of(model), controller);
         if (!run) return {};
         const std::vector<double> all(judged_.segments, 1.0);
         out.push_back(energy(difference(run->position, log_.position)).rms(all) *
@@ -185,7 +187,7 @@ QUADRANT_DIAGNOSIS_DECL void doubt_by_loop(std::span<cause> causes, const std::v
     constexpr double clearly = 1.1;
     std::size_t claims = 0;
     for (std::size_t i = 0; i < causes.size(); ++i)
-        if (causes[i].group_probability >= 0.5) claims = i + 1;
+        if (claimed(causes[i])) claims = i + 1;
     if (claims == 0 || errors.empty()) return;
     const auto best =
         std::min_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(claims) + 1);

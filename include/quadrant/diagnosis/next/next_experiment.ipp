@@ -155,7 +155,7 @@ QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
     for (const cause& x : causes) {
         if (x.confusable_with.empty()) {
             if (!suspect && x.probability < 0.5) suspect = &x;
-        } else if (!group || (group->group_probability < 0.5 && x.group_probability >= 0.5)) {
+        } else if (!group || (!claimed(*group) && claimed(x))) {
             group = &x;
         }
     }

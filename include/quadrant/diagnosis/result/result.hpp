@@ -94,6 +94,8 @@ struct cause {
         better_form; ///< of what a force that no list names predicts better as a function; empty: of nothing
     std::string better_excluded{}; ///< which effect that the machine file excludes explains more; empty: none
 };
+/// Said to be there, by its name or one that it is confusable with; else it is a suspect.
+inline bool claimed(const cause& c) { return c.group_probability >= 0.5; }
 
 /// Signals for the pictures, one entry a sample (t, ...), or a bin (frequency, ...).
 struct axis_signals {

@@ -61,7 +61,7 @@ QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& ca
     std::vector<const effect*> claims, suspects;
     const auto effects = c.best().effects;
     for (std::size_t i = 0; i < causes.size(); ++i)
-        (causes[i].group_probability >= 0.5 ? claims : suspects).push_back(effects[i]);
+        (claimed(causes[i]) ? claims : suspects).push_back(effects[i]);
     auto way = detail::by_share(c, c.path.front(), claims);
     auto rest = detail::by_share(c, way.back(), suspects);
     way.insert(way.end(), std::make_move_iterator(rest.begin() + 1), std::make_move_iterator(rest.end()));
