@@ -425,7 +425,7 @@ TEST_CASE("designed laws: what no law can be is refused by name") {
     CHECK(says([&] { pole_placement<>{p, T}; }, "rst.reference = "));
     p = place_rst(plant, poles, T);
     p.recovery = {1, -1.1, 0};
-    CHECK(says([&] { pole_placement<>{p, T}; }, "rst.recovery = 1.1"));
+    CHECK(says([&] { pole_placement<>{p, T}; }, "rst.recovery = 1."));
     CHECK(says([] { place_rst(plant, {.natural = 600_Hz, .observer = 10_Hz}, T); },
                "place_rst.natural = 600 Hz"));
     auto s = place_state_feedback(plant, states, 10_V, T);

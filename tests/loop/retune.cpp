@@ -9,9 +9,11 @@
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/control/rate_limiter.hpp>
 #include <quadrant/filter/butterworth.hpp>
+#include <quadrant/filter/discretize.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
+#include <quadrant/filter/transfer_function.hpp>
 #include <quadrant/friction/dahl.hpp>
 #include <quadrant/friction/lugre.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
@@ -19,53 +21,20 @@
 #include <quadrant/memory/fractional_delay.hpp>
 #include <quadrant/memory/repetitive.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
+#include <quadrant/observer/ferraris_force_estimator.hpp>
+
+#include "retuned.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
 using namespace quadrant;
 using namespace quadrant::literals;
 
 namespace {
-const duration T = 500_us;
-
-struct random_numbers {
-    std::mt19937 engine{42};
-    double between(double low, double high) { return std::uniform_real_distribution(low, high)(engine); }
-    double decades(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-    /// Offset, sine and noise of any shares and sizes.
-    std::vector<double> signal(std::size_t samples) {
-        const double size = decades(1e-3, 1e3), offset = between(-1, 1), w = decades(1e-3, 3),
-                     noise = decades(1e-4, 1);
-        std::vector<double> x(samples);
-        for (std::size_t k = 0; k < samples; ++k)
-            x[k] = size * (offset + std::sin(w * double(k)) + noise * between(-1, 1));
-        return x;
-    }
-};
-/// How much of its bound a jump took; `rounding` relative to what was added up.
-struct verdict {
-    double most = 0;
-    int broken = 0;
-    void operator()(double jump, double bound, double rounding) {
-        broken += !(std::abs(jump) <= bound + rounding);
-        if (bound > 1e3 * rounding) most = std::max(most, std::abs(jump) / bound);
-    }
-};
-double largest(const std::vector<double>& x) {
-    double most = 0;
-    for (const double each : x) most = std::max(most, std::abs(each));
-    return most;
-}
-template <class Block> double step(Block& block, double x) {
-    return block(Block::argument::from_value(x)).value();
-}
-template <class Block> double first(Block fresh) { return step(fresh, 1); } ///< of an impulse: b0
-
 /// `bound(x, y, b, next_b)` from the signal, the twin's outputs, and the first coefficients of both.
 template <class Block> void check_filter(auto draw, auto bound) {
     random_numbers random;
@@ -112,6 +81,62 @@ TEST_CASE("retune: notch and butterworth, the output is off by (b0' - b0)(x[k] -
         bound);
     check_filter<butterworth<signal::force>>(
         [](auto& r) { return butterworth<signal::force>::parameters{r.decades(10, 900) * 1_Hz}; }, bound);
+}
+
+TEST_CASE(
+    "retune: a transfer function is off by (b0' - b0)(x[k] - x[k-1]), and by nothing at a constant input where "
+    "both have one gain there") {
+    using filter = transfer_function<signal::force, signal::force, 2>;
+    check_filter<filter>(
+        [](auto& r) {
+            const double w = 2 * pi * r.decades(1, 500);
+            return filter::parameters::in_si(
+                bilinear(continuous<2>{{w * w, r.decades(0.01, 2) * w, r.decades(0.01, 1)},
+                                       {w * w, r.decades(0.1, 2) * w, 1}},
+                         T));
+        },
+        [](const auto& x, const auto&, double b, double next) { return std::abs(next - b) * moved(x); });
+}
+
+TEST_CASE("retune: a Ferraris estimate is off by b0' (f'[k] - f[k-1]) - b0 (f[k] - f[k-1])") {
+    using estimator = ferraris_force_estimator<signal::voltage>;
+    random_numbers random;
+    const auto draw = [&] {
+        return estimator({.mass = random.decades(10, 1000) * 1_kg,
+                          .force_constant = random.decades(10, 1000) * (1_N / 1_V),
+                          .corner = random.decades(1, 500) * 1_Hz},
+                         T);
+    };
+    verdict said;
+    for (int trial = 0; trial < 20000; ++trial) {
+        estimator kept = draw(), twin = kept;
+        const estimator other = draw();
+        const auto a = random.signal(40), u = random.signal(40);
+        for (std::size_t k = 0; k + 1 < a.size(); ++k)
+            kept(a[k] * 1_mps2, u[k] * 1_V), twin(a[k] * 1_mps2, u[k] * 1_V);
+        kept.retune(other);
+        const double was = twin(a[39] * 1_mps2, u[39] * 1_V).value(),
+                     is = kept(a[39] * 1_mps2, u[39] * 1_V).value();
+        const auto force = [&](const estimator& e, std::size_t k) {
+            return e.given().mass.value() * a[k] - e.given().force_constant.value() * u[k];
+        };
+        const auto first_of = [](estimator fresh) {
+            return fresh(1_mps2).value() / fresh.given().mass.value();
+        };
+        const double b = first_of(estimator(twin.given(), T)), next = first_of(other);
+        const double size = 1000 * (largest(a) + largest(u));
+        said(is - was,
+             std::abs(next * (force(kept, 39) - force(twin, 38)) - b * (force(twin, 39) - force(twin, 38))),
+             1e-11 * size);
+        CHECK(kept.command().value() ==
+              doctest::Approx(is / kept.given().force_constant.value()).epsilon(1e-14));
+    }
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.999);
+    CHECK(said.most < 1.001);
+    estimator e = draw();
+    e.retune(estimator(e.given(), 2.0 * T));
+    CHECK(e.faulted());
 }
 
 TEST_CASE(

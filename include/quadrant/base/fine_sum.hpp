@@ -15,6 +15,11 @@ template <class Value> [[gnu::always_inline]] inline Value rounded_here(Value x)
 #endif
     return x;
 }
+/// Beside a sum that a state holds as one number: what rounding left over of it, where it is a fine one.
+template <class Value, bool Fine> struct rest_of_sum {
+    Value rest{}; ///< sum minus the number
+};
+template <class Value> struct rest_of_sum<Value, false> {};
 } // namespace detail
 
 /// What a slow filter adds up: a sum of many parts that are far smaller than it. Fine: it is held in two

@@ -26,6 +26,10 @@
 ///   static constexpr std::size_t most_lead   what lead() never exceeds; belongs to lead(). The axis is asked so much later.
 ///   void applied(command)       see above; a law that remembers its own commands (RST, observer) needs it, too.
 ///   law_response response(frequency) const   of a linear law: eq. (19).
+///   void retune(next, reference, measured, velocity, u)   other parameters from the next sample on (`retunable_law`):
+///                               those of `next`, a law of the same type that was built outside the servo thread. The
+///                               arguments are those of the last sample, u is what the law shall have given there: what
+///                               holds the axis takes up what the other gains change of it.
 /// Source: [Yeung2006] eq. (19).
 namespace quadrant {
 
@@ -53,6 +57,15 @@ concept axis_law = signal_tag<typename L::output> &&
     { law(reference, measured, velocity) } -> std::same_as<decltype(command)>;
     law.settle(measured, command);
     law.reset();
+};
+
+/// A law that takes the parameters of another one while it runs.
+template <class L>
+concept retunable_law = axis_law<L> && requires(L law, const L& next, const axis_motion<real_of<L>>& reference,
+                                                quantity_of<signal::position, real_of<L>> measured,
+                                                quantity_of<signal::velocity, real_of<L>> velocity,
+                                                quantity_of<typename L::output, real_of<L>> u) {
+    law.retune(next, reference, measured, velocity, u);
 };
 
 } // namespace quadrant

@@ -41,18 +41,43 @@ template <class Number, std::size_t N> Number at_one(const std::array<Number, N>
     for (const auto& x : p) sum += x;
     return sum;
 }
+/// d^-1 m d, d diagonal of powers of two: rows and columns of a size, so that small entries keep their digits.
+template <std::size_t N> matrix<N> balanced(matrix<N> m) {
+    for (int sweep = 0; sweep < 100; ++sweep) {
+        bool done = true;
+        for (std::size_t i = 0; i < N; ++i) {
+            double row = 0, column = 0;
+            for (std::size_t j = 0; j < N; ++j)
+                if (j != i) row += std::abs(m[i][j]), column += std::abs(m[j][i]);
+            if (!(row > 0) || !(column > 0) || !is_finite(row) || !is_finite(column)) continue;
+            const double by = std::exp2(std::round(std::log2(row / column) / 2));
+            if (by == 1) continue;
+            done = false;
+            for (std::size_t j = 0; j < N; ++j) m[i][j] /= by, m[j][i] *= by;
+        }
+        if (done) break;
+    }
+    return m;
+}
+/// Largest |1 + d| of the roots d of p[0] d^n + ... + p[n], p[0] = 1. Where roots z = 1 + d lie close together
+/// around one, as those of a slow loop at a high rate do, coefficients in z hold them in their last digits
+/// only.
+template <class Number, std::size_t N> double largest_root_about_one(const std::array<Number, N>& p) {
+    matrix<N - 1> companion{};
+    for (std::size_t i = 0; i + 1 < N; ++i) {
+        companion[0][i] = -plain(p[i + 1]);
+        if (i > 0) companion[i][i - 1] = 1;
+    }
+    companion = balanced(companion);
+    for (std::size_t i = 0; i + 1 < N; ++i) companion[i][i] += 1;
+    return spectral_radius(companion);
+}
 /// Largest |z| of the roots; p[0] is one.
 template <class Number, std::size_t N> double largest_root(const std::array<Number, N>& p) {
-    if constexpr (N == 1) {
+    if constexpr (N == 1)
         return 0;
-    } else {
-        matrix<N - 1> companion{};
-        for (std::size_t i = 0; i + 1 < N; ++i) {
-            companion[0][i] = -plain(p[i + 1]);
-            if (i > 0) companion[i][i - 1] = 1;
-        }
-        return spectral_radius(companion);
-    }
+    else
+        return largest_root_about_one(about_one(p));
 }
 
 } // namespace detail

@@ -18,6 +18,7 @@ namespace quadrant {
 /// gain.
 /// Jump: none at a node. When s moves by ds the output moves by at most (steepest slope) |ds| |x| more than
 /// with a fixed gain.
+/// `retune(next)`: other nodes from the next step on; jump: |g'(s) - g(s)| |x|.
 /// Range: nodes rise; any finite gains. One that has to be smooth in s too: more nodes.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "gain_schedule.at = ...: must ...", "gain_schedule.gain = ...: must be finite", "gain_schedule.period
@@ -69,6 +70,12 @@ public:
     void settle(argument x, scheduling s) noexcept {
         const value y = gain(s) * x;
         finite(s, y) ? out_.reset(y) : out_.raise();
+    }
+
+    void retune(const gain_schedule& next) noexcept {
+        const auto out = out_;
+        *this = next;
+        out_ = out;
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

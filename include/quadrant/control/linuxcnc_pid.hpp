@@ -23,6 +23,8 @@ namespace quadrant {
 /// at. `reset`: as the component when it is loaded; `settle(x, u)`: at rest at x, held by u as far as the
 /// integral can; `settle(start)`: in the middle of an even motion, the next sample after the one that start
 /// describes.
+/// `retune(next, ...)`: as the component when its pins are set: the integral of the error stays as it is, in m
+/// s, and nothing takes up what the gains change. Jump: the sum of each gain's change times what it multiplies.
 /// Range: gains finite, limits and dead zone finite and >= 0. The pins enable, index-enable, command-deriv,
 /// feedback-deriv and the automatic tuning are not modelled.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -133,6 +135,15 @@ public:
         out_.reset(s.command);
     }
 
+    void retune(const linuxcnc_pid& next, const axis_motion<Real>&, position, velocity, value) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
+    }
+
     bool limited() const noexcept { return state_.at_limit != 0; } ///< the last output was at its limit
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }
@@ -188,6 +199,6 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<linuxcnc_pid<>>);
+static_assert(retunable_law<linuxcnc_pid<>>);
 
 } // namespace quadrant

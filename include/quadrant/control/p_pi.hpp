@@ -24,6 +24,9 @@ namespace quadrant {
 /// in it.
 /// State: the integral of the velocity loop in units of the command; `reset` at rest at zero; `settle(x, u)`:
 /// it holds u.
+/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; the integral takes what the new gains change.
+/// Then |u'[k] - u| <= Kp' |e'[k] - e'[k-1]| + Ki' T |e'[k]| + |Ka'| |a_ref[k] - a_ref[k-1]| + what the
+/// integral has beyond its new limit (+ T/tracking_time' times the excess), e' with the new gains.
 /// Range: Kv any finite, Kp and Ki >= 0, c and Ka finite (c = 0: follows late by 1/Kv). limit is that of the
 /// amplifier, for the integral; what was applied is told by applied(u).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
@@ -62,7 +65,7 @@ public:
     };
 
     p_pi(const parameters& p, duration period)
-        : given_(p), position_loop_({p.position_gain}, period),
+        : given_(p), period_(period), position_loop_({p.position_gain}, period),
           velocity_loop_({p.gain, p.integral_gain, p.limit, p.anti_windup}, period),
           weight_(Real(p.velocity_weight)), acceleration_gain_(in_real<Real>(p.acceleration_gain)) {
         require_finite("p_pi.velocity_weight", p.velocity_weight);
@@ -101,6 +104,21 @@ public:
         out_.settle(good, u);
     }
 
+    void retune(const p_pi& next, const axis_motion<Real>& reference, position measured, velocity tachometer,
+                value u) noexcept {
+        const velocity error = next.position_gain() * (reference.position - measured) +
+                               (next.weight_ * reference.velocity - tachometer);
+        const value loop = u - next.acceleration_gain_ * reference.acceleration;
+        const auto good = finite(error, loop);
+        if (next.period_ != period_ || none(good)) return out_.raise();
+        position_loop_.retune(next.position_loop_);
+        velocity_loop_.retune(next.velocity_loop_, only_where(good, error), only_where(good, loop));
+        given_ = next.given_;
+        weight_ = next.weight_;
+        acceleration_gain_ = next.acceleration_gain_;
+        out_.raise(!good);
+    }
+
     /// Of the unlimited law.
     law_response response(frequency f) const {
         law_response y;
@@ -127,6 +145,7 @@ private:
     }
 
     parameters given_;
+    duration period_;
     position_box position_loop_;
     velocity_box velocity_loop_;
     Real weight_;
@@ -134,7 +153,7 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<p_pi<>>);
+static_assert(retunable_law<p_pi<>>);
 
 /// How fast the loops of a `p_pi` shall be: the velocity loop first, the position loop a share of it.
 struct p_pi_loops {

@@ -29,6 +29,9 @@ enum class derivative_from {
 /// used.
 /// State: the integral in units of the command, q, the last difference of positions; `reset` at rest at zero;
 /// `settle(x, u)`: the integral holds u.
+/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; the integral takes what the new gains change,
+/// q stays. Then |u'[k] - u| <= Kp' |e[k] - e[k-1]| + Ki' T |e[k]| + Kp' |b' - 1| |x_ref[k] - x_ref[k-1]| +
+/// Kd' |q[k] - q[k-1]| + what the integral has beyond its new limit (+ T/tracking_time' times the excess).
 /// Range: gains >= 0, weights finite (b = c = 0: derivative and proportion on the measurement alone),
 /// derivative_corner > 0,
 /// infinite: no filter. limit is that of the amplifier, for the integral; what was applied is told by
@@ -120,6 +123,23 @@ public:
         out_.settle(good, u);
     }
 
+    void retune(const pid& next, const axis_motion<Real>& reference, position measured, velocity tachometer,
+                value u) noexcept {
+        const position past = next.weight_ * reference.position - measured,
+                       error = reference.position - measured;
+        const value loop = u - (next.set_aside_ * reference.position + next.derivative_gain_ * state_.q);
+        const auto good = finite(past, loop, tachometer);
+        if (next.period_ != period_ || none(good)) return out_.raise();
+        loop_.retune(next.loop_, only_where(good, error), only_where(good, loop));
+        given_ = next.given_;
+        derivative_gain_ = next.derivative_gain_;
+        set_aside_ = next.set_aside_;
+        weight_ = next.weight_;
+        share_ = next.share_;
+        set_where(good, state_.past, past);
+        out_.raise(!good);
+    }
+
     /// Of the unlimited law.
     law_response response(frequency f) const {
         const std::complex<double> back = std::polar(1.0, -2 * std::numbers::pi * f.value() * period_.value()),
@@ -158,7 +178,7 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<pid<>>);
+static_assert(retunable_law<pid<>>);
 
 /// Where the poles of a `pid` loop shall lie: (s + real w)(s^2 + 2 damping w s + w^2), w = 2 pi natural.
 struct pid_poles {

@@ -27,6 +27,9 @@ namespace quadrant {
 /// Ports: those of `axis_law`; lead() is the horizon.
 /// State: the coming references, position and speed of the sample before, the command applied. `reset`: at rest
 /// at zero; `settle(x, u)`: at rest at x, held by u, and so stays the reference.
+/// `retune(next, ..., u)`: as `retunable_law` has it, for the same horizon; it starts from u. |u'[k] - u| is
+/// the first move of the new plan, at most its rate_limit times T. Another horizon is refused as another
+/// period is: the references in store belong to it.
 /// Range: gain of the plant > 0 (else the command does not control the axis), damping >= 0, 1 <= horizon <=
 /// Preview, weights as they say. The speed measured should lag little: `kalman` with its disturbance.
 /// NaN and infinities: holds the last command, takes nothing in, raises faulted().
@@ -114,6 +117,19 @@ public:
         out_.reset(u);
     }
 
+    void retune(const predictive& next, const axis_motion<Real>&, position, velocity, value u) noexcept {
+        auto kept = state_;
+        kept.applied += u - out_.last();
+        if (next.period_ != period_ || next.given_.horizon != given_.horizon || !finite(kept.applied))
+            return out_.raise();
+        const auto out = out_;
+        const bool limited = limited_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
+        limited_ = limited;
+    }
+
     std::size_t lead() const noexcept { return given_.horizon; }
     /// Of the unlimited law.
     law_response response(frequency f) const {
@@ -176,6 +192,6 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<predictive<>>);
+static_assert(retunable_law<predictive<>>);
 
 } // namespace quadrant

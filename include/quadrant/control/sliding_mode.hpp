@@ -23,6 +23,10 @@ namespace quadrant {
 /// Source: [Yeung2006] eqs. (20, 21); [Altintas2000].
 /// Ports: those of `axis_law`. The sum has the present sample in it.
 /// State: d, as the integral of a `proportional_integral`; `reset` at rest at zero; `settle(x, u)`: d holds u.
+/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; d takes what the new gains change. Then
+/// |u'[k] - u| <= what the new law without d makes of the change of its inputs, + rho' |e[k] - e[k-1]| +
+/// lambda' rho' T |e[k]| + what d has beyond its new limit (+ T/tracking_time' times the excess), e = x_ref -
+/// x.
 /// Range: B > 0, A >= 0, sliding > 0 in 1/s (not hertz), Ks >= 0, rho >= 0. limit is that of the amplifier, for
 /// d; what was applied is told by applied(u). What friction the reference will cause is best fed forward beside
 /// the law (`feed_control`).
@@ -60,7 +64,7 @@ public:
     };
 
     sliding_mode(const parameters& p, duration period)
-        : given_(checked(p, period)),
+        : given_(checked(p, period)), period_(period),
           adaptation_({p.adaptation, p.sliding * p.adaptation, p.limit, p.anti_windup}, period),
           sliding_(in_real<Real>(p.sliding)), gain_(in_real<Real>(p.gain)) {
         inertia_ = in_real<Real>(gain_of<Command, signal::acceleration, number>(number(1) / p.plant.gain));
@@ -69,9 +73,8 @@ public:
 
     value operator()(const axis_motion<Real>& reference, position measured, velocity tachometer) noexcept {
         const position error = reference.position - measured;
-        const velocity slower = reference.velocity - tachometer, s = sliding_ * error + slower;
-        const value rest =
-            inertia_ * (sliding_ * slower + reference.acceleration) + drag_ * tachometer + gain_ * s;
+        const velocity s = sliding_ * error + (reference.velocity - tachometer);
+        const value rest = without_estimate(reference, tachometer, s);
         if (!finite(error, rest)) return out_.hold();
         const value d = adaptation_(error);
         if (!finite(rest + d)) return out_.hold();
@@ -90,6 +93,22 @@ public:
         adaptation_.settle(position(), u);
         state_ = {velocity(), u};
         out_.reset(u);
+    }
+
+    void retune(const sliding_mode& next, const axis_motion<Real>& reference, position measured,
+                velocity tachometer, value u) noexcept {
+        const position error = reference.position - measured;
+        const velocity s = next.sliding_ * error + (reference.velocity - tachometer);
+        const value disturbance = u - next.without_estimate(reference, tachometer, s);
+        if (next.period_ != period_ || !finite(error, disturbance)) return out_.raise();
+        const auto kept = state_;
+        const auto out = out_;
+        auto adaptation = adaptation_;
+        adaptation.retune(next.adaptation_, error, disturbance);
+        *this = next;
+        state_ = kept;
+        out_ = out;
+        adaptation_ = adaptation;
     }
 
     /// Of the unlimited law.
@@ -119,7 +138,13 @@ private:
         return p;
     }
 
+    value without_estimate(const axis_motion<Real>& reference, velocity tachometer, velocity s) const noexcept {
+        return inertia_ * (sliding_ * (reference.velocity - tachometer) + reference.acceleration) +
+               drag_ * tachometer + gain_ * s;
+    }
+
     parameters given_;
+    duration period_;
     adaptation_box adaptation_;
     quantity<si::frequency, Real> sliding_;
     gain_of<Command, signal::velocity, Real> gain_;
@@ -128,7 +153,7 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<sliding_mode<>>);
+static_assert(retunable_law<sliding_mode<>>);
 
 /// How the way to the surface shall look: the integral of S as a mass on spring and damper.
 struct sliding_dynamics {

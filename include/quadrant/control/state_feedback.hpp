@@ -25,6 +25,10 @@ namespace quadrant {
 /// Ports: those of `axis_law`; the tachometer is not read.
 /// State: the three estimates and the command applied. `reset` at rest at zero; `settle(x, u)`: at rest at x,
 /// d^ = -u.
+/// `retune(next, ...)`: as `retunable_law` has it; the estimates stay (they are of the axis, not of the law),
+/// and nothing takes up what the gains change. Jump: (k1' - k1) (x_ref - x^) + (k2' - k2) (v_ref - v^) + (1/B'
+/// - 1/B) a_ref + (A'/B' - A/B) v_ref, and k1, k2, 1 times what the estimates of one sample differ by under
+/// the new model.
 /// Limits: nothing winds up, as the observer is told by applied(u) what drove the axis.
 /// Range: B > 0, A >= 0; k1, k2 such that the sampled loop on the true states is stable (with those of the
 /// observer these are all poles of the loop). encoder_noise and drift > 0: their ratio sets the observer, see
@@ -112,6 +116,15 @@ public:
         out_.reset(u);
     }
 
+    void retune(const state_feedback& next, const axis_motion<Real>&, position, velocity, value) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
+    }
+
     /// Of the unlimited law.
     law_response response(frequency f) const {
         using complex = std::complex<double>;
@@ -168,7 +181,7 @@ private:
     state state_;
     held_output<value> out_;
 };
-static_assert(axis_law<state_feedback<>>);
+static_assert(retunable_law<state_feedback<>>);
 
 /// What a `state_feedback` shall do.
 struct state_feedback_poles {

@@ -16,6 +16,8 @@ namespace quadrant {
 /// State: side, turning point, y. `reset`: at zero, side unknown, y = 0, so the first move takes half the play
 /// only. `settle(x)` the same at x; `settle(x, side)` with the flanks in touch, y = side play / 2: after homing
 /// from that side.
+/// `retune(next)`: another play, rate or hysteresis; y goes on from where it is: no step above rate' times
+/// period.
 /// Range: play >= 0, rate > 0, hysteresis >= 0 and above the encoder's count, where the reference is a measured
 /// one. No step of the output is above rate times period. Crossing takes play / rate; meanwhile the load stands
 /// still.
@@ -72,6 +74,17 @@ public:
         state_ = {x, target(side), side};
         moved_ = value();
         out_.reset(state_.y);
+    }
+
+    void retune(const backlash_compensation& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto last_move = moved_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        moved_ = last_move;
+        out_ = out;
     }
 
     bool crossing() const noexcept {

@@ -17,6 +17,7 @@ namespace quadrant {
 /// Ports: position in (of the reference, or measured), command out in whatever the amplitudes are: N, V or A.
 /// Added by the loop.
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
+/// `retune(next)`: other harmonics from the next step on; jump: the difference of both curves at x.
 /// Range: pitch > 0; orders in any sequence, an amplitude of 0 for one that is not used. Any position; its
 /// rounding becomes one of phase, 2 pi order |x| / pitch times 2e-16 (float 1e-7): in float count from near the
 /// place where the axis works. At speed the force comes late: feed the position `ahead` of a `preview`.
@@ -68,6 +69,12 @@ public:
     void settle(argument x) noexcept {
         const value u = at(x);
         finite(u) ? out_.reset(u) : out_.raise();
+    }
+
+    void retune(const cogging_harmonics& next) noexcept {
+        const auto out = out_;
+        *this = next;
+        out_ = out;
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

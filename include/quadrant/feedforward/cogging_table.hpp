@@ -17,6 +17,7 @@ namespace quadrant {
 /// Ports: position in (of the reference, or measured), command out in whatever the points are: N, V or A. Added
 /// by the loop.
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
+/// `retune(next)`: another table from the next step on; jump: the difference of both curves at x.
 /// Range: pitch > 0; Points >= 4. Between points a wave of h per pitch, b = 2 pi h / Points, is off by b^2 / 8
 /// of itself (Order 1), 3 b^4 / 128 (Order 3): take 20 points a wave for 1.2 % or 0.023 %. Any position; its
 /// rounding becomes one of place, |x| times 2e-16 (float 1e-7): in float count from near the place where the
@@ -60,6 +61,12 @@ public:
     void settle(argument x) noexcept {
         const value u = at(x);
         finite(x, u) ? out_.reset(u) : out_.raise();
+    }
+
+    void retune(const cogging_table& next) noexcept {
+        const auto out = out_;
+        *this = next;
+        out_ = out;
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

@@ -33,6 +33,8 @@ concept static_friction = requires(const F& f, quantity_of<In, Real> v) {
 /// velocity: positive feedback. To act earlier, feed it `at(lead).velocity` of a `preview`.
 /// State: s; `reset` leaves 0; `settle(v)` as if v had been applied for ever after that. Held, a reference that
 /// dithers by less than width / 2 either way does not turn it over.
+/// `retune(next)`: another law, scale or width from the next step on, s as far as the new width lets it; jump:
+/// the difference of both commands at v.
 /// Range: force_constant > 0 (1 for a law in units of the command), scale >= 0 (1 = all of the friction; below
 /// 1 leaves some, above 1 makes the axis jump ahead), width > 0: small against the velocities of the path; at
 /// acceleration a the turn-over takes 2 width / a, held width / a.
@@ -92,6 +94,14 @@ public:
         const auto good = finite(v, u);
         set_where(good, state_.side, side);
         out_.settle(good, u);
+    }
+
+    void retune(const friction_feedforward& next) noexcept {
+        const auto kept = state_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

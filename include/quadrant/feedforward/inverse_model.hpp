@@ -20,6 +20,7 @@ namespace quadrant {
 /// State: none; `reset` and `settle` set the held output and clear the fault.
 /// Range: B > 0, A >= 0 in 1/s (not hertz). A disturbance observer beside it needs the same A and B: take both
 /// from one `axis_model`.
+/// `retune(next)`: another plant from the next step on; jump: |(1/B' - 1/B) a + (A'/B' - A/B) v|.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "inverse_model.gain = ...: must ...", "inverse_model.damping = ...: must ..." and for the period.
 /// Cost: 2 multiplications. One `proportional` on either derivative is the same in two boxes (`milling_axis`:
@@ -53,6 +54,12 @@ public:
     void settle(velocity v, acceleration a) noexcept {
         const value u = inertia_ * a + drag_ * v;
         out_.settle(finite(u), u);
+    }
+
+    void retune(const inverse_model& next) noexcept {
+        const auto out = out_;
+        *this = next;
+        out_ = out;
     }
 
     /// From the position of a trajectory that knows its derivatives.

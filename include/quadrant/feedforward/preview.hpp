@@ -23,7 +23,8 @@ namespace quadrant {
 /// a step: friction may need another one than mass.
 /// State: the last Capacity + 1 motions. `reset`: stands at zero, lead of the parameters; `settle(m)`: as if m
 /// had been applied for ever ({.position = x} for rest). Settle at the first position before the first step, or
-/// it reads as a jump. `lead(d)` changes the lead between two steps; the reference does not move by it.
+/// it reads as a jump. `lead(d)` and `retune(next)` change the lead between two steps; the reference does not
+/// move by it, the other motion by what lies between both times.
 /// Range: 0 <= lead <= Capacity periods; lead(d) and at(d) outside saturate, limited() tells for lead(d). Axes
 /// that follow one path need the same Capacity, not the same lead. Where the acceleration jumps within a
 /// period, its value there is off by up to 1/3 of the jump.
@@ -85,6 +86,12 @@ public:
         const place wanted = placed(d);
         lead_ = wanted;
         limited_ = wanted.limited;
+    }
+    void retune(const preview& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        given_ = next.given_;
+        lead_ = next.lead_;
+        limited_ = next.limited_;
     }
     /// The motion d before the reference that the last step gave.
     Motion at(time d) const noexcept { return read(state_.next, placed(d)); }

@@ -22,6 +22,7 @@ namespace quadrant {
 /// Ports: reference in, command out. Late by N/2 periods exactly, at all frequencies (order 2: one period):
 /// delay the loop's reference by as much (`delay_line`), and by the plant's delay.
 /// State: the last N references; `reset` leaves zeros, so a first sample reads as a jump: `settle(r0)` first.
+/// `retune(next)`: another plant from the next step on; jump: that of the weights times the differences.
 /// Range: any plant of order 1 ... 4 without zeros; n0 and dN not zero. Gain of the difference of order i at f:
 /// sinc^i(f T) cos^(N-i)(pi f T) of the derivative. A count q of the reference shows as up to 2 q d2 / (n0 T^2)
 /// (order 2). A plant with zeros has no inverse that ends: its zeros would have to be poles here.
@@ -72,6 +73,15 @@ public:
         if (!finite(x, u)) return out_.raise();
         state_.r.fill(x);
         out_.reset(u);
+    }
+
+    void retune(const sampled_inverse_model& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
     }
 
     std::complex<double> response(frequency f) const {

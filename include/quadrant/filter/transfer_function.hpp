@@ -25,7 +25,11 @@ template <std::size_t Order, class Number = double> struct discrete {
 /// delays (`differences.hpp`), so that slow poles keep their digits; the states are in the unit of the output.
 /// Ports: one scalar in, one scalar out of any signal; the numerator carries the unit Out/In.
 /// State: n sums in the unit of the output, in float of two numbers each; `reset` leaves zero; what has died
-/// out is zero; `settle(x)` the state of a constant x. With a pole at z = 1 (integrates()) no such state
+/// out is zero; `retune(next)`: other coefficients from the next step on; each sum takes what it would differ
+/// by, had the last input and output stood for ever. The output is off by (b0' - b0)(x[k] - x[k-1]) from what
+/// it would have been, b0 = b[0]/a[0]; nothing changes, then or later, in steady state and with the same gain
+/// there.
+/// `settle(x)` the state of a constant x. With a pole at z = 1 (integrates()) no such state
 /// exists: `settle(x, y)`, where the next step with x gives y; settle(x) then takes the last output for y.
 /// Range: a[0] not zero. Poles outside the unit circle are allowed (a plant may have them); the output then
 /// grows until it is no longer finite, and holds. Coefficients in z are doubles that hold (pole T)^n in their
@@ -59,9 +63,10 @@ public:
             return p;
         }
     };
-    /// The integrators, in the unit of the output.
+    /// The integrators, in the unit of the output, and the last input.
     struct state {
         detail::integrators<value, Real, Order> s{};
+        argument x{}; ///< for `retune`
     };
 
     transfer_function(const parameters& p, duration period)
@@ -87,6 +92,7 @@ public:
         if (none(good)) return out_.hold();
         detail::rest_if_died_out(next, y, x);
         set_where(good, state_.s, next);
+        set_where(good, state_.x, x);
         return out_.keep(good, y);
     }
     void reset() noexcept { settle(argument(), value()); }
@@ -100,7 +106,24 @@ public:
         }
         const auto good = finite(sum);
         set_where(good, state_.s, s);
+        set_where(good, state_.x, x);
         out_.settle(good, y);
+    }
+    void retune(const transfer_function& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        auto s = state_.s;
+        for (std::size_t i = 0; i < Order; ++i) {
+            s[i].high -= (next.b_[i] - b_[i]) * state_.x;
+            if (i > 0) s[i].high += (next.a_[i - 1] - a_[i - 1]) * out_.last();
+        }
+        for (std::size_t i = 0; i < Order; ++i)
+            if (!all(finite(s[i].high))) return out_.raise();
+        const argument x = state_.x;
+        const auto out = out_;
+        *this = next;
+        state_.s = s;
+        state_.x = x;
+        out_ = out;
     }
 
     std::complex<double> response(frequency f) const {

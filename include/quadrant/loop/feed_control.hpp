@@ -41,6 +41,15 @@ concept control_boxes = requires(B b, const axis_motion<real_of<decltype(B::law)
                   real_of<decltype(B::law)>>;
 };
 
+/// What the verb `retune` of a feed_control asks of its slots, beside what every sample asks.
+template <class B>
+concept retunable_control_boxes = control_boxes<B> && requires {
+    requires retunable_law<decltype(B::law)>;
+    requires retunable<decltype(B::friction)>;
+    requires retunable<decltype(B::limit)>;
+    requires retunable<decltype(B::dac)>;
+};
+
 namespace detail {
 template <class Law> struct preview_of { using type = no_preview<axis_motion<real_of<Law>>>; };
 template <class Law>
@@ -118,6 +127,9 @@ template <signal_tag Command, class Real> struct feed_control_wires {
 /// A law with a lead is asked so much later: wire.reference, which is what is due now, is what came in
 /// most_lead samples ago.
 /// State: that of the boxes. `reset`: at rest at zero; `settle(x, u)`: at rest at x, held by u.
+/// `retune(next)`: other parameters from the next step on, each box as its own retune says. What friction and
+/// gains change goes into what holds the axis in the law: the last step, done once more, would give the same
+/// command.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
 /// Cost: that of the boxes. limited() tells that the command was clipped; the law learns it.
 template <control_boxes Boxes> struct feed_control {
@@ -171,6 +183,15 @@ template <control_boxes Boxes> struct feed_control {
         wire.limited = detail::settled(box.limit, hold);
         wire.command = detail::settled(box.dac, wire.limited);
         fault = false;
+    }
+    void retune(const Boxes& next) noexcept requires retunable_control_boxes<Boxes> {
+        detail::retune(box.friction, next.friction);
+        detail::retune(box.limit, next.limit);
+        detail::retune(box.dac, next.dac);
+        wire.friction = detail::foreseen(box.friction, wire.reference_velocity);
+        wire.feedback = wire.wanted - wire.friction;
+        box.law.retune(next.law, {wire.reference, wire.reference_velocity, wire.reference_acceleration},
+                       wire.measured, wire.measured_velocity, wire.feedback);
     }
     void reset() noexcept {
         std::apply([](auto&... each) { (each.reset(), ...); }, boxes(box));

@@ -22,6 +22,9 @@ namespace quadrant {
 /// positive in the direction of positive motion.
 /// State: that of Q, n forces; `reset` leaves zero; `settle(a)` the state of a constant a without command and
 /// friction.
+/// `retune(next)`: another corner, mass or force constant from the next step on; the force is off by b0'
+/// (f'[k] - f[k-1]) - b0 (f[k] - f[k-1]) from what it would have been, f = M a - kf u + friction, f' with the
+/// new numbers, b0 the first coefficient of Q.
 /// Range: 0 < corner < half the sampling rate; m < n. An offset Z of the sensor becomes a force M Z.
 /// NaN and infinities in any argument: holds the last force, keeps the state, raises faulted().
 /// Throws "ferraris_force_estimator.<field> = ...: must ..." for period, mass, force_constant, corner.
@@ -47,7 +50,7 @@ public:
     using state = typename low_pass::state;
 
     ferraris_force_estimator(const parameters& p, duration period)
-        : given_(checked(p, period)), mass_(in_real<Real>(p.mass)),
+        : given_(checked(p, period)), period_(period), mass_(in_real<Real>(p.mass)),
           force_constant_(in_real<Real>(p.force_constant)),
           q_(low_pass::of(bilinear_differences(q_filter<Order, NumeratorOrder>(p.corner), period), period)) {}
 
@@ -59,6 +62,14 @@ public:
         const value force = mass_ * acceleration;
         q_.settle(force);
         if (finite(force)) last_ = force;
+    }
+
+    void retune(const ferraris_force_estimator& next) noexcept {
+        q_.retune(next.q_); // of another period: raises its fault
+        if (next.period_ != period_) return;
+        given_ = next.given_;
+        mass_ = next.mass_;
+        force_constant_ = next.force_constant_;
     }
 
     /// The force as a command, to be subtracted from the wanted one.
@@ -79,6 +90,7 @@ private:
     }
 
     parameters given_;
+    duration period_;
     quantity<si::mass, Real> mass_;
     gain_of<signal::force, Command, Real> force_constant_;
     low_pass q_;

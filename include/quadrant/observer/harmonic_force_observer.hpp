@@ -29,6 +29,8 @@ namespace quadrant {
 /// positive.
 /// State: position, velocity, two numbers per harmonic in the unit of the command; `reset`: at rest at zero, no
 /// force; `settle(x)`: at rest at x, no force.
+/// `retune(next)`: other frequencies, plant or gains from the next step on; all states stay, so each harmonic
+/// goes on from its place and size. Jump: what the new model turns and corrects differently in one period.
 /// Range: 0 < w_i / 2 pi < half the sampling rate, all different; A > 0 with placed poles. The observer alone
 /// is stable, checked here; with the loop around it and the axis' delay it need not be: equal poles below some
 /// 110 1/s couple with the position loop of [Jamaludin2008], shifted ones do not. With many harmonics give
@@ -153,6 +155,17 @@ public:
         state_ = state{.position = position};
         innovation_ = argument();
         out_.reset();
+    }
+
+    void retune(const harmonic_force_observer& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto off = innovation_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        innovation_ = off;
+        out_ = out;
     }
 
     value harmonic(std::size_t i) const noexcept { return state_.in_phase[i]; } ///< one of them, now

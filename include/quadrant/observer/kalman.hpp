@@ -27,6 +27,8 @@ namespace quadrant {
 /// agree. With a delayed axis feed it the delayed command (`delay_line`).
 /// State: position, velocity, force; `reset`: at rest at zero; `settle(x)`: at rest at x, nothing pushes or
 /// drives; `settle(x, v)`: moving at v, driven against viscous friction by a force.
+/// `retune(next)`: another model or other noise from the next step on, the estimates stay; jump: what the new
+/// model predicts differently over one period, and (K' - K) times the innovation.
 /// Range: encoder_noise and drift > 0 (a quantizer's noise: step / sqrt(12), white while some steps are crossed
 /// per period); their ratio sets the bandwidth(). In float up to 0.1 m with steps of 0.1 um.
 /// NaN and infinities in encoder or command: holds the last velocity, keeps the state, raises faulted().
@@ -115,6 +117,17 @@ public:
         state_ = {position, velocity, held};
         innovation_ = argument();
         out_.reset(velocity);
+    }
+
+    void retune(const kalman& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto off = innovation_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        innovation_ = off;
+        out_ = out;
     }
 
     const argument& position() const noexcept { return state_.position; }

@@ -20,6 +20,8 @@ namespace quadrant {
 /// it: with friction overrated, or a coarse encoder, the axis then hunts at rest.
 /// State: stiffness z, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been
 /// applied for ever without error.
+/// `retune(next)`: other friction or correction from the next step on; z stays as a force, as far as the new
+/// breakaway level bears it, as that of `lugre`.
 /// Range: friction as `lugre`; correction >= 0, in 1/s (0: only the model).
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "lugre_observer.correction = ...: must ...", and what `lugre` throws.
@@ -81,6 +83,15 @@ public:
         if (!finite(v, u)) return out_.raise();
         state_.force = bent;
         out_.reset(u);
+    }
+
+    void retune(const lugre_observer& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const value most = next.curve_.breakaway(), bent = limited_to(state_.force, most);
+        const auto out = out_;
+        *this = next;
+        state_.force = bent;
+        out_ = out;
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

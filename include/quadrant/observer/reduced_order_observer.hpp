@@ -20,6 +20,8 @@ namespace quadrant {
 /// command that acts at this sample (the last one, // z^-1). d is positive in the direction of positive motion.
 /// State: velocity, last position and acceleration; `reset`: at rest at zero; `settle(x)`: at rest at x;
 /// `settle(x, v)`: moving at v, x was the last sample.
+/// `retune(next)`: another corner or model from the next step on; v is off by at most the change of 2 h / (1 +
+/// h), h = pi corner T, times |(x - x')/T - v' - T (a + a')/4| (' = one sample before).
 /// Range: 0 < corner < half the sampling rate. An offset Z of the acceleration leaves Z / l1 in v: calibrate it
 /// (`analysis/ferraris_calibration.hpp`). The disturbance is not filtered: `ferraris_force_estimator`.
 /// NaN and infinities in any argument: holds the last velocity, keeps the state, raises faulted().
@@ -82,6 +84,15 @@ public:
         if (!finite(position, velocity, d)) return out_.raise();
         state_ = {position, velocity, acceleration(), d};
         out_.reset(velocity);
+    }
+
+    void retune(const reduced_order_observer& next) noexcept {
+        if (next.period_ != period_) return out_.raise();
+        const auto kept = state_;
+        const auto out = out_;
+        *this = next;
+        state_ = kept;
+        out_ = out;
     }
 
     const value& velocity() const noexcept { return state_.velocity; }
