@@ -14,6 +14,7 @@ using filter = notch<signal::voltage>;
 #else
 class filter {
 public:
+    using input = signal::voltage;
     using value = quantity_of<signal::voltage>;
     struct parameters {
         double share = 1;

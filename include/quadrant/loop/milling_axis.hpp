@@ -23,11 +23,22 @@ template <class D>
 concept fed_the_last_applied = requires {
     requires D::takes_last_applied;
 };
+/// A disturbance box that is fed the measured acceleration and the command that acts at this sample, and says
+/// so; `command()` is its estimate in units of the command. The axis is then called with the acceleration.
+template <class D, class Command, class Real>
+concept fed_the_acceleration = requires(D d, quantity_of<signal::acceleration, Real> a,
+                                        quantity_of<Command, Real> u) {
+    requires D::takes_acceleration;
+    d(a, u);
+    d.settle(a, u);
+    { d.command() } -> std::same_as<quantity_of<Command, Real>>;
+};
 /// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either
 /// of two inputs, d(measured, u), which then tells which u it is fed (`fed_the_wish`, `fed_the_last_applied`),
-/// or of one, which `absent` is.
+/// or of one, which `absent` is; or of acceleration and command (`fed_the_acceleration`).
 template <class D, class Command, class Real>
 concept observes_disturbance = maps<D, signal::position, Command, Real> ||
+    fed_the_acceleration<D, Command, Real> ||
     ((fed_the_wish<D, Command, Real> ||
       fed_the_last_applied<D>)&&requires(D d, quantity_of<signal::position, Real> measured,
                                          quantity_of<Command, Real> u) {
@@ -78,7 +89,8 @@ template <class B>
 concept shiftable_milling_boxes = milling_boxes<B> && requires {
     requires shiftable<decltype(B::reference_velocity), signal::position, real_of_boxes<B>>;
     requires shiftable<decltype(B::measured_velocity), signal::position, real_of_boxes<B>>;
-    requires shiftable<decltype(B::disturbance), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::disturbance), signal::position, real_of_boxes<B>> ||
+        fed_the_acceleration<decltype(B::disturbance), command_of<B>, real_of_boxes<B>>; // knows no place
     requires shiftable<decltype(B::travel), signal::position, real_of_boxes<B>>;
 };
 
@@ -128,7 +140,9 @@ template <signal_tag Command, class Real> struct milling_wires {
 /// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction
 /// enters behind the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A
 /// `disturbance_observer` is fed this cycle's wish, a `harmonic_force_observer` what acted since the sample
-/// before. A memory box gives what is added to the position error.
+/// before, a `ferraris_force_estimator` the measured acceleration and what acts at this sample, less the
+/// friction that was fed forward: axis(reference, ahead, measured, acceleration). A memory box gives what is
+/// added to the position error.
 /// State: that of the boxes. `reset` as new (at rest at zero); `settle(x, u)` at rest at x, held by u (as far
 /// as the limit allows), which the observer then carries, or the PI, and nothing learnt: the next sample at the
 /// same place gives u again. `track`, `retune`, `shift`: enabled without a bump, other parameters while it
@@ -147,18 +161,33 @@ template <milling_boxes Boxes> struct milling_axis {
     static_assert(!multi_lane<real> || steps_together<real>, "an axis holds as a whole: lanes_in_step");
 
     using motion = axis_motion<real>; ///< what the trajectory asks for at one moment
+    /// True where the disturbance box wants the measured acceleration: every call then has to give it.
+    static constexpr bool takes_acceleration =
+        fed_the_acceleration<decltype(Boxes::disturbance), command_of<Boxes>, real>;
 
     Boxes box;
     wires wire{};
     bool fault = false;    ///< a sample was not finite; cleared by reset and settle
     bool tracking = false; ///< the last sample was a `track`: nothing is learnt
 
-    [[gnu::always_inline]] command operator()(const motion& reference, position measured) noexcept {
+    [[gnu::always_inline]] command operator()(const motion& reference, position measured) noexcept
+        requires(!takes_acceleration) {
         return step(reference, reference, measured);
     }
     [[gnu::always_inline]] command operator()(const motion& reference, const motion& ahead,
-                                              position measured) noexcept {
+                                              position measured) noexcept requires(!takes_acceleration) {
         return step(reference, ahead, measured);
+    }
+    void
+    operator()(const motion& reference, const motion& ahead,
+               position measured) requires takes_acceleration = delete; // the measured acceleration is missing
+    void operator()(const motion& reference, position measured) requires takes_acceleration =
+        delete; // the motion ahead and the measured acceleration are missing
+    [[gnu::always_inline]] command operator()(const motion& reference, const motion& ahead, position measured,
+                                              acceleration accelerated) noexcept requires takes_acceleration {
+        if (all(finite(accelerated))) return step(reference, ahead, measured, accelerated);
+        fault = true;
+        return wire.command;
     }
 
     void settle(position x, command hold = command()) noexcept {
@@ -183,6 +212,9 @@ template <milling_boxes Boxes> struct milling_axis {
         if constexpr (requires { box.disturbance.settle(x, hold); }) {
             wire.disturbance = -wire.compensated;
             box.disturbance.settle(x, wire.disturbance);
+        } else if constexpr (takes_acceleration) {
+            wire.disturbance = -wire.compensated;
+            box.disturbance.settle(acceleration(), wire.compensated);
         } else
             wire.disturbance = detail::settled(box.disturbance, x);
         wire.linear = wire.compensated + wire.disturbance;
@@ -192,12 +224,18 @@ template <milling_boxes Boxes> struct milling_axis {
     /// Output tracking, instead of a step, while the drive is off (applied = 0) or another controller has the
     /// axis: estimators, friction and observer see what happens and what was applied, the memory has learnt
     /// nothing, and the integral is what makes the next step give `applied` if no wire changes till then.
-    void track(const motion& reference, position measured, command applied) noexcept {
-        track(reference, reference, measured, applied);
+    void track(const motion& reference, position measured, command applied) noexcept
+        requires(!takes_acceleration) {
+        track(reference, reference, measured, applied, acceleration());
     }
-    void track(const motion& reference, const motion& ahead, position measured, command applied) noexcept {
+    void track(const motion& reference, const motion& ahead, position measured, command applied) noexcept
+        requires(!takes_acceleration) {
+        track(reference, ahead, measured, applied, acceleration());
+    }
+    void track(const motion& reference, const motion& ahead, position measured, command applied,
+               acceleration accelerated) noexcept {
         if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured,
-                        applied))) {
+                        applied, accelerated))) {
             fault = true;
             return;
         }
@@ -212,7 +250,7 @@ template <milling_boxes Boxes> struct milling_axis {
         wire.travel = box.travel(ahead.position);
         wire.friction = box.friction(wire.travel);
         wire.compensated = applied - wire.friction;
-        wire.disturbance = estimate(measured, wire.compensated + wire.disturbance, acted);
+        wire.disturbance = estimate(measured, wire.compensated + wire.disturbance, acted, accelerated);
         if constexpr (requires { box.disturbance.applied(wire.compensated); })
             box.disturbance.applied(wire.compensated);
         if constexpr (requires { box.disturbance.disturbance(); })
@@ -254,7 +292,7 @@ template <milling_boxes Boxes> struct milling_axis {
     void shift(position by) noexcept requires shiftable_milling_boxes<Boxes> {
         box.reference_velocity.shift(by);
         box.measured_velocity.shift(by);
-        box.disturbance.shift(by);
+        if constexpr (!takes_acceleration) box.disturbance.shift(by);
         box.travel.shift(by);
         wire.reference += by;
         wire.measured += by;
@@ -276,7 +314,8 @@ template <milling_boxes Boxes> struct milling_axis {
 private:
     /// One function with all boxes in it, whatever the compiler would have left as calls.
     [[gnu::always_inline, gnu::flatten]] inline command step(const motion& reference, const motion& ahead,
-                                                             position measured) noexcept {
+                                                             position measured,
+                                                             acceleration accelerated = {}) noexcept {
         if (!all(finite(reference.position, ahead.position, ahead.velocity, ahead.acceleration, measured))) {
             fault = true;
             return wire.command;
@@ -290,7 +329,7 @@ private:
         wire.inertia = box.inertia(ahead.acceleration);
         wire.drag = box.drag(ahead.velocity);
         wire.linear = wire.feedback + wire.inertia + wire.drag;
-        wire.disturbance = estimate(measured, wire.linear, last_applied());
+        wire.disturbance = estimate(measured, wire.linear, last_applied(), accelerated);
         wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
         wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
         wire.friction = box.friction(wire.travel);
@@ -329,9 +368,13 @@ private:
     /// wires of this sample.
     command last_applied() const noexcept { return wire.compensated + (wire.command - wire.wanted); } // z^-1
     [[gnu::always_inline, gnu::flatten]] inline command
-    estimate(position measured, [[maybe_unused]] command wish, [[maybe_unused]] command acted) noexcept {
+    estimate(position measured, [[maybe_unused]] command wish, [[maybe_unused]] command acted,
+             [[maybe_unused]] acceleration accelerated) noexcept {
         using observer = decltype(box.disturbance);
-        if constexpr (fed_the_last_applied<observer>)
+        if constexpr (takes_acceleration) {
+            box.disturbance(accelerated, acted);
+            return box.disturbance.command();
+        } else if constexpr (fed_the_last_applied<observer>)
             return box.disturbance(measured, acted);
         else if constexpr (fed_the_wish<observer, command_of<Boxes>, real>)
             return box.disturbance(measured, wish);

@@ -43,8 +43,9 @@ template <signal_tag Command> struct xy_signals {
         return detail::is_sensible((detail::magnitude_of(r.x) + detail::magnitude_of(r.y)) +
                                    (detail::magnitude(y.x.plain()) + detail::magnitude(y.y.plain())));
     }
-    static bool sensible(const commands& u) noexcept {
-        return detail::is_sensible(detail::magnitude(u.x.plain()) + detail::magnitude(u.y.plain()));
+    static bool sensible(const commands& u) noexcept { return sensible_pair(u); }
+    template <class Quantity> static bool sensible_pair(const xy<Quantity>& q) noexcept {
+        return detail::is_sensible(detail::magnitude(q.x.plain()) + detail::magnitude(q.y.plain()));
     }
 };
 
@@ -57,7 +58,7 @@ template <signal_tag Command> struct xy_signals {
 /// order of the memory's sums, the exponential of the lanes).
 /// Source: [Jamaludin2008] chapters 2 to 5; `milling_axis` says which equations.
 /// Ports: motions of both axes and measured positions in, commands out, to act from this sample on; `ahead` as
-/// `milling_axis` has it.
+/// `milling_axis` has it. With a `ferraris_force_estimator` in an axis the measured accelerations as well.
 /// State: that of both axes. `reset`, `settle(at, hold)`, `track`, `retune(next, ahead)`, `shift`: as
 /// `milling_axis`, both at once. `retune` takes a loop that was built beside, out of the servo thread, with the
 /// parameters that are to come. NaN, infinities, and magnitudes whose sum is above 8e59 (SI) in any input:
@@ -74,6 +75,11 @@ public:
     using typename signals::command, typename signals::commands, typename signals::motion,
         typename signals::motions, typename signals::position, typename signals::positions;
     static_assert(milling_boxes<X> && milling_boxes<Y>);
+    /// True where an axis wants the measured acceleration: every call then has to give both.
+    static constexpr bool takes_acceleration =
+        milling_axis<X>::takes_acceleration || milling_axis<Y>::takes_acceleration;
+    using accelerations =
+        xy<quantity_of<signal::acceleration>>; ///< measured; that of an axis that wants none is not read
 
     /// Those of both axes.
     struct parameters {
@@ -82,13 +88,25 @@ public:
     };
     xy_control(const parameters& p, duration period) : x_{.box = {p.x, period}}, y_{.box = {p.y, period}} {}
 
-    [[gnu::always_inline]] commands operator()(const motions& r, const positions& measured) noexcept {
+    [[gnu::always_inline]] commands operator()(const motions& r, const positions& measured) noexcept
+        requires(!takes_acceleration) {
         return (*this)(r, r, measured);
     }
     [[gnu::always_inline]] commands operator()(const motions& r, const motions& ahead,
-                                               const positions& measured) noexcept {
+                                               const positions& measured) noexcept
+        requires(!takes_acceleration) {
         if (!good(r, ahead, measured)) return command_now();
         const command ux = x_(r.x, ahead.x, measured.x), uy = y_(r.y, ahead.y, measured.y);
+        return {.x = on_x(ux), .y = on_y(uy)};
+    }
+    commands operator()(const motions& r, const motions& ahead, const positions& measured,
+                        const accelerations& accelerated) noexcept requires takes_acceleration {
+        if (!good(r, ahead, measured) || !signals::sensible_pair(accelerated)) {
+            fault_ = true;
+            return command_now();
+        }
+        const command ux = given_acceleration(x_, r.x, ahead.x, measured.x, accelerated.x),
+                      uy = given_acceleration(y_, r.y, ahead.y, measured.y, accelerated.y);
         return {.x = on_x(ux), .y = on_y(uy)};
     }
     void settle(const positions& at, const commands& hold = {}) noexcept {
@@ -97,8 +115,15 @@ public:
         y_.settle(at.y, hold.y);
         fault_ = false;
     }
+    void track(const motions& r, const motions& ahead, const positions& measured, const commands& applied,
+               const accelerations& accelerated) noexcept requires takes_acceleration {
+        if (!good(r, ahead, measured) || !sensible(applied) || !signals::sensible_pair(accelerated))
+            return void(fault_ = true);
+        x_.track(r.x, ahead.x, measured.x, applied.x, accelerated.x);
+        y_.track(r.y, ahead.y, measured.y, applied.y, accelerated.y);
+    }
     void track(const motions& r, const motions& ahead, const positions& measured,
-               const commands& applied) noexcept {
+               const commands& applied) noexcept requires(!takes_acceleration) {
         if (!good(r, ahead, measured) || !sensible(applied)) return void(fault_ = true);
         x_.track(r.x, ahead.x, measured.x, applied.x);
         y_.track(r.y, ahead.y, measured.y, applied.y);
@@ -133,6 +158,15 @@ public:
     const milling_axis<Y>& y() const noexcept { return y_; }
 
 private:
+    template <class Axis>
+    static command given_acceleration(Axis& axis, const motion& r, const motion& ahead,
+                                      const position& measured,
+                                      const quantity_of<signal::acceleration>& accelerated) noexcept {
+        if constexpr (Axis::takes_acceleration)
+            return axis(r, ahead, measured, accelerated);
+        else
+            return axis(r, ahead, measured);
+    }
     bool good(const motions& r, const motions& ahead, const positions& measured) noexcept {
         const bool all = sensible(r, measured) && (&r == &ahead || sensible(ahead, {}));
         fault_ = fault_ || !all;

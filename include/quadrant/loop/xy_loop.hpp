@@ -55,6 +55,9 @@ public:
     using motions = typename control_type::motions;
     using positions = typename control_type::positions;
     using commands = typename control_type::commands;
+    static_assert(
+        !requires { requires control_type::takes_acceleration; },
+        "no acceleration is read from this table: close the loop around an xy_control by hand");
     static_assert(std::same_as<commands, typename Table::commands>,
                   "the table takes what the controllers give");
 

@@ -21,7 +21,8 @@ namespace quadrant {
 /// delayed axis: through a `delay_line`) and the friction force, positive against positive motion; d is
 /// positive in the direction of positive motion.
 /// State: that of Q, n forces; `reset` leaves zero; `settle(a)` the state of a constant a without command and
-/// friction.
+/// friction, `settle(a, u)` under a constant command. In the slot `disturbance` of a `milling_axis`: its second
+/// argument is what acts at this sample without the friction that was fed forward, so friction is not in it.
 /// `retune(next)`: another corner, mass or force constant from the next step on; the force is off by b0'
 /// (f'[k] - f[k-1]) - b0 (f[k] - f[k-1]) from what it would have been, f = M a - kf u + friction, f' with the
 /// new numbers, b0 the first coefficient of Q.
@@ -46,6 +47,7 @@ public:
         gain_of<signal::force, Command, number> force_constant; ///< kf > 0
         quantity<hertz_unit, number> corner; ///< wc / (2 pi); 0 < corner < half the sampling rate
     };
+    static constexpr bool takes_acceleration = true; ///< a loop feeds the measured acceleration
     using low_pass = transfer_function<signal::force, signal::force, Order, Real>;
     using state = typename low_pass::state;
 
@@ -58,8 +60,9 @@ public:
         return last_ = q_(mass_ * acceleration - force_constant_ * u + friction);
     }
     void reset() noexcept { settle(argument()); }
-    void settle(argument acceleration) noexcept {
-        const value force = mass_ * acceleration;
+    void settle(argument acceleration) noexcept { settle(acceleration, applied()); }
+    void settle(argument acceleration, applied u) noexcept {
+        const value force = mass_ * acceleration - force_constant_ * u;
         q_.settle(force);
         if (finite(force)) last_ = force;
     }
