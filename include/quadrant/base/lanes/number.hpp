@@ -149,8 +149,9 @@ public:
         for (std::size_t i = 0; i < pieces; ++i) out.piece_[i] = make(i);
         return out;
     }
-    /// N times as many lanes.
+    /// N times as many lanes, and N lanes, of the same instruction set.
     template <std::size_t N> using times = lanes<N * W, Isa>;
+    template <std::size_t N> using of_width = lanes<N, Isa>;
 
     /// Applies `f` to the registers of the arguments: for functions that xsimd and std have under one name.
     template <class F, class... More> static lanes map(F f, const lanes& a, const More&... more) noexcept {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 /// Several numbers of lanes side by side in one wider number: the springs of a friction, the taps of a filter.
 /// Where the wider one fills wider registers, no number goes through memory on its way.
@@ -26,6 +27,73 @@ inline constexpr bool has_doubled = false;
 template <class Wide, class Narrow> Wide doubled(const Narrow& x) noexcept { return x; }
 template <class Narrow, class Wide> Narrow half(const Wide& x, std::size_t) noexcept { return x; }
 #endif
+#ifdef XSIMD_HPP
+/// A register of two numbers to two places, and from two places.
+template <class Narrow> void to_places(const Narrow& x, double* first, double* second) noexcept {
+    const __m128d both = x;
+    _mm_storel_pd(first, both);
+    _mm_storeh_pd(second, both);
+}
+template <class Narrow> Narrow from_places(const double* first, const double* second) noexcept {
+    return Narrow(_mm_set_pd(*second, *first));
+}
+/// The sum of each of two numbers of four lanes.
+template <class Narrow, class Quad> Narrow sums_of_two(const Quad& a, const Quad& b) noexcept {
+#    if XSIMD_WITH_AVX
+    if constexpr (Quad::register_width == 4) {
+        const __m256d x = a.in_register(0), y = b.in_register(0), pairs = _mm256_hadd_pd(x, y);
+        return Narrow(_mm_add_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd(pairs, 1)));
+    }
+#    endif
+    if constexpr (Quad::register_width == 2) {
+        const __m128d x = a.in_register(0) + a.in_register(1), y = b.in_register(0) + b.in_register(1);
+        return Narrow(_mm_add_pd(_mm_unpacklo_pd(x, y), _mm_unpackhi_pd(x, y)));
+    }
+}
+inline constexpr bool has_places = true;
+#else
+inline constexpr bool has_places = false;
+template <class Narrow> void to_places(const Narrow&, double*, double*) noexcept {}
+template <class Narrow> Narrow from_places(const double*, const double*) noexcept { return Narrow(); }
+template <class Narrow, class Quad> Narrow sums_of_two(const Quad&, const Quad&) noexcept { return Narrow(); }
+#endif
+
+/// Two lanes in one register.
+template <class Real>
+inline constexpr bool is_pair = has_places && lane_count<Real> == 2 && Real::register_width == 2;
+
+/// Each lane to a place of its own: at(i) is that of lane i.
+template <class Real, class At> [[gnu::always_inline]] inline void scatter(const Real& x, At&& at) noexcept {
+    if constexpr (is_pair<Real>)
+        to_places(x.in_register(0), at(std::size_t(0)), at(std::size_t(1)));
+    else
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) *at(i) = x[i];
+}
+/// Each lane from a place of its own.
+template <class Real, class At> [[gnu::always_inline]] inline Real gathered(At&& at) noexcept {
+    if constexpr (is_pair<Real>)
+        return Real::from_registers([&](std::size_t) {
+            return from_places<typename Real::piece>(at(std::size_t(0)), at(std::size_t(1)));
+        });
+    else {
+        std::array<double, lane_count<Real>> each;
+        for (std::size_t i = 0; i < each.size(); ++i) each[i] = *at(i);
+        return Real(each);
+    }
+}
+/// The sum of four numbers in each lane, one row of four for each.
+template <class Real, class Quad>
+[[gnu::always_inline]] inline Real row_sums(const std::array<Quad, lane_count<Real>>& rows) noexcept {
+    if constexpr (is_pair<Real> && (Quad::register_width == 2 || Quad::register_width == 4))
+        return Real::from_registers(
+            [&](std::size_t) { return sums_of_two<typename Real::piece>(rows[0], rows[1]); });
+    else {
+        std::array<double, lane_count<Real>> each;
+        for (std::size_t i = 0; i < each.size(); ++i)
+            each[i] = (rows[i][0] + rows[i][1]) + (rows[i][2] + rows[i][3]);
+        return Real(each);
+    }
+}
 } // namespace detail
 
 /// The lanes of x, N times one behind the other.
