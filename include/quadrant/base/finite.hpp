@@ -19,6 +19,9 @@ template <carries_partials Dual> constexpr bool is_finite(const Dual& x) noexcep
 template <multi_lane Lanes> auto is_finite(const Lanes& x) noexcept {
     return finite_lanes(x);
 } // by its type's namespace
+template <class Quantity> inline constexpr bool holds_never = false;
+template <steps_together Real> inline constexpr bool holds_never<Real> = true;
+template <class Unit, steps_together Real> inline constexpr bool holds_never<quantity<Unit, Real>> = true;
 template <class Real> constexpr const Real& bare(const Real& x) noexcept { return x; }
 template <class Unit, class Real>
 constexpr const Real& bare(const boost::units::quantity<Unit, Real>& x) noexcept {
@@ -47,13 +50,16 @@ template <class Value> constexpr const Value& only_where(in_every_lane<true>, co
     return x;
 }
 
-/// The last good output of a block and its fault flag; for lanes, one of each in every lane.
-template <class Quantity> class held_output {
+/// The last good output of a block and its fault flag; for lanes, one of each in every lane. `Asked`: the block
+/// itself asks for the last output. One that does not, and whose lanes step together and so never hold, keeps none.
+template <class Quantity, bool Asked = true> class held_output {
+    static constexpr bool keeps = Asked || !detail::holds_never<Quantity>;
+
 public:
     using mask = mask_of<Quantity>; ///< bool, but for lanes
 
     constexpr Quantity keep(Quantity y) noexcept {
-        last_ = y;
+        if constexpr (keeps) last_ = y;
         return y;
     }
     /// Keeps the lanes of y that are good; the others hold their last output and raise their fault.
@@ -71,6 +77,10 @@ public:
     constexpr Quantity hold() noexcept {
         fault_ = mask(true);
         return last_;
+    }
+    /// The last output is higher by so much, in the good lanes; the others raise their fault.
+    constexpr void shift(const auto& good, Quantity by) noexcept {
+        if constexpr (keeps) keep(good, last_ + by);
     }
     constexpr void raise() noexcept { fault_ = mask(true); }
     /// Raises the fault where `bad` is true.
@@ -90,7 +100,7 @@ public:
     constexpr bool faulted() const noexcept { return any(fault_); }
     /// Which lanes have a fault; a bool for a number without lanes.
     constexpr const mask& faulted_lanes() const noexcept { return fault_; }
-    constexpr const Quantity& last() const noexcept { return last_; }
+    constexpr const Quantity& last() const noexcept requires keeps { return last_; }
 
 private:
     Quantity last_{};

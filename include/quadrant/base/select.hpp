@@ -171,12 +171,29 @@ template <class Value> constexpr Value smaller(const Value& a, const std::type_i
 template <class Value> constexpr Value larger(const Value& a, const std::type_identity_t<Value>& b) noexcept {
     return select(less(a, b), b, a);
 }
+namespace detail {
+template <class Real> constexpr const Real& number_in(const Real& x) noexcept { return x; }
+template <class Unit, class Real> constexpr const Real& number_in(const quantity<Unit, Real>& x) noexcept {
+    return x.value();
+}
+template <class Value, class Real> constexpr Value with_number(const Real& x) noexcept {
+    if constexpr (std::is_same_v<Value, Real>)
+        return x;
+    else
+        return Value::from_value(x);
+}
+} // namespace detail
 /// x within its bounds: high above high, low below low, else x, a NaN too.
 template <class Value>
 constexpr Value limited_to(const Value& x, const std::type_identity_t<Value>& low,
                            const std::type_identity_t<Value>& high) noexcept {
     if constexpr (detail::single<Value, Value>)
         return x > high ? high : x < low ? low : x; // no bound is read that is not needed
+    else if constexpr (requires {
+                           clipped_lanes(detail::number_in(x), detail::number_in(low), detail::number_in(high));
+                       })
+        return detail::with_number<Value>(
+            clipped_lanes(detail::number_in(x), detail::number_in(low), detail::number_in(high)));
     else
         return select(greater(x, high), high, select(less(x, low), low, x));
 }

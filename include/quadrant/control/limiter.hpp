@@ -86,7 +86,7 @@ private:
     parameters given_;
     value low_, high_;
     mask_of<Real> limited_{};
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

@@ -60,7 +60,7 @@ public:
 private:
     parameters given_;
     gain_of<Out, In, Real> gain_;
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

@@ -63,9 +63,9 @@ private:
         const auto rounds = greater(step_, value());
         if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
             if (none(rounds)) return x;
-        if constexpr (steps_together<
-                          Real>) { // off by a step where a division would meet the middle between two of them
-            const Real whole = round(Real(x * inverse_step_));
+        // Off by a step where a division would meet the middle between two of them.
+        if constexpr (steps_together<Real>) {
+            const Real whole = nearest(Real(x * inverse_step_));
             return select(rounds, value(whole * step_), x);
         } else
             return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
@@ -74,7 +74,7 @@ private:
     parameters given_;
     value step_;
     decltype(Real(1) / value()) inverse_step_ = Real(1) / step_;
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

@@ -71,7 +71,7 @@ private:
     duration period_;
     quantity<si::frequency, Real> rate_;
     state state_;
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

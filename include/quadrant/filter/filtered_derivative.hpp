@@ -97,7 +97,7 @@ private:
     Real lose_; ///< take T: a ramp comes out as it is
     quantity<si::frequency, Real> take_;
     state state_;
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

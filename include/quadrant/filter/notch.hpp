@@ -89,7 +89,7 @@ public:
     void shift(value by) noexcept {
         const auto good = finite(by);
         set_where(good, state_.input, state_.input + by);
-        out_.keep(good, out_.last() + by);
+        out_.shift(good, by);
     }
 
     std::complex<double> response(frequency f) const {
@@ -105,7 +105,7 @@ private:
     duration period_;
     second_order_coefficients<Real> coefficients_;
     state state_;
-    held_output<value> out_;
+    held_output<value, false> out_;
 };
 
 } // namespace quadrant

@@ -55,12 +55,11 @@ template <std::size_t W, class Isa>
 [[gnu::always_inline]] inline lanes<W, Isa> decayed(const lanes<W, Isa>& x) noexcept {
     using number = lanes<W, Isa>;
     if constexpr (W == 1) return number(std::exp(-(x[0] > 708 ? 708 : x[0])));
-    const number most(708), shift(0x1.8p52);
-    const number y = -select(less(most, x), most, x);
-    const number shifted = detail::rounded_here<number>(y * number(1.442695040888963407359924681) + shift);
+    const number shift(0x1.8p52), y = clipped_above(x, number(708));
+    const number shifted = detail::rounded_here<number>(shift - y * number(1.442695040888963407359924681));
     const number k = shifted - shift;
-    const number r = (y - k * number(.69314718055966295651160180568695068359375)) -
-                     k * number(.28235290563031577122588448175013436025525412068e-12);
+    const number r = (k * number(-.69314718055966295651160180568695068359375) - y) +
+                     k * number(-.28235290563031577122588448175013436025525412068e-12);
     const number r2 = r * r, r4 = r2 * r2;
     const auto term = [&r](double low, double high) { return number(low) + r * number(high); };
     const number low = term(0.5, 0.166666666666666851703837),
@@ -140,6 +139,17 @@ template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) 
 template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) noexcept {
     // Away from zero by the largest number below a half, then towards zero: as std::round, bit for bit.
     return trunc(x + turned_as(lanes<W, Isa>(0x1.fffffffffffffp-2), x));
+}
+/// The nearest whole number, halves to the even one; where a register does it in one instruction, else as round.
+template <std::size_t W, class Isa> lanes<W, Isa> nearest(const lanes<W, Isa>& x) noexcept {
+    const auto to_nearest = [](const auto& v) {
+        using std::nearbyint;
+        return nearbyint(v);
+    };
+    if constexpr (isa::rounds_in_registers<Isa>)
+        return lanes<W, Isa>::map(to_nearest, x);
+    else
+        return round(x);
 }
 /// As std::trunc.
 template <std::size_t W, class Isa> lanes<W, Isa> trunc(const lanes<W, Isa>& x) noexcept {

@@ -122,6 +122,16 @@ public:
     friend lanes scaled_by_bits(const lanes& p, const lanes& shifted) noexcept {
         return map([](const piece& x, const piece& k) { return detail::scaled_by_bits(x, k); }, p, shifted);
     }
+    /// high above high, low below low, else x, a NaN too.
+    friend lanes clipped_lanes(const lanes& x, const lanes& low, const lanes& high) noexcept {
+        const lanes under =
+            map([](const piece& h, const piece& v) { return detail::not_above(h, v); }, high, x);
+        return map([](const piece& l, const piece& v) { return detail::not_below(l, v); }, low, under);
+    }
+    /// most above most, else x, a NaN too.
+    friend lanes clipped_above(const lanes& x, const lanes& most) noexcept {
+        return map([](const piece& m, const piece& v) { return detail::not_above(m, v); }, most, x);
+    }
     friend lanes select(const mask& choice, const lanes& one, const lanes& other) noexcept {
         return chosen(choice, one, other);
     }

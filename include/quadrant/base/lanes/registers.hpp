@@ -157,6 +157,21 @@ xsimd::batch<double, Set> scaled_by_bits(const xsimd::batch<double, Set>& p,
                                                           (xsimd::bitwise_cast<whole>(shifted) << 52));
 }
 #endif
+#ifdef XSIMD_HPP
+/// x, or the bound that it lies beyond; x where it is no number: the processor gives the second one then.
+template <class Set>
+xsimd::batch<double, Set> not_above(const xsimd::batch<double, Set>& most,
+                                    const xsimd::batch<double, Set>& x) noexcept {
+    return xsimd::min(most, x);
+}
+template <class Set>
+xsimd::batch<double, Set> not_below(const xsimd::batch<double, Set>& least,
+                                    const xsimd::batch<double, Set>& x) noexcept {
+    return xsimd::max(least, x);
+}
+#endif
+constexpr double not_above(double most, double x) noexcept { return x > most ? most : x; }
+constexpr double not_below(double least, double x) noexcept { return x < least ? least : x; }
 inline double bits_joined(double a, double b) noexcept {
     return bits_as<double>(bits_as<std::uint64_t>(a) | bits_as<std::uint64_t>(b));
 }
