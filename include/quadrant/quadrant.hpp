@@ -55,6 +55,7 @@
 #include "filter/butterworth.hpp"
 #include "filter/differences.hpp"
 #include "filter/discretize.hpp"
+#include "filter/edge_velocity.hpp"
 #include "filter/filtered_derivative.hpp"
 #include "filter/lowpass.hpp"
 #include "filter/notch.hpp"

@@ -189,6 +189,10 @@ inline const std::tuple blocks{
     entry{
         "filtered_derivative", 0.125,
         []<class R>(values<R>& p) { return filtered_derivative<s::position, s::velocity, R>({p(150_Hz)}, T); }},
+    entry{"edge_velocity", 0.125,
+          []<class R>(values<R>& p) {
+              return edge_velocity<s::position, s::velocity, R>({p(0.3_mm), 1_ms, 10_ms}, T);
+          }},
     entry{"two_sample_derivative", 0.125,
           []<class R>(values<R>&) { return two_sample_derivative<s::position, s::velocity, R>({}, T); }},
     entry{"notch", 64,

@@ -5,6 +5,7 @@
 #include <quadrant/filter/backward_difference.hpp>
 #include <quadrant/filter/butterworth.hpp>
 #include <quadrant/filter/discretize.hpp>
+#include <quadrant/filter/edge_velocity.hpp>
 #include <quadrant/filter/filtered_derivative.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
@@ -107,6 +108,24 @@ picture draw_filtered_derivative() {
                       "filtered_derivative", filtered_derivative<s::position, s::velocity>{{150_Hz}, T});
 }
 
+picture draw_edge_velocity() {
+    edge_velocity<s::position, s::velocity> by_edges({1_um, 5_ms, 100_ms}, T);
+    filtered_derivative<s::position, s::velocity> by_difference({150_Hz}, T);
+    curve edges("edge_velocity, window 5 ms"), difference("filtered_derivative, 150 Hz"),
+        truth("truth", dashed);
+    double x = 0;
+    for (int k = 0; k < 400; ++k) {
+        const double t = k * T.value(), v = t < 0.12 ? 0.3e-3 * std::sin(2 * std::numbers::pi * 5 * t) : 0;
+        x += v * T.value();
+        const auto reading = std::round(x * 1e6) * 1_um;
+        edges.add(1e3 * t, 1e3 * by_edges(reading).value());
+        difference.add(1e3 * t, 1e3 * by_difference(reading).value());
+        truth.add(1e3 * t, 1e3 * v);
+    }
+    return of("Velocity of an axis that swings and stops, from an encoder of 1 um at 2 kHz",
+              {over("time [ms]", "velocity [mm/s]", {difference, edges, truth})});
+}
+
 picture draw_discretize() {
     const double w = 2 * std::numbers::pi * 330, zeta = 0.02;
     const continuous<2> mode{{w * w}, {w * w, 2 * zeta * w, 1}};
@@ -136,6 +155,7 @@ family filters() {
             {"butterworth", draw_butterworth},
             {"transfer_function", draw_transfer_function},
             {"backward_difference", draw_backward_difference},
+            {"edge_velocity", draw_edge_velocity},
             {"two_sample_derivative", draw_two_sample_derivative},
             {"filtered_derivative", draw_filtered_derivative},
             {"discretize", draw_discretize}};

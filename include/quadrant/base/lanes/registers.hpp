@@ -165,13 +165,13 @@ xsimd::batch<double, Set> not_above(const xsimd::batch<double, Set>& most,
     return xsimd::min(most, x);
 }
 template <class Set>
-xsimd::batch<double, Set> not_below(const xsimd::batch<double, Set>& least,
+xsimd::batch<double, Set> not_below(const xsimd::batch<double, Set>& lowest,
                                     const xsimd::batch<double, Set>& x) noexcept {
-    return xsimd::max(least, x);
+    return xsimd::max(lowest, x);
 }
 #endif
 constexpr double not_above(double most, double x) noexcept { return x > most ? most : x; }
-constexpr double not_below(double least, double x) noexcept { return x < least ? least : x; }
+constexpr double not_below(double lowest, double x) noexcept { return x < lowest ? lowest : x; }
 inline double bits_joined(double a, double b) noexcept {
     return bits_as<double>(bits_as<std::uint64_t>(a) | bits_as<std::uint64_t>(b));
 }
