@@ -111,6 +111,16 @@ requires(!detail::single<A, B>) constexpr auto equal(const quantity<Unit, A>& a,
                                                      const quantity<Unit, B>& b) noexcept {
     return equal(a.value(), b.value());
 }
+/// a != b, lane by lane.
+template <class A, class B>
+requires detail::single<A, B>
+constexpr bool differs(const A& a, const B& b) noexcept { return a != b; }
+/// The same for quantities of one unit.
+template <class Unit, class A, class B>
+requires(!detail::single<A, B>) constexpr auto differs(const quantity<Unit, A>& a,
+                                                       const quantity<Unit, B>& b) noexcept {
+    return differs(a.value(), b.value());
+}
 /// a > b, lane by lane.
 template <class A, class B> constexpr auto greater(const A& a, const B& b) noexcept { return less(b, a); }
 /// a >= b, lane by lane.

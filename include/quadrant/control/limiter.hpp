@@ -55,8 +55,12 @@ public:
     value operator()(value x) noexcept {
         const auto good = finite(x);
         if (none(good)) return out_.hold();
-        set_where(good, limited_, outside(x, low_, high_));
-        return out_.keep(good, clipped(x));
+        const value y = clipped(x);
+        if constexpr (multi_lane<Real>)
+            set_where(good, limited_, differs(y, x));
+        else
+            set_where(good, limited_, outside(x, low_, high_));
+        return out_.keep(good, y);
     }
     void reset() noexcept {
         limited_ = mask_of<Real>();

@@ -200,7 +200,7 @@ private:
         if constexpr (fine && std::same_as<AntiWindup, back_calculation>)
             return state_.excess != value();
         else
-            return !equal(integral, free);
+            return differs(integral, free);
     }
 
     parameters given_;

@@ -48,6 +48,7 @@ public:
     }
     void retune(const quantizer& next) noexcept { ///< J <= half of both steps
         step_ = next.step_;
+        rounds_ = next.rounds_;
         inverse_step_ = next.inverse_step_;
         given_ = next.given_;
     }
@@ -60,19 +61,19 @@ public:
 private:
     value rounded(value x) const noexcept {
         using std::round;
-        const auto rounds = greater(step_, value());
         if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
-            if (none(rounds)) return x;
+            if (none(rounds_)) return x;
         // Off by a step where a division would meet the middle between two of them.
         if constexpr (steps_together<Real>) {
             const Real whole = nearest(Real(x * inverse_step_));
-            return select(rounds, value(whole * step_), x);
+            return select(rounds_, value(whole * step_), x);
         } else
-            return select(rounds, value(Real(round(Real(x / step_))) * step_), x);
+            return select(rounds_, value(Real(round(Real(x / step_))) * step_), x);
     }
 
     parameters given_;
     value step_;
+    mask_of<Real> rounds_ = greater(step_, value()); ///< where there is a step at all
     decltype(Real(1) / value()) inverse_step_ = Real(1) / step_;
     held_output<value, false> out_;
 };

@@ -5,6 +5,7 @@
 #include "../memory/repetitive_in_step.hpp"
 #include "../observer/disturbance_observer.hpp"
 #include "milling_axis_boxes.hpp"
+#include "velocity_pair.hpp"
 
 #include <array>
 #include <cstddef>
@@ -19,6 +20,12 @@ namespace quadrant {
 using xy_number = lanes_in_step<2>;
 
 namespace detail {
+template <steps_together Real> struct velocity_boxes<Real> {
+    velocity_boxes(const auto& p, duration period) : estimators({{p.estimator_corner}, p.notch}, period) {}
+
+    velocity_pair<Real> estimators;
+};
+
 template <class Block> struct in_lanes_of;
 template <signal_tag In, signal_tag Out> struct in_lanes_of<absent<In, Out, double>> {
     using type = absent<In, Out, xy_number>;

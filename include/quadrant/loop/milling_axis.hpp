@@ -46,16 +46,33 @@ concept observes_disturbance = maps<D, signal::position, Command, Real> ||
         d.reset();
     });
 
+/// Boxes that estimate the velocities of reference and measured position in one box, `estimators`: those of an
+/// axis in lanes (`velocity_pair`).
+template <class B>
+concept estimates_in_pair = requires(B b, quantity_of<signal::position, real_of_boxes<B>> x) {
+    { b.estimators(x, x).reference } -> std::convertible_to<quantity_of<signal::velocity, real_of_boxes<B>>>;
+    { b.estimators(x, x).measured } -> std::convertible_to<quantity_of<signal::velocity, real_of_boxes<B>>>;
+    b.estimators.settle(x);
+    b.estimators.retune(b.estimators);
+    b.estimators.shift(x);
+    b.estimators.reset();
+};
+/// Boxes that estimate each for itself.
+template <class B>
+concept estimates_apart = requires {
+    requires maps<decltype(B::reference_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::reference_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::measured_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
+    requires maps<decltype(B::measured_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
+};
+
 /// One box per role of a `milling_axis`. Write `static_assert(milling_boxes<my_axis>)` under your struct.
 template <class B>
 concept milling_boxes = requires {
     typename command_of<B>; // velocity_loop
     requires maps<decltype(B::memory), signal::position, signal::position, real_of_boxes<B>>;
     requires maps<decltype(B::position_loop), signal::position, signal::velocity, real_of_boxes<B>>;
-    requires maps<decltype(B::reference_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
-    requires maps<decltype(B::reference_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
-    requires maps<decltype(B::measured_velocity), signal::position, signal::velocity, real_of_boxes<B>>;
-    requires maps<decltype(B::measured_notch), signal::velocity, signal::velocity, real_of_boxes<B>>;
+    requires estimates_in_pair<B> || estimates_apart<B>;
     requires maps<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
     requires maps<decltype(B::inertia), signal::acceleration, command_of<B>, real_of_boxes<B>>;
     requires maps<decltype(B::drag), signal::velocity, command_of<B>, real_of_boxes<B>>;
@@ -66,15 +83,27 @@ concept milling_boxes = requires {
     requires maps<decltype(B::dac), command_of<B>, command_of<B>, real_of_boxes<B>>;
 };
 
+namespace detail {
+template <class B>
+concept retunable_estimators = requires {
+    requires retunable<decltype(B::reference_velocity)>;
+    requires retunable<decltype(B::reference_notch)>;
+    requires retunable<decltype(B::measured_velocity)>;
+    requires retunable<decltype(B::measured_notch)>;
+};
+template <class B>
+concept shiftable_estimators = requires {
+    requires shiftable<decltype(B::reference_velocity), signal::position, real_of_boxes<B>>;
+    requires shiftable<decltype(B::measured_velocity), signal::position, real_of_boxes<B>>;
+};
+} // namespace detail
+
 /// What the verb `retune` of a milling_axis asks of its slots, beside what every sample asks.
 template <class B>
 concept retunable_milling_boxes = milling_boxes<B> && requires {
     requires retunable<decltype(B::memory)>;
     requires retunable<decltype(B::position_loop)>;
-    requires retunable<decltype(B::reference_velocity)>;
-    requires retunable<decltype(B::reference_notch)>;
-    requires retunable<decltype(B::measured_velocity)>;
-    requires retunable<decltype(B::measured_notch)>;
+    requires estimates_in_pair<B> || detail::retunable_estimators<B>;
     requires retunable_at<decltype(B::velocity_loop), signal::velocity, command_of<B>>;
     requires retunable<decltype(B::inertia)>;
     requires retunable<decltype(B::drag)>;
@@ -87,8 +116,7 @@ concept retunable_milling_boxes = milling_boxes<B> && requires {
 /// What the verb `shift` of a milling_axis asks of its slots.
 template <class B>
 concept shiftable_milling_boxes = milling_boxes<B> && requires {
-    requires shiftable<decltype(B::reference_velocity), signal::position, real_of_boxes<B>>;
-    requires shiftable<decltype(B::measured_velocity), signal::position, real_of_boxes<B>>;
+    requires estimates_in_pair<B> || detail::shiftable_estimators<B>;
     requires shiftable<decltype(B::disturbance), signal::position, real_of_boxes<B>> ||
         fed_the_acceleration<decltype(B::disturbance), command_of<B>, real_of_boxes<B>>; // knows no place
     requires shiftable<decltype(B::travel), signal::position, real_of_boxes<B>>;
@@ -197,9 +225,14 @@ template <milling_boxes Boxes> struct milling_axis {
         }
         wire = {};
         wire.reference = wire.measured = x;
-        wire.reference_velocity =
-            detail::settled(box.reference_notch, detail::settled(box.reference_velocity, x));
-        wire.measured_velocity = detail::settled(box.measured_notch, detail::settled(box.measured_velocity, x));
+        if constexpr (estimates_in_pair<Boxes>) {
+            take(box.estimators.settle(x));
+        } else {
+            wire.reference_velocity =
+                detail::settled(box.reference_notch, detail::settled(box.reference_velocity, x));
+            wire.measured_velocity =
+                detail::settled(box.measured_notch, detail::settled(box.measured_velocity, x));
+        }
         forget();
         wire.demand = detail::settled(box.position_loop, wire.learned) + wire.reference_velocity;
         wire.velocity_error = wire.demand - wire.measured_velocity;
@@ -264,10 +297,14 @@ template <milling_boxes Boxes> struct milling_axis {
     void retune(const Boxes& next, const motion& ahead) noexcept requires retunable_milling_boxes<Boxes> {
         detail::retune(box.memory, next.memory);
         detail::retune(box.position_loop, next.position_loop);
-        detail::retune(box.reference_velocity, next.reference_velocity);
-        detail::retune(box.reference_notch, next.reference_notch);
-        detail::retune(box.measured_velocity, next.measured_velocity);
-        detail::retune(box.measured_notch, next.measured_notch);
+        if constexpr (estimates_in_pair<Boxes>) {
+            box.estimators.retune(next.estimators);
+        } else {
+            detail::retune(box.reference_velocity, next.reference_velocity);
+            detail::retune(box.reference_notch, next.reference_notch);
+            detail::retune(box.measured_velocity, next.measured_velocity);
+            detail::retune(box.measured_notch, next.measured_notch);
+        }
         detail::retune(box.inertia, next.inertia);
         detail::retune(box.drag, next.drag);
         detail::retune(box.disturbance, next.disturbance);
@@ -290,8 +327,12 @@ template <milling_boxes Boxes> struct milling_axis {
     /// The frame of positions moves (homing): what is read and asked for is higher by so much from now on; no
     /// command changes.
     void shift(position by) noexcept requires shiftable_milling_boxes<Boxes> {
-        box.reference_velocity.shift(by);
-        box.measured_velocity.shift(by);
+        if constexpr (estimates_in_pair<Boxes>) {
+            box.estimators.shift(by);
+        } else {
+            box.reference_velocity.shift(by);
+            box.measured_velocity.shift(by);
+        }
         if constexpr (!takes_acceleration) box.disturbance.shift(by);
         box.travel.shift(by);
         wire.reference += by;
@@ -346,9 +387,17 @@ private:
     [[gnu::always_inline, gnu::flatten]] inline void look(const motion& reference, position measured) noexcept {
         wire.reference = reference.position;
         wire.measured = measured;
-        wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
-        wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
+        if constexpr (estimates_in_pair<Boxes>) {
+            take(box.estimators(reference.position, measured));
+        } else {
+            wire.reference_velocity = box.reference_notch(box.reference_velocity(reference.position));
+            wire.measured_velocity = box.measured_notch(box.measured_velocity(measured));
+        }
         wire.position_error = reference.position - measured;
+    }
+    [[gnu::always_inline]] void take(const auto& velocities) noexcept {
+        wire.reference_velocity = velocities.reference;
+        wire.measured_velocity = velocities.measured;
     }
     void forget() noexcept { // one that integrates has to be told that it gives nothing
         wire.learned = position();
@@ -382,9 +431,13 @@ private:
             return box.disturbance(measured);
     }
     static constexpr auto boxes(auto& b) noexcept {
-        return std::tie(b.memory, b.position_loop, b.reference_velocity, b.reference_notch, b.measured_velocity,
-                        b.measured_notch, b.velocity_loop, b.inertia, b.drag, b.disturbance, b.travel,
-                        b.friction, b.amplifier, b.dac);
+        if constexpr (estimates_in_pair<Boxes>)
+            return std::tie(b.memory, b.position_loop, b.estimators, b.velocity_loop, b.inertia, b.drag,
+                            b.disturbance, b.travel, b.friction, b.amplifier, b.dac);
+        else
+            return std::tie(b.memory, b.position_loop, b.reference_velocity, b.reference_notch,
+                            b.measured_velocity, b.measured_notch, b.velocity_loop, b.inertia, b.drag,
+                            b.disturbance, b.travel, b.friction, b.amplifier, b.dac);
     }
 };
 

@@ -12,6 +12,21 @@
 
 namespace quadrant {
 
+namespace detail {
+/// The boxes that estimate the velocities of an axis: one for each role; in lanes that step together one for all
+/// (`loop/velocity_pair.hpp`).
+template <class Real> struct velocity_boxes {
+    velocity_boxes(const auto& p, duration period)
+        : reference_velocity({p.estimator_corner}, period), reference_notch(p.notch, period),
+          measured_velocity({p.estimator_corner}, period), measured_notch(p.notch, period) {}
+
+    filtered_derivative<signal::position, signal::velocity, Real> reference_velocity;
+    quadrant::notch<signal::velocity, Real> reference_notch;
+    filtered_derivative<signal::position, signal::velocity, Real> measured_velocity;
+    quadrant::notch<signal::velocity, Real> measured_notch;
+};
+} // namespace detail
+
 /// The stock boxes of a `milling_axis`, from flat parameters as the thesis prints them:
 ///   milling_axis<milling_axis_boxes<maxwell_slip<4, signal::velocity, signal::voltage>>> x{.box = {parameters, 500_us}};
 /// Friction: any law from velocity to the command (`stribeck`, `dahl`, `lugre`, `maxwell_slip`), or `absent`.
@@ -22,7 +37,7 @@ template <class Friction = absent<signal::velocity, signal::voltage>,
           class Disturbance = absent<signal::position, signal::voltage>,
           class Memory = absent<signal::position, signal::position>, class Real = double,
           signal_tag Command = signal::voltage>
-struct milling_axis_boxes {
+struct milling_axis_boxes : detail::velocity_boxes<Real> {
     using number = parameter_real<Real>; ///< of parameters
 
     /// Gains, filters and compensations of a milling axis, as the thesis prints them.
@@ -42,9 +57,8 @@ struct milling_axis_boxes {
     };
 
     milling_axis_boxes(const parameters& p, duration period)
-        : memory(p.memory, period), position_loop({p.position_gain}, period),
-          reference_velocity({p.estimator_corner}, period), reference_notch(p.notch, period),
-          measured_velocity({p.estimator_corner}, period), measured_notch(p.notch, period),
+        : detail::velocity_boxes<Real>(p, period), memory(p.memory, period),
+          position_loop({p.position_gain}, period),
           velocity_loop({p.velocity_gain, p.velocity_integral, p.limit}, period),
           inertia({number(1) / checked(p)}, period), drag({p.plant_pole / p.plant_gain}, period),
           disturbance(p.disturbance, period), travel({}, period), friction(p.friction, period),
@@ -52,10 +66,6 @@ struct milling_axis_boxes {
 
     Memory memory;
     proportional<signal::position, signal::velocity, Real> position_loop;
-    filtered_derivative<signal::position, signal::velocity, Real> reference_velocity;
-    quadrant::notch<signal::velocity, Real> reference_notch;
-    filtered_derivative<signal::position, signal::velocity, Real> measured_velocity;
-    quadrant::notch<signal::velocity, Real> measured_notch;
     proportional_integral<signal::velocity, Command, integral_clamp, Real> velocity_loop;
     proportional<signal::acceleration, Command, Real> inertia;
     proportional<signal::velocity, Command, Real> drag;

@@ -25,11 +25,10 @@ template <std::size_t W, std::size_t Size> struct lane_window {
         scatter(newest, [&](std::size_t i) { return &lane[i].x[now + Size]; });
     }
     template <class Real> void fill(const Real& all) noexcept {
-        for (std::size_t k = 0; k < 2 * Size; ++k)
-            scatter(all, [&](std::size_t i) { return &lane[i].x[k]; });
+        for (std::size_t k = 0; k < 2 * Size; ++k) scatter(all, [&](std::size_t i) { return &lane[i].x[k]; });
     }
     const double* oldest(std::size_t i) const noexcept { return &lane[i].x[next]; } ///< of the last Size inputs
-    template <class Real> Real ago(std::size_t samples) const noexcept { ///< 1 ... Size
+    template <class Real> Real ago(std::size_t samples) const noexcept {            ///< 1 ... Size
         return gathered<Real>([&](std::size_t i) { return &lane[i].x[next + Size - samples]; });
     }
 };
@@ -53,9 +52,16 @@ public:
                 alike_ = alike_ && c[k][i] == c[k][0];
             }
     }
-    [[gnu::always_inline]] Real operator()(const lane_window<W, size>& window, const Real& newest) const noexcept {
+    bool alike() const noexcept { return alike_; } ///< all lanes have the coefficients of the first
+    /// The sum for lanes that are alike.
+    [[gnu::always_inline]] Real alike(const lane_window<W, size>& window, const Real& newest) const noexcept {
         if constexpr (before == 0) return newest_ * newest;
-        return (alike_ ? over<true>(window) : each_over(window)) + newest_ * newest;
+        return over<true>(window) + newest_ * newest;
+    }
+    /// For any lanes. Apart, so that a compiler does not weave both into one.
+    [[gnu::noinline]] Real each(const lane_window<W, size>& window, const Real& newest) const noexcept {
+        if constexpr (before == 0) return newest_ * newest;
+        return over<false>(window) + newest_ * newest;
     }
     Real sum() const noexcept {
         Real all = newest_;
@@ -85,17 +91,12 @@ private:
         return row_sums<Real>(even);
     }
 
-    /// Apart, so that a compiler does not weave both into one.
-    [[gnu::noinline]] Real each_over(const lane_window<W, size>& window) const noexcept {
-        return over<false>(window);
-    }
-
     struct alignas(64) row {
         std::array<double, size> x{};
     };
     Real newest_{};
     std::array<row, W> c_{};
-    bool alike_ = true; ///< all lanes have the coefficients of the first
+    bool alike_ = true;
 };
 } // namespace detail
 
@@ -143,7 +144,15 @@ public:
             early = faded(early);
         const Real before = given_.ahead == 0 ? early : state_.r.template ago<Real>(given_.ahead);
         const Real m = e.value() + before;
-        const Real p = unless_died_out(smoothing_(state_.m, m)), y = learning_(state_.r, early);
+        Real p, y;
+        if (alike_) [[likely]] { // asked once for both filters
+            p = smoothing_.alike(state_.m, m);
+            y = learning_.alike(state_.r, early);
+        } else {
+            p = smoothing_.each(state_.m, m);
+            y = learning_.each(state_.r, early);
+        }
+        p = unless_died_out(p);
         state_.r.put(early);
         state_.m.put(m);
         const std::size_t now = state_.next_p;
@@ -180,6 +189,7 @@ public:
         given_ = next.given_;
         learning_ = next.learning_;
         smoothing_ = next.smoothing_;
+        alike_ = next.alike_;
         reader_ = reader(periods_);
         cycle(given_.cycle);
     }
@@ -280,6 +290,7 @@ private:
     void take_filters() noexcept {
         learning_.set(given_.learning);
         smoothing_.set(given_.smoothing);
+        alike_ = learning_.alike() && smoothing_.alike();
     }
 
     parameters given_;
@@ -289,7 +300,7 @@ private:
     Real periods_{0}, wanted_{0};
     memory_reader reader_, old_reader_;
     std::size_t fade_ = 1;
-    bool pending_ = false, limited_ = false;
+    bool pending_ = false, limited_ = false, alike_ = true;
     state state_;
     held_output<value> out_;
 };

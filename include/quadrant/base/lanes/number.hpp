@@ -101,6 +101,9 @@ public:
     friend mask equal(const lanes& a, const lanes& b) noexcept {
         return test([](const piece& x, const piece& y) { return x == y; }, a, b);
     }
+    friend mask differs(const lanes& a, const lanes& b) noexcept {
+        return test([](const piece& x, const piece& y) { return x != y; }, a, b);
+    }
     friend auto finite_lanes(const lanes& a) noexcept {
         if constexpr (isa::is_in_step<Isa>)
             return in_every_lane<true>();

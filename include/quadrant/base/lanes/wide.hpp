@@ -21,11 +21,19 @@ template <class Narrow, class Wide> Narrow half(const Wide& x, std::size_t upper
     const __m256d both = x;
     return Narrow(upper == 0 ? _mm256_castpd256_pd128(both) : _mm256_extractf128_pd(both, 1));
 }
+/// Two registers of two numbers in a register of four.
+template <class Wide, class Narrow> Wide joined_registers(const Narrow& low, const Narrow& high) noexcept {
+    const __m128d first = low, second = high;
+    return Wide(_mm256_insertf128_pd(_mm256_castpd128_pd256(first), second, 1));
+}
 inline constexpr bool has_doubled = true;
 #else
 inline constexpr bool has_doubled = false;
 template <class Wide, class Narrow> Wide doubled(const Narrow& x) noexcept { return x; }
 template <class Narrow, class Wide> Narrow half(const Wide& x, std::size_t) noexcept { return x; }
+template <class Wide, class Narrow> Wide joined_registers(const Narrow& low, const Narrow&) noexcept {
+    return low;
+}
 #endif
 #ifdef XSIMD_HPP
 /// A register of two numbers to two places, and from two places.
@@ -60,7 +68,7 @@ template <class Narrow, class Quad> Narrow sums_of_two(const Quad&, const Quad&)
 
 /// Two lanes in one register.
 template <class Real>
-inline constexpr bool is_pair = has_places && lane_count<Real> == 2 && Real::register_width == 2;
+inline constexpr bool is_pair = has_places&& lane_count<Real> == 2 && Real::register_width == 2;
 
 /// Each lane to a place of its own: at(i) is that of lane i.
 template <class Real, class At> [[gnu::always_inline]] inline void scatter(const Real& x, At&& at) noexcept {
@@ -108,6 +116,27 @@ template <std::size_t N, std::size_t W, class Isa> lanes<N * W, Isa> repeated(co
     } else {
         std::array<double, N * W> all;
         for (std::size_t i = 0; i < N; ++i) x.write(all.data() + i * W);
+        return wide::read(all.data());
+    }
+}
+/// The lanes of `low`, then those of `high`.
+template <std::size_t W, class Isa>
+lanes<2 * W, Isa> joined(const lanes<W, Isa>& low, const lanes<W, Isa>& high) noexcept {
+    using wide = lanes<2 * W, Isa>;
+    constexpr std::size_t narrow_width = lanes<W, Isa>::register_width, wide_width = wide::register_width;
+    if constexpr (narrow_width == wide_width) {
+        constexpr std::size_t registers = W / narrow_width;
+        return wide::from_registers([&](std::size_t i) {
+            return i < registers ? low.in_register(i) : high.in_register(i - registers);
+        });
+    } else if constexpr (detail::has_doubled && narrow_width == W && wide_width == 4 && narrow_width == 2)
+        return wide::from_registers([&](std::size_t) {
+            return detail::joined_registers<typename wide::piece>(low.in_register(0), high.in_register(0));
+        });
+    else {
+        std::array<double, 2 * W> all;
+        low.write(all.data());
+        high.write(all.data() + W);
         return wide::read(all.data());
     }
 }
