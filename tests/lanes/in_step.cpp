@@ -53,13 +53,15 @@ template <class L> typename springs<L>::parameters rubbing(double more = 1) {
 
 using memory_of_one = repetitive<s::position, 40, 2, 13, 7>;
 template <class L> using memory = repetitive<s::position, 40, 2, 13, 7, L>;
-template <class L> typename memory<L>::parameters learning(double periods, double more = 1) {
+/// `alike`: the same taps in every lane.
+template <class L>
+typename memory<L>::parameters learning(double periods, double more = 1, bool alike = false) {
     typename memory<L>::parameters p{.cycle = spread<L>(periods * T), .ahead = 4};
     p.weights = {L(1.9), L(-0.95)};
     for (std::size_t i = 0; i < 13; ++i) {
         L tap;
         for (std::size_t k = 0; k < L::size; ++k)
-            tap.set(k, more * std::cos(double(i + k)) / (3.0 + double(i)));
+            tap.set(k, more * std::cos(double(i + (alike ? 0 : k))) / (3.0 + double(i)));
         p.learning[i] = tap;
     }
     for (std::size_t i = 0; i < 7; ++i) p.smoothing[i] = L(0.9 / (1 + std::abs(double(i) - 3)) / 2.9);
@@ -158,10 +160,10 @@ TEST_CASE_TEMPLATE("repetitive in lanes in step: per lane that of double to roun
             together.settle(at(L(0.1)));
             for (auto& one : alone) one.settle(at_one(0.1));
         }
-        if (k == 3000) {
-            together.retune(memory<L>(learning<L>(19.3, 0.8), T));
-            for (std::size_t i = 0; i < L::size; ++i)
-                alone[i].retune(memory_of_one(learning<L>(19.3, 0.8).of(i), T));
+        if (k == 3000 || k == 3300) { // taps that all lanes have, and others again
+            const auto next = learning<L>(19.3, 0.8, k == 3000);
+            together.retune(memory<L>(next, T));
+            for (std::size_t i = 0; i < L::size; ++i) alone[i].retune(memory_of_one(next.of(i), T));
         }
         const L e = numbers<L>(random, 1);
         const auto y = together(at(e)).value();
@@ -206,4 +208,26 @@ TEST_CASE_TEMPLATE("lanes: round is std::round at and beside every half, and of 
             }
     for (const double x : {0.0, -0.0, 0x1p52, 0x1p52 + 1, 0x1p53 - 1, -0x1p60, most})
         CHECK(round(L(x))[0] == std::round(x));
+}
+TEST_CASE_TEMPLATE("lanes: limited_to is that of a double in each lane, also of infinities and of no number", L,
+                   lanes<2>, lanes<4>, lanes_in_step<2>) {
+    const double all[] = {-3, -1, -0.0, 0, 0.5, 1, 3, std::numeric_limits<double>::infinity(), no_number};
+    for (const double one : all)
+        for (const double other : all) {
+            L x(one);
+            x.set(1, other);
+            const L y = limited_to(x, L(-1), L(1));
+            for (std::size_t i = 0; i < 2; ++i) {
+                const double is = y[i], was = limited_to(x[i], -1.0, 1.0);
+                CHECK(std::memcmp(&is, &was, sizeof is) == 0);
+            }
+        }
+}
+TEST_CASE_TEMPLATE("lanes: nearest is within half of x, and whole", L, lanes<2>, lanes_in_step<2>) {
+    std::mt19937 random(8);
+    for (int k = 0; k < 100'000; ++k) {
+        const L x = numbers<L>(random, k % 2 ? 10 : 1e6), y = nearest(x);
+        CHECK(std::abs(y[0] - x[0]) <= 0.5);
+        CHECK(y[0] == std::floor(y[0]));
+    }
 }

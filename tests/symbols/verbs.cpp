@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Every verb of every block that a servo thread calls, as a function of its own on a block that was made
-// elsewhere. check.sh compiles this file and looks at what it still asks the linker for: mathematics, and nothing
-// that throws, allocates, waits or stops the program. With a compiler that knows [[clang::nonblocking]] it says so
-// itself.
+// elsewhere. check.sh compiles this file and looks at what it still asks the linker for: mathematics, and
+// nothing that throws, allocates, waits or stops the program. With a compiler that knows
+// [[clang::nonblocking]] it says so itself.
 #include "conformance/blocks.hpp"
 
 #include <quadrant/loop/cascade_p_pi.hpp>

@@ -51,7 +51,8 @@ template <class Value> constexpr const Value& only_where(in_every_lane<true>, co
 }
 
 /// The last good output of a block and its fault flag; for lanes, one of each in every lane. `Asked`: the block
-/// itself asks for the last output. One that does not, and whose lanes step together and so never hold, keeps none.
+/// itself asks for the last output. One that does not, and whose lanes step together and so never hold, keeps
+/// none.
 template <class Quantity, bool Asked = true> class held_output {
     static constexpr bool keeps = Asked || !detail::holds_never<Quantity>;
 

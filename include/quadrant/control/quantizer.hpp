@@ -9,6 +9,7 @@ namespace quadrant {
 
 /// Rounds a wire to the steps of a DAC or an encoder.
 ///   y = round(x / step) step, halves away from zero; step = 0: y = x
+/// Lanes that step together multiply by 1 / step and round halves to the even count.
 /// Source: docs/formats.md (DAC rounding of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault.

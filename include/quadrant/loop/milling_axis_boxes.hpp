@@ -13,8 +13,8 @@
 namespace quadrant {
 
 namespace detail {
-/// The boxes that estimate the velocities of an axis: one for each role; in lanes that step together one for all
-/// (`loop/velocity_pair.hpp`).
+/// The boxes that estimate the velocities of an axis: one for each role; in lanes that step together one for
+/// all (`loop/velocity_pair.hpp`).
 template <class Real> struct velocity_boxes {
     velocity_boxes(const auto& p, duration period)
         : reference_velocity({p.estimator_corner}, period), reference_notch(p.notch, period),

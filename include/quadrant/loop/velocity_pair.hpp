@@ -14,7 +14,8 @@ namespace quadrant {
 /// derivative and notch: both in one number that is twice as wide.
 ///   (v_ref, v) = notch(derivative((r, y)))
 /// Ports: both positions in, both velocities out, W lanes each.
-/// State: that of both blocks. `reset`, `settle(x)` (reference and axis at rest at x), `retune`, `shift`: as they.
+/// State: that of both blocks. `reset`, `settle(x)` (reference and axis at rest at x), `retune`, `shift`: as
+/// they.
 /// NaN and infinities: as lanes in step; the loop around it holds.
 /// Throws what the blocks throw, in their names.
 /// Cost: that of one derivative and one notch in 2 W lanes.

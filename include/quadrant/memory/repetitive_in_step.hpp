@@ -9,8 +9,8 @@
 namespace quadrant {
 
 namespace detail {
-/// The last Size inputs of W lanes as plain numbers, each lane for itself: oldest first and never wrapped around;
-/// see `fir_window`.
+/// The last Size inputs of W lanes as plain numbers, each lane for itself: oldest first and never wrapped
+/// around; see `fir_window`.
 template <std::size_t W, std::size_t Size> struct lane_window {
     struct alignas(64) ring {
         std::array<double, 2 * Size> x{};

@@ -140,7 +140,8 @@ template <std::size_t W, class Isa> lanes<W, Isa> round(const lanes<W, Isa>& x) 
     // Away from zero by the largest number below a half, then towards zero: as std::round, bit for bit.
     return trunc(x + turned_as(lanes<W, Isa>(0x1.fffffffffffffp-2), x));
 }
-/// The nearest whole number, halves to the even one; where a register does it in one instruction, else as round.
+/// The nearest whole number, halves to the even one; where a register does it in one instruction, else as
+/// round.
 template <std::size_t W, class Isa> lanes<W, Isa> nearest(const lanes<W, Isa>& x) noexcept {
     const auto to_nearest = [](const auto& v) {
         using std::nearbyint;
