@@ -7,6 +7,7 @@
 #include <quadrant/control/quantizer.hpp>
 #include <quadrant/observer/ferraris_force_estimator.hpp>
 #include <quadrant/observer/lugre_observer.hpp>
+#include <quadrant/observer/maxwell_slip_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 #include <quadrant/sensor/white_noise.hpp>
 
@@ -89,6 +90,7 @@ picture draw_lugre_observer() {
 family force_and_friction() {
     return {{"ferraris_force_estimator", draw_ferraris_force_estimator},
             {"ferraris_calibration", draw_ferraris_calibration},
-            {"lugre_observer", draw_lugre_observer}};
+            {"lugre_observer", draw_lugre_observer},
+            {"maxwell_slip_observer", draw_maxwell_slip_observer}};
 }
 } // namespace block_pictures
