@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // What an acceleration sensor tells of a force, and its calibration; friction that is learned.
 #include "families.hpp"
-#include "quadrant_reproduce/thesis.hpp"
+#include "quadrant_reproduce/friction_run.hpp"
 
 #include <quadrant/analysis/ferraris_calibration.hpp>
 #include <quadrant/control/quantizer.hpp>
@@ -84,6 +84,25 @@ picture draw_lugre_observer() {
               "on at 120 ms",
               {over("", "behind [um]", {e}), over("", "speed [mm/s]", {v}),
                over("time [ms]", "force [N]", {with, without})});
+}
+picture draw_maxwell_slip_observer() {
+    const thesis::reading how{.substeps = 10, .cycles = 5, .level = 4.0 / 3};
+    curve table("model of the table"), learned("level learned"), level("level"),
+        truth("of the machine", dashed);
+    const auto shown = [](curve& c) {
+        return [&c](const thesis::moment& m) {
+            if (m.turns >= 1) c.add(m.time, m.error);
+        };
+    };
+    thesis::run<thesis::gms_model, thesis::observer>(thesis::y, how, shown(table));
+    thesis::run<thesis::learning_model, thesis::observer>(thesis::y, how, [&](const thesis::moment& m) {
+        if (m.turns >= 1)
+            learned.add(m.time, m.error), level.add(m.time, m.level), truth.add(m.time, how.level);
+    });
+    return of(
+        "Axis y of the milling table with a third more friction than its table, along a sinusoid of 30 mm at "
+        "100 mm/s, with observer",
+        {over("", "tracking error [um]", {table, learned}), over("time [s]", "level", {level, truth})});
 }
 } // namespace
 

