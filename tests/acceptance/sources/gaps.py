@@ -103,12 +103,15 @@ def page(cases):
         causes = [c for c in of if c["truth"]]
         named = [c["words"] for c in causes if state(c, c["found"]) == "named"]
         open_ones = [c for c in causes if state(c, c["found"]) != "named"]
-        say(f"{len(named)} of {len(causes)} causes are named. A log of the machine along these motions would have decided about them: {'; '.join(named)}.")
+        decided = f" A log of the machine along these motions would have decided about them: {'; '.join(named)}." if named else ""
+        say(f"{len(named)} of {len(causes)} causes are named.{decided}")
         if open_ones:
             say("Of the others these motions do not say enough. What the diagnosis asks to be recorded next:")
             for c in open_ones:
+                none = ("nothing; it sees no gap that matters" if c["found"]["verdict"] in ("no_gap", "within_tolerance")
+                        else "nothing; a force is left that no name explains")
                 motion = c["found"]["next_experiment"]["motion"]
-                out.extend(textwrap.wrap(f"- {c['words']}: {motion or 'nothing; it sees no gap that matters'}", 112, subsequent_indent="  "))
+                out.extend(textwrap.wrap(f"- {c['words']}: {motion or none}", 112, subsequent_indent="  "))
             out.append("")
     return "\n".join(out)
 

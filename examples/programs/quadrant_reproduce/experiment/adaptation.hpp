@@ -32,7 +32,7 @@ inline spindle_change mill_through_change(const thesis::order_2& weights, bool f
     thesis::synthesized slow(c);
     const double w = c.feed / c.radius, T = thesis::period.value(), start = 0.05;
     const auto turn = static_cast<std::size_t>(2 * thesis::pi_ / w / T);
-    thesis::divergence_guard runs_away(100, turn);
+    thesis::divergence_guard runs_away(100, 100 * turn); // the error grows where the spindle changes
     spindle_change found;
     found.radial.name = name;
     table.settle(c.radius * 1_m);

@@ -23,13 +23,16 @@ inline outcome accelerometer_case(const std::string& id) {
         "An accelerometer in the feedback of the PID",
         "Compliance of the x axis under the PID of Table 10, and of the y axis along the diamond its error; "
         "the "
-        "accelerometer's gain makes a disturbance meet 1.5 and 2 times the inertia.",
+        "accelerometer's gain makes a disturbance meet 1.5 and 2 times the inertia, and the gains of the PID "
+        "go with "
+        "it.",
         {panel{.x_label = "frequency [Hz]", .y_label = "um/N", .lines = {}, .log_x = true, .log_y = true},
          panel{.x_label = "time [s]", .y_label = "error of y [um]", .lines = {}}}};
     for (const double heavier : {0.0, 0.5, 1.0}) {
-        const auto of = [&](const vcnc::axis& a) {
-            return law::parameters{
-                .law = vcnc::pid_of(a), .gain = heavier / vcnc::model(a).gain, .corner = 150_Hz};
+        const auto of = [&](const vcnc::axis& a) { // gains in proportion to what the axis now weighs
+            auto gains = vcnc::pid_of(a);
+            gains.gain *= 1 + heavier, gains.integral_gain *= 1 + heavier, gains.derivative_gain *= 1 + heavier;
+            return law::parameters{.law = gains, .gain = heavier / vcnc::model(a).gain, .corner = 150_Hz};
         };
         const auto& a = vcnc::x_axis;
         const analysis::law_loop loop{law(of(a), vcnc::period),
