@@ -34,7 +34,7 @@ for k in range(120):  # a double integrator with a mode at 180 Hz
 # What is asked for, its axes, and words that its page must have.
 pages = {"analysis": ("analyse", mill, [], 3, 15, ("phase margin",)),
          "measured": ("analyse", mill, ["--axis", "x", "--frf", scratch / "measured.csv"], 1, 7, ("proposed velocity gain", "proposed notch", "Measured response")),
-         "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed velocity gain", "averages", "1: all of the position")),
+         "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed", "averages", "1: all of the position")),
          "tuning": ("tune", scratch / "sliding.json", ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)"))}
 T, x, v, lines = 1e-3, 0.0, 0.0, ["t_s,x_ref_m,x_pos_m,x_cmd_V"]
 for k in range(9000):  # a free mass under a PD law with a chirp in its reference

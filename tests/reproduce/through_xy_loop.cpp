@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// The experiments of one axis, run once more as one axis of the whole two-axis loop: the same numbers, to the bit.
+// The experiments of one axis, run again as one axis of the whole two-axis loop: the same, to the bit.
 #include "quadrant_reproduce/milling_table.hpp"
 
 #include <doctest/doctest.h>

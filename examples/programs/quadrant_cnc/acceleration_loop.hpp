@@ -10,7 +10,7 @@
 
 namespace quadrant_cnc {
 
-/// What `acceleration_feedback` of a machine file adds to the command of a law, whatever the law: the accelerometer's
+/// What `acceleration_feedback` of a machine file adds to the command of any law: the accelerometer's
 /// loop around the drive (block `acceleration_feedback`). Behind it the limit and the converter of the command
 /// hold for the sum.
 class acceleration_loop {

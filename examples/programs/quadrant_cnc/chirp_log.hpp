@@ -10,7 +10,7 @@ namespace quadrant_cnc {
 /// reference (the format of quadrant-gap): reference to position over reference to command, so that noise does
 /// not bias it. Where the reference rests, command to position, with a note: the chirp was then added to the
 /// command. Lines that the excitation did not reach, or whose coherence is below one half, are left out.
-/// Throws bad_input for another sampling period than the machine's, a log too short, and one that shows no line.
+/// Throws bad_input for another sampling period than the machine's, a short log, and one that shows no line.
 frf_file frf_of_log(const std::string& path, const std::string& axis, double servo_period);
 
 /// The response as a table that --frf reads.

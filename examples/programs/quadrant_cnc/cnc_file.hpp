@@ -59,7 +59,7 @@ struct friction_feedforward_description {
     double scale = 1, width_m_per_s = 1e-3;
 };
 
-/// What the cutter does to an axis in feed moves: mean and harmonics of the spindle, positive pushes it forward.
+/// What the cutter does to an axis in feed moves: mean and harmonics of the spindle; positive: forward.
 struct cutting_load_description {
     static constexpr std::size_t most_harmonics = 32;
     double spindle_Hz = 0, entry_s = 0; ///< turns per second; in which the tool enters or leaves the cut

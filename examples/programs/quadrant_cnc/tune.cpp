@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// quadrant-cnc tune: the sliding mode law of an axis by fuzzy rules, its gains written back into the machine file.
+// quadrant-cnc tune: a sliding mode law by fuzzy rules, its gains written back into the machine file.
 #include "../page/outputs.hpp"
 #include "commands.hpp"
 #include "read_cnc.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// The trials of a fuzzy tuning: the axis of the file along a stroke, and its linear part in the frequency domain.
+// The trials of a fuzzy tuning: the axis along a stroke, and its linear part in the frequency domain.
 #include "tuning.hpp"
 
 #include "linear_loop.hpp"

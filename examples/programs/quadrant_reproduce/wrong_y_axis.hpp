@@ -30,7 +30,7 @@ struct reversal_error { // um
     double glitch;      ///< mean of the largest errors after the reversals but the first, as friction_run.hpp
     double between;     ///< largest error half-way between reversals
 };
-/// Drives that machine along `wanted(t)` for so long [s], from rest where the motion begins. `tell(t, wanted, at,
+/// Drives that machine along `wanted(t)` for so long [s], from rest where it begins. `tell(t, wanted, at,
 /// reading, command)` hears every sample: the axis [m], what its encoder reads [m], what the controller answers
 /// [V]; false stops. False when it was stopped, by that or by a clipped command or a box at fault.
 template <class Wanted, class Tell>

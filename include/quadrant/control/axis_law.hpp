@@ -30,7 +30,7 @@
 /// Source: [Yeung2006] eq. (19).
 namespace quadrant {
 
-/// Eq. (19) of a linear law at one frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v, a). The lead is
+/// Eq. (19) of a linear law at a frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v, a). The lead is
 /// not in it: `to` takes the reference as it is given.
 struct law_response {
     std::complex<double> to_position, to_velocity, to_acceleration;

@@ -128,7 +128,7 @@ template <signal_tag Effort, class Real> struct feed_drive_wires {
 };
 
 /// The machine's side of one feed axis as named boxes: current amplifier with its limit, motor and screw on
-/// friction, lead error, screw that yields, play, encoder, tachometer and accelerometer. The controller's side is
+/// friction, lead error, screw that yields, play, encoder, tachometer, accelerometer. The controller's side is
 /// `feed_control`.
 ///   effort = limit(Ka u),  turned = drive(effort, external),  nut = lead(turned) - compliance (table_mass a - external)
 ///   place = play(nut),  reading = encoder(place or turned + noise),  tachometer = v + noise

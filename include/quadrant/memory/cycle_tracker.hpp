@@ -20,7 +20,7 @@ concept holds_a_cycle = Capacity >= 8;
 /// spindle whose speed changes: memory.cycle(tracker.cycle()).
 ///   e[k] = x[k] - x(k - d),  s[k] = (x(k - d + 1) - x(k - d - 1))/2   between samples by cubic interpolation
 ///   P[k] = (1 - T/settles_in) P[k-1] + s^2,  d[k+1] = d[k] - s e/P    in periods T
-/// By first order e = s (d - true cycle), so the rule is least squares with forgetting: all harmonics count, each
+/// To first order e = s (d - true cycle): the rule is least squares with forgetting. All harmonics count, each
 /// by its power, and noise on the wire moves d but does not bias it.
 /// Source: [Etter1981], an adaptive delay whose gradient is the difference of its neighbours; [Ljung1999] least
 /// squares with forgetting.

@@ -13,7 +13,7 @@ namespace quadrant {
 /// tightened gib scale the springs, their shape over the displacement stays.
 ///   f = springs of the model,   F = level f + viscous v
 ///   d level/dt = left f/(settles_in coulomb^2),   lowest <= level <= highest
-/// `left` is the force that is still missing, as an observer estimates it: where it is (true level - level) f, the
+/// `left` is the force still missing, as an observer estimates it: where it is (true level - level) f, the
 /// level approaches the true one with the time constant settles_in as long as the axis slips. What does not go
 /// with f (cutting, gravity) averages out.
 /// Source: the model of [AlBender2005], [Jamaludin2008] eq. (3.6-3.8); a level beside a friction model that is
@@ -21,7 +21,7 @@ namespace quadrant {
 /// Ports: velocity in, friction out with the sign of the resistance (a loop adds it to the command); the second
 /// argument is `left`, in the unit and with the sign of the output, default 0. A `milling_axis` feeds it the
 /// velocity of the reference and what its observer says.
-/// State: that of the model, and the level. `reset`: relaxed, level 1; `settle(v)`: as if v had been applied for
+/// State: that of the model, and the level. `reset`: relaxed, level 1; `settle(v)`: as if v had acted for
 /// ever, the level as it is. `retune(next)`: another model, the level held to its bounds, J as `maxwell_slip`.
 /// Range: friction as `maxwell_slip`; settles_in > 0; 0 < lowest <= 1 <= highest.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().

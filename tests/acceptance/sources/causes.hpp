@@ -27,7 +27,7 @@ struct candidate {
     std::function<made()> make;
 };
 
-// --- The milling table: 1.2 um simulated, 10 um measured behind a reversal of the y axis with GMS feedforward. ---
+// --- The milling table: 1.2 um simulated, 10 um measured behind a reversal of y with GMS feedforward. ---
 
 /// The law of Table 4.2 in the words of a machine file, and the y axis of the tables.
 inline nlohmann::ordered_json table_file() {

@@ -13,7 +13,7 @@ struct spindle_change {
     bool diverged = false;
     line radial{.name = "", .x = {}, .y = {}};
 };
-/// The circle of Table 5.4 in configuration (iii), five turns; after the second the spindle turns 2 % slower. The
+/// The circle of Table 5.4 in configuration (iii), five turns; after two the spindle turns 2 % slower. The
 /// cycle of each memory stays, or follows what the axis' observer sees.
 inline spindle_change mill_through_change(const thesis::order_2& weights, bool follows,
                                           const std::string& name) {

@@ -72,7 +72,7 @@ inline outcome attraction_bands(const std::string& id) {
     return out;
 }
 
-/// Radial errors over the scale of the forces: 2/8000 N, which makes the 100 N of the thesis' plot, to 1.38 times
+/// Radial errors over the scale of the forces: 2/8000 N, which makes the 100 N of the plot, to 1.38 times
 /// 2/6053 N, which the figures of the reference use.
 template <class Configuration> figure_band force_band(const std::string& name, double printed) {
     figure_band out{name, HUGE_VAL, 0, printed};

@@ -10,7 +10,7 @@ namespace quadrant_reproduce {
 /// The masses of the machine, over the one that its controller believes.
 inline constexpr std::array chapter_masses{0.5, 0.75, 1.0, 1.25, 1.5};
 
-/// Chapter 2: the cascade of the tables on another mass. What the sensitivity rises to, and how far a force moves
+/// Chapter 2: the cascade on another mass. What the sensitivity rises to, and how far a force moves
 /// the axis.
 inline outcome cascade_chapter(const std::string& id) {
     using namespace quadrant::literals;

@@ -38,7 +38,7 @@ inline double stage_cost(const std::vector<double>& genes, double heavier = 0) {
     }
     return cost.value();
 }
-/// Mean cost on machines that are spread over +-1 % of the mass, `first` the number of the first of them: one alone,
+/// Mean cost on machines spread over +-1 % of the mass, `first` the number of the first: one alone,
 /// or five, let a search learn where the counts of their encoders happen to lie.
 inline double stage_cost_on(int first, int machines, const std::vector<double>& genes) {
     double sum = 0;
