@@ -96,7 +96,9 @@ picture draw_acceleration_feedback() {
     const pid<>::parameters of_pid{
         .gain = 70e3 * 1_V / 1_m, .integral_gain = 800e3 * 1_V / (1_m * 1_s), .derivative_gain = 300_V / 1_mps};
     const auto with = [&](const char* name, double heavier) {
-        return ran(name, trial_axis<law>({.law = of_pid, .gain = heavier / G.gain, .corner = 150_Hz}), push);
+        auto gains = of_pid; // in proportion to what the axis now weighs
+        gains.gain *= 1 + heavier, gains.integral_gain *= 1 + heavier, gains.derivative_gain *= 1 + heavier;
+        return ran(name, trial_axis<law>({.law = gains, .gain = heavier / G.gain, .corner = 150_Hz}), push);
     };
     const record a = with("PID alone", 0), b = with("gain B = 0.5", 0.5), c = with("gain B = 1", 1);
     return of("An axis at rest under a PID, pushed by 500 N from 20 ms on, with and without its accelerometer",
