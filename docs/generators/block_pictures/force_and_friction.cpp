@@ -86,18 +86,20 @@ picture draw_lugre_observer() {
                over("time [ms]", "force [N]", {with, without})});
 }
 picture draw_maxwell_slip_observer() {
-    const thesis::reading how{.substeps = 10, .cycles = 5, .level = 4.0 / 3};
+    const thesis::reading how{.substeps = 10, .cycles = 4, .level = 4.0 / 3};
     curve table("model of the table"), learned("level learned"), level("level"),
         truth("of the machine", dashed);
-    const auto shown = [](curve& c) {
-        return [&c](const thesis::moment& m) {
-            if (m.turns >= 1) c.add(m.time, m.error);
-        };
+    int k = 0;
+    const auto shows = [&k](const thesis::moment& m) { // every glitch, and now and then what lies between
+        return m.turns >= 1 && (k++ % 20 == 0 || std::abs(m.error) > 0.5);
     };
-    thesis::run<thesis::gms_model, thesis::observer>(thesis::y, how, shown(table));
+    thesis::run<thesis::gms_model, thesis::observer>(thesis::y, how, [&](const thesis::moment& m) {
+        if (shows(m)) table.add(m.time, m.error);
+    });
     thesis::run<thesis::learning_model, thesis::observer>(thesis::y, how, [&](const thesis::moment& m) {
-        if (m.turns >= 1)
-            learned.add(m.time, m.error), level.add(m.time, m.level), truth.add(m.time, how.level);
+        if (!shows(m)) return;
+        learned.add(m.time, m.error);
+        if (k % 20 == 1) level.add(m.time, m.level), truth.add(m.time, how.level);
     });
     return of(
         "Axis y of the milling table with a third more friction than its table, along a sinusoid of 30 mm at "
