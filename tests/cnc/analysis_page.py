@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
-"""The pages of quadrant-cnc analyse, of a machine and of a measured axis, in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
+"""The pages of quadrant-cnc analyse and tune, of a machine, of a measured axis, of a chirp log, in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
 analysis_page.py PROGRAM ROOT SCRATCH     exit code 77: no browser"""
 import cmath
+import json
 import math
 import os
 import pathlib
@@ -31,10 +32,22 @@ for k in range(120):  # a double integrator with a mode at 180 Hz
     rows.append(f"{f},{g.real},{g.imag}\n")
 (scratch / "measured.csv").write_text("frequency_Hz,real_m_per_V,imag_m_per_V\n" + "".join(rows))
 # What is asked for, its axes, and words that its page must have.
-pages = {"analysis": ([], 3, ("phase margin",)),
-         "measured": (["--axis", "x", "--frf", scratch / "measured.csv"], 1, ("proposed velocity gain", "proposed notch", "Measured response"))}
-for name, (asked_for, _, _) in pages.items():
-    subprocess.run([program, "analyse", "--quiet", "--cnc", mill, "--report", scratch / f"{name}.html", *asked_for], check=True)
+pages = {"analysis": ("analyse", mill, [], 3, 15, ("phase margin",)),
+         "measured": ("analyse", mill, ["--axis", "x", "--frf", scratch / "measured.csv"], 1, 7, ("proposed velocity gain", "proposed notch", "Measured response")),
+         "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed", "averages", "1: all of the position")),
+         "tuning": ("tune", scratch / "sliding.json", ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)"))}
+T, x, v, lines = 1e-3, 0.0, 0.0, ["t_s,x_ref_m,x_pos_m,x_cmd_V"]
+for k in range(9000):  # a free mass under a PD law with a chirp in its reference
+    reference = 4e-5 * math.sin(2 * math.pi * 9 / math.log(400) * (400 ** (k * T / 9) - 1))
+    u = 3e4 * (reference - x) - 150 * v
+    lines.append(f"{k * T:.6f},{reference:.12f},{x:.12f},{u:.9f}")
+    x, v = x + v * T + 0.315 * u * T * T, v + 0.63 * u * T
+(scratch / "chirp.csv").write_text("\n".join(lines) + "\n")
+sliding = json.loads(mill.read_text())
+sliding["axes"]["x"]["control"] = {"law": "sliding_mode", "sliding_per_s": 200, "gain_V_s_per_m": 100, "adaptation_V_per_m": 1e4}
+(scratch / "sliding.json").write_text(json.dumps(sliding))
+for name, (command, machine, asked_for, _, _, _) in pages.items():
+    subprocess.run([program, command, "--quiet", "--cnc", machine, "--report", scratch / f"{name}.html", *asked_for], check=True)
 options = Options()
 for argument in ("--headless=new", "--no-sandbox", "--disable-gpu"):
     options.add_argument(argument)
@@ -43,7 +56,7 @@ options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "A
 browser = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
 bad = []
 try:
-    for name, (_, axes, words) in pages.items():
+    for name, (command, _, _, axes, drawn, words) in pages.items():
         for width in (1280, 390):
             for dark in (False, True):
                 browser.set_window_size(width, 900)
@@ -61,8 +74,8 @@ try:
                             rows: document.querySelectorAll('table.figures tr').length,
                             names: drawn.every(s => s.getAttribute('aria-label')), words: document.body.innerText};""")
                 what = f"{name}, {width} px, {'dark' if dark else 'light'}"
-                good = (shown["axes"] == axes and shown["drawn"] == 5 * axes and shown["lines"] and shown["names"] and shown["small"] == 0
-                        and not shown["wide"] and not shown["outside"] and shown["rows"] >= axes * 8
+                good = (shown["axes"] == axes and shown["drawn"] == drawn and shown["lines"] and shown["names"] and shown["small"] == 0
+                        and not shown["wide"] and not shown["outside"] and (command == "tune" or shown["rows"] >= axes * 8)
                         and all(word in shown["words"] for word in words) and "nan" not in shown["words"])
                 print("ok  " if good else "BAD ", what, "" if good else {k: v for k, v in shown.items() if k != "words"})
                 bad += [] if good else [what]

@@ -63,7 +63,9 @@ for box, tables in {"trajectory": ["trajectory_keys", "trajectory_other_keys"], 
                     "ball_screw": ["ball_screw_keys", "ball_screw_other_keys"], "friction": ["friction_keys"],
                     "linear_motor": ["linear_motor_keys", "kind_key"], "encoder": ["encoder_keys", "encoder_other_keys"],
                     "tachometer": ["tachometer_keys"], "command": ["command_keys", "command_other_keys"],
-                    "friction_feedforward": ["friction_feedforward_keys"]}.items():
+                    "friction_feedforward": ["friction_feedforward_keys"], "accelerometer": ["accelerometer_keys"],
+                    "acceleration_feedback": ["acceleration_feedback_keys"],
+                    "cutting_load": ["cutting_load_keys", "cutting_load_other_keys"]}.items():
     read = set().union(*map(table, tables))
     difference = read ^ schema.schema["$defs"][box]["properties"].keys()
     expect(not difference, f"cnc.schema.json and the reader differ in the keys of {box}: {sorted(difference)}")
@@ -118,6 +120,9 @@ for good in [law(law="pid", gain_V_per_m=7e4, derivative_gain_V_s_per_m=300, der
              lambda m, x: x.update(friction_feedforward={"scale": 0.9, "width_m_per_s": 0.002}),
              lambda m, x: m["trajectory"].update(start_m=[0, 0, 0], corner_tolerance_m=0, profile="cubic_acceleration"),
              lambda m, x: x["drive"].update(current_limit_A=20, lead_error=1e-5, table_mass_kg=200, compliance_m_per_N=1e-9),
+             lambda m, x: x.update(accelerometer={"noise_m_per_s2": 0.05}, acceleration_feedback={"gain_V_s2_per_m": 0.5, "filter_Hz": 100}),
+             lambda m, x: x.update(cutting_load={"spindle_Hz": 20, "mean_N": 50, "cosine_N": [100, 0, 20], "sine_N": [3], "entry_s": 0.01}),
+             lambda m, x: x.update(cutting_load={"spindle_Hz": 20, "sine_Nm": [0.1]}),
              lambda m, x: x.update(encoder={"resolution_m": 1e-6, "noise_m": 1e-7, "on": "motor"})]:
     both(good, True)
 for bad in [lambda m, x: m.pop("trajectory"), lambda m, x: m.update(schema="quadrant.cnc/2"), lambda m, x: m.update(servo_period_s=0),
@@ -129,6 +134,10 @@ for bad in [lambda m, x: m.pop("trajectory"), lambda m, x: m.update(schema="quad
             lambda m, x: x["command"].pop("dac_bits"), lambda m, x: x["command"].update(limit_V=0),
             lambda m, x: x["encoder"].update(on="desk"), lambda m, x: m["trajectory"].update(profile="square"),
             lambda m, x: m["trajectory"].update(reach_the_feed=1), lambda m, x: m["trajectory"].update(start_m=[0, 0]),
+            lambda m, x: x.update(acceleration_feedback={"gain_V_s2_per_m": 0.5}),
+            lambda m, x: x.update(cutting_load={"spindle_Hz": 20}), lambda m, x: x.update(cutting_load={"mean_N": 1}),
+            lambda m, x: x.update(cutting_load={"spindle_Hz": 20, "mean_N": 1, "mean_Nm": 1}),
+            lambda m, x: x.update(cutting_load={"spindle_Hz": 20, "cosine_N": []}),
             law(law="pdi", gain_V_per_m=1), law(gain_V_per_m=1), law(law="pid"), law(law="pid", gain_V_per_m="much"),
             law(law="cascade_p_pi", position_gain_per_s=40, velocity_gain_V_s_per_m=150), law(law="pole_placement", natural_Hz=15),
             lambda m, x: x.update(drive={"kind": "linear_motor", "mass_kg": 100, "force_constant_N_per_V": 100, "static_N": 3})]:

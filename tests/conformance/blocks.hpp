@@ -115,6 +115,15 @@ inline const std::tuple blocks{
                                               .adaptation = p(30001_V / 1_m)},
                                              T);
           }},
+    entry{"acceleration_feedback", 0.125,
+          []<class R>(values<R>& p) {
+              return law_on<acceleration_feedback<pid<R>>>({.law = {.gain = p(701_V / 1_m),
+                                                                    .integral_gain = p(8000.0 * 1_V / (1_m * 1_s)),
+                                                                    .derivative_gain = p(3.1_V / 1_mps)},
+                                                            .gain = p(0.9_V / 1_mps2),
+                                                            .corner = 201_Hz},
+                                                           T);
+          }},
     entry{"predictive", 0.125,
           []<class R>(values<R>& p) {
               const auto cross = p(2.1e5);
@@ -216,6 +225,11 @@ inline const std::tuple blocks{
           []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 1, R>({p(1.7_ms)}, T); }},
     entry{"fractional_delay, cubic", 64,
           []<class R>(values<R>& p) { return fractional_delay<s::force, 7, 3, R>({p(1.7_ms)}, T); }},
+    entry{"cycle_tracker", 64,
+          []<class R>(values<R>& p) {
+              return cycle_tracker<s::force, 12, R>(
+                  {.cycle = p.fixed(4.3_ms), .range = p.fixed(0.1), .settles_in = 50_ms}, T);
+          }},
     entry{"repetitive, leaking", 64,
           []<class R>(values<R>& p) {
               return repetitive<s::force, 12, 2, 3, 3, R>({.cycle = p(4.3_ms),
@@ -442,6 +456,16 @@ inline const std::tuple blocks{
                                                    p(103_mmps)},
                                                   p.fixed(20.0 / 1_s)},
                                                  T);
+          }},
+    entry{"maxwell_slip_observer", 0.125,
+          []<class R>(values<R>& p) {
+              return maxwell_slip_observer<2, s::force, R>({{{p(122_N), p(177_N), p(22_mmps), p(850_N / 1_mps)},
+                                                             {p.fixed(0.4), p.fixed(0.6)},
+                                                             {},
+                                                             {p(6.1e6 * 1_N / 1_m), p(0.4e6 * 1_N / 1_m)},
+                                                             p(4000_N / 1_s)},
+                                                            300_ms},
+                                                           T);
           }},
     entry{"harmonic_force_observer", 0.125,
           []<class R>(values<R>&) {

@@ -124,7 +124,12 @@ template <class Law> struct law_on : Law {
 
     value operator()(position x) noexcept {
         using Real = quadrant::real_of<Law>;
-        return Law::operator()(as_motion(x), Real(0.25) * x, velocity::from_value(Real(-0.5) * x.value()));
+        const auto m = as_motion(x);
+        const auto v = velocity::from_value(Real(-0.5) * x.value());
+        if constexpr (requires(Law & l) { l(m, x, v, m.acceleration); })
+            return Law::operator()(m, Real(0.25) * x, v, Real(-0.75) * m.acceleration);
+        else
+            return Law::operator()(m, Real(0.25) * x, v);
     }
     void settle(value u) noexcept { Law::settle(position(), u); }
     std::complex<double> response(quadrant::frequency f) const requires requires(const Law& l) {
@@ -133,7 +138,7 @@ template <class Law> struct law_on : Law {
     {
         const quadrant::law_response r = Law::response(f);
         return r.to_position + r.to_velocity + r.to_acceleration - 0.25 * r.from_position +
-               0.5 * r.from_velocity;
+               0.5 * r.from_velocity + 0.75 * r.from_acceleration;
     }
 };
 

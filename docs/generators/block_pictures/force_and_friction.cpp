@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 // What an acceleration sensor tells of a force, and its calibration; friction that is learned.
 #include "families.hpp"
-#include "quadrant_reproduce/thesis.hpp"
+#include "quadrant_reproduce/friction_run.hpp"
 
 #include <quadrant/analysis/ferraris_calibration.hpp>
 #include <quadrant/control/quantizer.hpp>
 #include <quadrant/observer/ferraris_force_estimator.hpp>
 #include <quadrant/observer/lugre_observer.hpp>
+#include <quadrant/observer/maxwell_slip_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 #include <quadrant/sensor/white_noise.hpp>
 
@@ -84,11 +85,33 @@ picture draw_lugre_observer() {
               {over("", "behind [um]", {e}), over("", "speed [mm/s]", {v}),
                over("time [ms]", "force [N]", {with, without})});
 }
+picture draw_maxwell_slip_observer() {
+    const thesis::reading how{.substeps = 10, .cycles = 4, .level = 4.0 / 3};
+    curve table("model of the table"), learned("level learned"), level("level"),
+        truth("of the machine", dashed);
+    int k = 0;
+    const auto shows = [&k](const thesis::moment& m) { // every glitch, and now and then what lies between
+        return m.turns >= 1 && (k++ % 20 == 0 || std::abs(m.error) > 0.5);
+    };
+    thesis::run<thesis::gms_model, thesis::observer>(thesis::y, how, [&](const thesis::moment& m) {
+        if (shows(m)) table.add(m.time, m.error);
+    });
+    thesis::run<thesis::learning_model, thesis::observer>(thesis::y, how, [&](const thesis::moment& m) {
+        if (!shows(m)) return;
+        learned.add(m.time, m.error);
+        if (k % 20 == 1) level.add(m.time, m.level), truth.add(m.time, how.level);
+    });
+    return of(
+        "Axis y of the milling table with a third more friction than its table, along a sinusoid of 30 mm at "
+        "100 mm/s, with observer",
+        {over("", "tracking error [um]", {table, learned}), over("time [s]", "level", {level, truth})});
+}
 } // namespace
 
 family force_and_friction() {
     return {{"ferraris_force_estimator", draw_ferraris_force_estimator},
             {"ferraris_calibration", draw_ferraris_calibration},
-            {"lugre_observer", draw_lugre_observer}};
+            {"lugre_observer", draw_lugre_observer},
+            {"maxwell_slip_observer", draw_maxwell_slip_observer}};
 }
 } // namespace block_pictures

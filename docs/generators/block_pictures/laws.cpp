@@ -3,6 +3,7 @@
 #include "families.hpp"
 #include "trial_axis.hpp"
 
+#include <quadrant/control/acceleration_feedback.hpp>
 #include <quadrant/control/linuxcnc_pid.hpp>
 #include <quadrant/control/p_pi.hpp>
 #include <quadrant/control/pid.hpp>
@@ -16,6 +17,8 @@ namespace block_pictures {
 namespace {
 const auto& G = trial_model;
 const duration T = trial_period;
+/// Held at rest, and pushed.
+const run push{0.25, [](double) { return at_rest(0); }, 500, 0.02};
 
 picture draw_proportional_integral() {
     curve error("error"), clamped("integral_clamp"), conditional("conditional_integration"),
@@ -88,6 +91,20 @@ picture draw_sliding_mode() {
         "Error of a sliding mode law along a move of 20 mm, and a force of 500 N from 400 ms on",
         {over("", "error [um]", {a.error, b.error}), over("time [ms]", "command [V]", {a.command, b.command})});
 }
+picture draw_acceleration_feedback() {
+    using law = acceleration_feedback<pid<>>;
+    const pid<>::parameters of_pid{
+        .gain = 70e3 * 1_V / 1_m, .integral_gain = 800e3 * 1_V / (1_m * 1_s), .derivative_gain = 300_V / 1_mps};
+    const auto with = [&](const char* name, double heavier) {
+        auto gains = of_pid; // in proportion to what the axis now weighs
+        gains.gain *= 1 + heavier, gains.integral_gain *= 1 + heavier, gains.derivative_gain *= 1 + heavier;
+        return ran(name, trial_axis<law>({.law = gains, .gain = heavier / G.gain, .corner = 150_Hz}), push);
+    };
+    const record a = with("PID alone", 0), b = with("gain B = 0.5", 0.5), c = with("gain B = 1", 1);
+    return of("An axis at rest under a PID, pushed by 500 N from 20 ms on, with and without its accelerometer",
+              {over("", "position [um]", {a.place, b.place, c.place}),
+               over("time [ms]", "command [V]", {a.command, b.command, c.command})});
+}
 picture draw_predictive() {
     const predictive<>::parameters p{
         .plant = G, .weights = bryson_weights<s::voltage>(1_um, 2_mmps, 0.05_V), .horizon = 10};
@@ -119,7 +136,6 @@ picture draw_axis_law() {
         .gain = 70e3 * 1_V / 1_m, .integral_gain = 800e3 * 1_V / (1_m * 1_s), .derivative_gain = 300_V / 1_mps};
     const sliding_mode<>::parameters of_sliding{
         .plant = G, .sliding = 200.0 / 1_s, .gain = 300_V / 1_mps, .adaptation = 30e3 * 1_V / 1_m};
-    const run push{0.25, [](double) { return at_rest(0); }, 500, 0.02};
     return of(
         "An axis at rest, pushed by 500 N from 20 ms on, under six laws",
         {over(
@@ -150,6 +166,7 @@ family laws() {
             {"linuxcnc_pid", draw_linuxcnc_pid},
             {"p_pi", draw_p_pi},
             {"sliding_mode", draw_sliding_mode},
+            {"acceleration_feedback", draw_acceleration_feedback},
             {"predictive", draw_predictive},
             {"state_feedback", draw_state_feedback},
             {"axis_law", draw_axis_law}};

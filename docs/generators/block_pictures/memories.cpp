@@ -2,6 +2,7 @@
 // Delays.
 #include "families.hpp"
 
+#include <quadrant/memory/cycle_tracker.hpp>
 #include <quadrant/memory/delay_line.hpp>
 #include <quadrant/memory/fractional_delay.hpp>
 
@@ -42,7 +43,29 @@ picture draw_fractional_delay() {
          between(gains({late("order 1", straight), late("order 3", cubic)}, "delay [us]", "frequency [Hz]"),
                  1000, 1120)});
 }
+picture draw_cycle_tracker() {
+    cycle_tracker<s::force, 100> b{{.cycle = 85.859 * T, .range = 0.05, .settles_in = 200_ms}, T};
+    curve truth("cycle of the spindle", dashed), found("cycle()"), off("what does not repeat");
+    double angle = 0;
+    for (int k = 0; k < 4000; ++k) {
+        const double cycle = k < 1000 ? 85.859 : 1.02 * 85.859;
+        angle += 2 * pi / cycle;
+        const double x = 80 * std::cos(angle) + 60 * std::sin(2 * angle) + 70 * std::cos(3 * angle + 1);
+        const double y = b(x * 1_N).value();
+        if (k < 200) continue; // the first cycle
+        truth.add(0.5 * k, cycle), found.add(0.5 * k, b.cycle().value() / T.value());
+        off.add(0.5 * k, y);
+    }
+    return of(
+        "A spindle of 23.294 Hz that slows down by 2 % after 500 ms: the cycle that is followed, and what of "
+        "the force does not repeat",
+        {over("", "cycle [periods]", {found, truth}), over("time [ms]", "force [N]", {off})});
+}
 } // namespace
 
-family memories() { return {{"delay_line", draw_delay_line}, {"fractional_delay", draw_fractional_delay}}; }
+family memories() {
+    return {{"cycle_tracker", draw_cycle_tracker},
+            {"delay_line", draw_delay_line},
+            {"fractional_delay", draw_fractional_delay}};
+}
 } // namespace block_pictures

@@ -27,7 +27,10 @@ public:
 
     /// One sample; the force pushes the axis.
     void step(const axis_motion<>& r, quantity<si::force> push = 0_N) {
-        motor_(control_(r, {motor_.now().x, motor_.now().v}), push);
+        const auto v = motor_.now().v;
+        const auto a = (v - before_) / trial_period; // mean of the last period, as an accelerometer reads it
+        before_ = v;
+        motor_(control_(r, {motor_.now().x, v, a}), push);
     }
     const auto& wire() const { return control_.wire; }
     const Law& law() const { return control_.box.law; }
@@ -39,6 +42,7 @@ private:
     }
     feed_control<feed_control_boxes<Law>> control_;
     linear_motor<> motor_;
+    quantity<si::velocity> before_{}; ///< one period ago
 };
 
 /// From rest to rest over `length` in `time` without a jump in the acceleration.

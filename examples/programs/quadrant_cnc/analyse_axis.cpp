@@ -55,8 +55,8 @@ void read_measured(axis_analysis& out, const an::impulse_test& model, const frf_
     drawn.per_decade = 150;
     read_lines(out, loop, drawn, model.highest());
     out.figures = an::band_figures(loop, band);
-    out.measured =
-        measured_axis{measured.file, measured.frf.lines.size(), measured.from_Hz(), measured.to_Hz()};
+    out.measured = measured_axis{measured.file,    measured.frf.lines.size(), measured.from_Hz(),
+                                 measured.to_Hz(), measured.coherence,        measured.frf.lines};
     try {
         // Two integrators: the phase begins between 0 and -360 deg, whether the law has one or not.
         out.stable = an::unstable_poles([&](frequency f) { return loop.open(f); }, band, 2) == 0;

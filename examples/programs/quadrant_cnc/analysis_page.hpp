@@ -29,7 +29,8 @@ public:
     }
     std::string figures() const {
         std::string out;
-        if (!f_.empty()) out = magnitude() + phase() + closed() + nyquist();
+        if (a_.measured) out = measured();
+        if (!f_.empty()) out += magnitude() + phase() + closed() + nyquist();
         return out + step();
     }
 
@@ -40,6 +41,42 @@ private:
     graph_axis frequencies() const { return {f_.front(), f_.back(), "frequency [Hz]", true}; }
     std::string of(const char* what) const { return fmt::format("{} of axis {}", what, a_.name); }
 
+    /// The axis as it was measured: magnitude, phase, and how far each line can be trusted.
+    std::string measured() const {
+        const auto& m = *a_.measured;
+        std::vector<double> f, size, angle, coherence;
+        double now = -180, low = 1e9, high = -1e9;
+        for (const auto& l : m.response) {
+            f.push_back(l.f.value());
+            size.push_back(decibel(l.value));
+            low = std::min(low, size.back()), high = std::max(high, size.back());
+            const double phase = std::arg(l.value) * 180 / std::numbers::pi;
+            angle.push_back(now += std::remainder(phase - now, 360));
+            coherence.push_back(l.coherence);
+        }
+        const graph_axis across{f.front(), f.back(), "frequency [Hz]", true};
+        graph gain(across,
+                   {20 * std::floor(low / 20), 20 * std::ceil(high / 20), "axis [dB of 1 m/V]", false, 20});
+        gain.line("open", f, size);
+        gain.legend("open", "position over command");
+        const auto [least, most] = std::minmax_element(angle.begin(), angle.end());
+        graph phase(across, {90 * std::floor(*least / 90), 90 * std::ceil(*most / 90 + 1e-9), "its phase [deg]",
+                             false, 90});
+        phase.line("open", f, angle);
+        phase.legend("open", "position over command");
+        std::string out =
+            gain.figure(of("Magnitude of the measured response"), "The measured axis: position over command.") +
+            phase.figure(of("Phase of the measured response"), "Its phase; -180 deg is that of a free mass.");
+        if (m.coherence) {
+            graph trust(across, {0, 1, "coherence", false, 0.25});
+            trust.line("open", f, coherence);
+            trust.legend("open", "coherence");
+            out += trust.figure(
+                of("Coherence of the measured response"),
+                "1: all of the position follows from the command; lines below 0.5 propose nothing.");
+        }
+        return out;
+    }
     std::string magnitude() const {
         graph g(frequencies(), {-60, 80, "open loop [dB]", false, 20});
         g.line("zero", {f_.front(), f_.back()}, {0, 0});

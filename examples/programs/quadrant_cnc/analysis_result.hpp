@@ -2,6 +2,7 @@
 #pragma once
 #include "cnc_file.hpp"
 
+#include <quadrant/analysis/frf.hpp>
 #include <quadrant/analysis/law_figures.hpp>
 
 #include <string>
@@ -53,6 +54,8 @@ struct measured_axis {
     std::string file;
     std::size_t lines = 0;
     double from_Hz = 0, to_Hz = 0;
+    bool coherence = false;                                         ///< whether it is known
+    std::vector<quadrant::analysis::measured_frf::line> response{}; ///< as it was measured
     std::string not_told{}; ///< why its band does not tell whether the loop is stable; empty: it does
     proposal proposed{};
 };

@@ -3,6 +3,8 @@
 // only.
 #include "axis.hpp"
 
+#include "acceleration_loop.hpp"
+#include "cutting_load.hpp"
 #include "drive_side.hpp"
 
 #include <quadrant/diagnosis/where/controller_box.hpp>
@@ -19,7 +21,8 @@ public:
                                              {.limit_V = a.command.limit_V,
                                               .dac_bits = a.command.dac_bits,
                                               .dac_range_V = a.command.dac_range_V},
-                                             period)) {
+                                             period)),
+          inner_(make_acceleration_loop(a, period, control_->lead())), load_(make_load(a, period)) {
         if (const auto* screw = std::get_if<ball_screw_description>(&a.drive)) {
             limit_ = std::min(screw->amplifier_A_per_V * a.command.limit_V,
                               screw->current_limit_A.value_or(unlimited));
@@ -34,16 +37,21 @@ public:
         axis_sample s{
             .reading = now.position.value(), .velocity = now.velocity.value(), .place = drive_->place()};
         s.command = control_->step(asked, now);
-        drive_->step(volts::from_value(s.command));
+        if (inner_) s.command = (*inner_)(s.command, asked, now);
+        drive_->step(volts::from_value(s.command), load_ ? load_->next() : 0);
         s.reference = control_->due();
         s.effort = shown_ * drive_->effort();
-        s.limited = control_->limited() || drive_->limited();
+        s.limited = control_->limited() || (inner_ && inner_->limited()) || drive_->limited();
         s.faulted = control_->faulted() || drive_->faulted();
         return s;
     }
     void settle(double at) noexcept override {
         drive_->settle(at);
         control_->settle({.reference = at, .measured = at});
+        if (inner_) inner_->rest();
+    }
+    void cut(bool in_the_cut) noexcept override {
+        if (load_) load_->engage(in_the_cut);
     }
     std::size_t lead() const noexcept override { return control_->lead(); }
     double effort_limit() const noexcept override { return limit_; }
@@ -51,6 +59,8 @@ public:
 private:
     std::unique_ptr<drive_side> drive_;
     std::unique_ptr<quadrant::diagnosis::running_controller> control_;
+    std::optional<acceleration_loop> inner_;
+    std::unique_ptr<cutting_load> load_;
     double limit_ = unlimited, shown_ = 1;
 };
 

@@ -23,6 +23,8 @@ public:
     /// One servo period on.
     virtual axis_sample step(const quadrant::axis_motion<>& asked) noexcept = 0;
     virtual void settle(double at) noexcept = 0;
+    /// Whether the tool is in the cut, from the coming period on.
+    virtual void cut(bool in_the_cut) noexcept = 0;
     /// Periods that the reference has to be ahead.
     virtual std::size_t lead() const noexcept = 0;
     virtual double effort_limit() const noexcept = 0; ///< of current or command, both ways; infinite: none

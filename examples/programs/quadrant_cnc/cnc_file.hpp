@@ -45,7 +45,7 @@ struct linear_motor_description {
 struct sensor_description {
     double resolution_m = 0, noise_m = 0; ///< of the encoder
     bool on_motor = false;                ///< the encoder does not see lead error, screw and play
-    double tachometer_noise_m_per_s = 0;
+    double tachometer_noise_m_per_s = 0, accelerometer_noise_m_per_s2 = 0;
 };
 
 struct command_description {
@@ -59,6 +59,20 @@ struct friction_feedforward_description {
     double scale = 1, width_m_per_s = 1e-3;
 };
 
+/// What the cutter does to an axis in feed moves: mean and harmonics of the spindle; positive: forward.
+struct cutting_load_description {
+    static constexpr std::size_t most_harmonics = 32;
+    double spindle_Hz = 0, entry_s = 0; ///< turns per second; in which the tool enters or leaves the cut
+    bool torque = false;                ///< in N m on the screw; else in N on the table
+    double mean = 0;
+    std::vector<double> cosine, sine; ///< of harmonic 1, 2, ...
+};
+
+/// What the axis accelerates less than it is asked to, added to the command behind a filter.
+struct acceleration_feedback_description {
+    double gain_V_s2_per_m = 0, filter_Hz = 0;
+};
+
 struct axis_description {
     std::size_t axis = 0; ///< 0, 1, 2 is x, y, z
     std::string path;     ///< of its keys, for messages
@@ -68,6 +82,8 @@ struct axis_description {
     sensor_description sensor;
     command_description command;
     quadrant::diagnosis::controller_description law; ///< whole: what the file leaves to the drive is in it
+    std::optional<acceleration_feedback_description> acceleration;
+    std::optional<cutting_load_description> load;
 
     const char* name() const { return axis == 0 ? "x" : axis == 1 ? "y" : "z"; }
     /// Its law reads the velocities of trajectory and tachometer: whoever replays it needs them.

@@ -78,6 +78,21 @@ inline constexpr names_1 command_other_keys{"dac_bits"};
 inline constexpr std::array tachometer_keys{
     key<sensor_description>{"noise_m_per_s", not_negative, &sensor_description::tachometer_noise_m_per_s},
 };
+inline constexpr std::array accelerometer_keys{
+    key<sensor_description>{"noise_m_per_s2", not_negative, &sensor_description::accelerometer_noise_m_per_s2},
+};
+using again = acceleration_feedback_description;
+inline constexpr std::array acceleration_feedback_keys{
+    key<again>{"gain_V_s2_per_m", not_negative, &again::gain_V_s2_per_m, true},
+    key<again>{"filter_Hz", positive, &again::filter_Hz, true},
+};
+using cut = cutting_load_description;
+inline constexpr std::array cutting_load_keys{
+    key<cut>{"spindle_Hz", positive, &cut::spindle_Hz, true},
+    key<cut>{"entry_s", not_negative, &cut::entry_s},
+};
+inline constexpr std::array<std::string_view, 6> cutting_load_other_keys{"mean_N",  "cosine_N",  "sine_N",
+                                                                         "mean_Nm", "cosine_Nm", "sine_Nm"};
 inline constexpr std::array command_keys{
     key<command_description>{"limit_V", positive, &command_description::limit_V, true},
     key<command_description>{"dac_range_V", positive, &command_description::dac_range_V},
@@ -90,7 +105,16 @@ inline constexpr std::array friction_feedforward_keys{
 
 inline constexpr std::array<std::string_view, 5> cnc_file_keys{"schema", "servo_period_s", "seed", "trajectory",
                                                                "axes"};
-inline constexpr std::array<std::string_view, 8> axis_keys{
-    "travel_m", "limits", "drive", "encoder", "tachometer", "command", "control", "friction_feedforward"};
+inline constexpr std::array<std::string_view, 11> axis_keys{"travel_m",
+                                                            "limits",
+                                                            "drive",
+                                                            "encoder",
+                                                            "tachometer",
+                                                            "accelerometer",
+                                                            "command",
+                                                            "control",
+                                                            "friction_feedforward",
+                                                            "acceleration_feedback",
+                                                            "cutting_load"};
 
 } // namespace quadrant_cnc

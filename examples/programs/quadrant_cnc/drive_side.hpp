@@ -18,7 +18,7 @@ using volts = quantity_of<signal::voltage>;
 /// The machine's side of an axis, whatever its drive.
 struct drive_side {
     virtual ~drive_side() = default;
-    virtual void step(volts command) noexcept = 0;
+    virtual void step(volts command, double push_N) noexcept = 0; ///< push: on the table, from outside
     virtual axis_measurement<> measured() const noexcept = 0;
     virtual void settle(double at) noexcept = 0;
     virtual double place() const noexcept = 0;
@@ -30,7 +30,7 @@ struct drive_side {
 template <class Boxes> struct drive_of final : drive_side {
     drive_of(const typename Boxes::parameters& p, double period)
         : drive{.box = {p, duration::from_value(period)}} {}
-    void step(volts command) noexcept override { drive(command); }
+    void step(volts command, double push_N) noexcept override { drive(command, in_si(push_N)); }
     axis_measurement<> measured() const noexcept override { return drive.measured(); }
     void settle(double at) noexcept override { drive.settle(in_si(at)); }
     double place() const noexcept override { return drive.wire.place.value(); }
@@ -44,6 +44,7 @@ template <class Parameters> void add_sensors(Parameters& p, const sensor_descrip
     p.encoder_step = in_si(s.resolution_m);
     p.encoder_noise = in_si(s.noise_m);
     p.tachometer_noise = in_si(s.tachometer_noise_m_per_s);
+    p.accelerometer_noise = in_si(s.accelerometer_noise_m_per_s2);
     p.scale_on_table = !s.on_motor;
     p.seed = seed;
 }

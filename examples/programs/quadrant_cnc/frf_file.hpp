@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace quadrant_cnc {
 
@@ -12,6 +13,7 @@ struct frf_file {
     std::string file;
     quadrant::analysis::measured_frf frf;
     bool coherence = false; ///< whether the file says it
+    std::vector<std::string> notes{};
 
     double from_Hz() const { return frf.lines.front().f.value(); }
     double to_Hz() const { return frf.lines.back().f.value(); }

@@ -97,7 +97,11 @@ inline quadrant::diagnosis::machine_description gap_machine(const cnc_descriptio
         g.actuator.limit_V = a.command.limit_V;
         g.actuator.dac_bits = a.command.dac_bits;
         g.actuator.dac_range_V = a.command.dac_range_V;
-        g.controller = a.law;
+        if (a.acceleration)
+            note("a machine file has no law with an accelerometer, so the exported one has no controller");
+        else
+            g.controller = a.law;
+        if (a.load) note("the cutting load is not in the exported machine file: to the diagnosis it is a gap");
         out.axes.push_back(std::move(g));
     }
     return out;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "acceleration_loop.hpp"
 #include "drive_side.hpp"
 
 #include <quadrant/analysis/impulse_test.hpp>
@@ -23,6 +24,7 @@ inline axis_description linear_part(axis_description a) {
         motor.drive_limit_V.reset();
     }
     a.sensor.resolution_m = a.sensor.noise_m = a.sensor.tachometer_noise_m_per_s = 0;
+    a.sensor.accelerometer_noise_m_per_s2 = 0;
     a.command = {.limit_V = unlimited, .dac_bits = {}, .dac_range_V = {}};
     if (a.law.values.contains("friction.scale")) a.law.set("friction.scale", 0);
     return a;
@@ -41,25 +43,28 @@ public:
                                               .dac_bits = a.command.dac_bits,
                                               .dac_range_V = a.command.dac_range_V},
                                              period)),
-          where_(where) {}
+          inner_(make_acceleration_loop(a, period, control_->lead())), where_(where) {}
 
     void rest() {
         drive_->settle(0);
         control_->settle({.reference = 0, .measured = 0});
+        if (inner_) inner_->rest();
     }
     std::size_t lead() const { return control_->lead(); }
     quadrant::analysis::loop_sample step(const axis_motion<>& asked, double push) {
         const axis_measurement<> now = drive_->measured();
         const double place = where_ == seen::at_table ? drive_->place() : now.position.value(),
-                     command = control_->step(asked, now) + push;
-        drive_->step(volts::from_value(command));
+                     of_law = control_->step(asked, now);
+        const double command = (inner_ ? (*inner_)(of_law, asked, now) : of_law) + push;
+        drive_->step(volts::from_value(command), 0);
         return {command, place, control_->due()};
     }
-    bool limited() const { return control_->limited() || drive_->limited(); }
+    bool limited() const { return control_->limited() || (inner_ && inner_->limited()) || drive_->limited(); }
 
 private:
     std::unique_ptr<drive_side> drive_;
     std::unique_ptr<quadrant::diagnosis::running_controller> control_;
+    std::optional<acceleration_loop> inner_;
     seen where_;
 };
 

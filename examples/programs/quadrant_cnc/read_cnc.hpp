@@ -83,9 +83,17 @@ private:
         }
         if (const auto tachometer = node.find("tachometer"))
             qd::read_numbers(*tachometer, tachometer_keys, {}, a.sensor);
+        if (const auto accelerometer = node.find("accelerometer"))
+            qd::read_numbers(*accelerometer, accelerometer_keys, {}, a.sensor);
         read_command(node.need("command"), a.command);
         read_law(node.need("control").object(), a);
         if (const auto friction = node.find("friction_feedforward")) read_friction_feedforward(*friction, a);
+        if (const auto feedback = node.find("acceleration_feedback")) {
+            acceleration_feedback_description f;
+            qd::read_numbers(*feedback, acceleration_feedback_keys, {}, f);
+            a.acceleration = f;
+        }
+        if (const auto load = node.find("cutting_load")) read_cutting_load(*load, a);
         out_.axes.push_back(std::move(a));
     }
 
@@ -144,6 +152,38 @@ private:
         friction_feedforward_description f;
         qd::read_numbers(node, friction_feedforward_keys, {}, f);
         feed_friction_forward(a, f);
+    }
+
+    static void read_cutting_load(const qd::json_node& node, axis_description& a) {
+        cutting_load_description c;
+        qd::read_numbers(node, cutting_load_keys, cutting_load_other_keys, c);
+        const auto numbers = [&](const char* key, std::vector<double>& to) {
+            const auto given = node.find(key);
+            if (!given) return false;
+            to = given->numbers(qd::rule::any_number);
+            if (to.empty() || to.size() > cutting_load_description::most_harmonics)
+                given->refuse(
+                    fmt::format("must hold 1 to {} harmonics", cutting_load_description::most_harmonics));
+            return true;
+        };
+        const auto mean = [&](const char* key) {
+            const auto given = node.find(key);
+            if (given) c.mean = given->number(qd::rule::any_number);
+            return given.has_value();
+        };
+        const bool force = mean("mean_N") | numbers("cosine_N", c.cosine) | numbers("sine_N", c.sine);
+        std::vector<double> cosine, sine;
+        const double mean_N = c.mean;
+        c.torque = mean("mean_Nm") | numbers("cosine_Nm", cosine) | numbers("sine_Nm", sine);
+        if (force == c.torque)
+            node.refuse(
+                force ? "must be given in N or in N m, not in both"
+                      : "must have at least one of mean_N, cosine_N, sine_N, mean_Nm, cosine_Nm, sine_Nm");
+        if (!c.torque) c.mean = mean_N;
+        if (c.torque && !std::holds_alternative<ball_screw_description>(a.drive))
+            node.refuse("a linear motor has no screw for a torque: give it in N");
+        if (c.torque) c.cosine = std::move(cosine), c.sine = std::move(sine);
+        a.load = std::move(c);
     }
 
     template <class Names> static std::size_t choice(const qd::json_node& node, const Names& names) {

@@ -8,6 +8,7 @@
 #include "run_memory.hpp"
 
 #include <chrono>
+#include <deque>
 
 namespace quadrant_cnc {
 
@@ -20,7 +21,8 @@ class run {
 public:
     run(const cnc_description& cnc, const std::string& path_file, log_writer* log)
         : cnc_(cnc), program_(cnc, path_file), log_(log), period_(cnc.servo_period_s), drive_(make_drive(cnc)),
-          waiting_(0) {
+          waiting_(0), cuts_(std::any_of(cnc.axes.begin(), cnc.axes.end(),
+                                         [](const axis_description& a) { return a.load.has_value(); })) {
         std::size_t most_lead = 0;
         for (const axis_description& a : cnc.axes) {
             try {
@@ -96,6 +98,7 @@ private:
             }
             if (out_.moves++ == 0) settle(move->path.start());
             contour_.add(move->path, move->line);
+            if (cuts_) feeds_.push_back({move->line, !move->rapid});
             out_.path_length += move->path.length();
             out_.lines = move->line;
         }
@@ -115,6 +118,7 @@ private:
         point asked{due.axis[0].position.value(), due.axis[1].position.value(), due.axis[2].position.value()};
         point place = asked;
         line_ = due.line;
+        if (cuts_) cut(due.line);
         if (log_) log_->number(t, 7);
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             one& a = axes_[i];
@@ -152,6 +156,13 @@ private:
         close_up_.add(sample, worst);
         ++out_.samples;
     }
+    /// The tool is in the cut in feed moves, until the path is over.
+    void cut(std::size_t line) {
+        while (line != 0 && feeds_.size() > 1 && feeds_.front().line != line) feeds_.pop_front();
+        const bool over = drive_->done() && waiting_.ago(waiting_.longest()).speed == 0;
+        const bool in_the_cut = !feeds_.empty() && feeds_.front().line == line && feeds_.front().feed && !over;
+        for (one& a : axes_) a.box->cut(in_the_cut);
+    }
     void take(std::size_t i, const trajectory::motion& asked, double error, const axis_sample& s, double t) {
         axis_outcome& o = out_.axes[i];
         double* const v = values_.data() + 1 + run_outcome::of_axis * i;
@@ -172,6 +183,12 @@ private:
     std::unique_ptr<interpolator> drive_;
     std::vector<one> axes_;
     waiting_line waiting_;
+    struct line_kind {
+        std::size_t line;
+        bool feed;
+    };
+    std::deque<line_kind> feeds_{}; ///< of the moves on their way; only for machines that cut
+    bool cuts_;
     contour contour_;
     close_up close_up_;
     std::vector<double> values_;

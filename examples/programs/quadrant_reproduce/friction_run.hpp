@@ -3,6 +3,7 @@
 #include "thesis.hpp"
 
 #include <quadrant/loop/milling_axis_boxes.hpp>
+#include <quadrant/observer/maxwell_slip_observer.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
 #include <algorithm>
@@ -31,6 +32,12 @@ struct gms_model {
     static box::parameters of(const axis& a) { return gms<signal::voltage>(a, 1.0 / a.kf); }
 };
 
+/// The model with a level that it learns from what the observer is left with.
+struct learning_model {
+    using box = maxwell_slip_observer<4, signal::voltage>;
+    static box::parameters of(const axis& a) { return {gms_model::of(a), 500_ms}; }
+};
+
 struct no_observer {
     using box = absent<signal::position, signal::voltage>;
     static box::parameters of(const axis&) { return {}; }
@@ -49,6 +56,7 @@ struct reading {
     std::size_t substeps = 10; ///< of 500 us
     duration preview = 0_s;    ///< of the feedforward
     double cycles = 3;         ///< of the sinusoid
+    double level = 1;          ///< of the machine's friction, over the table's
 };
 
 /// The loop of `milling_axis` on a `linear_motor` with the friction of the axis, sample by sample.
@@ -68,6 +76,11 @@ public:
         double sum = 0;
         for (const auto& each : motor_.friction().now().elements) sum += each.force.value();
         return sum;
+    }
+    /// What its friction box has learned; 1 for one that does not learn.
+    double level() const {
+        if constexpr (requires { loop_.box.friction.level(); }) return loop_.box.friction.level();
+        return 1;
     }
     /// A box at fault, or the amplifier clips: nothing here asks for a tenth of its 10 V but a loop that
     /// swings.
@@ -89,6 +102,8 @@ private:
                             .encoder_step = how.encoder,
                             .substeps = how.substeps};
         p.friction.curve.viscous += a.A_gms * mass; // A' beside sigma
+        p.friction.curve.coulomb *= how.level;
+        p.friction.curve.static_level *= how.level;
         return p;
     }
 
@@ -102,6 +117,7 @@ struct lag {
         0; ///< um; largest error in the quarter of a half cycle after a reversal, mean of all but the first
     double worst = 0;      ///< um; the largest of these
     double all = 0;        ///< um; largest error at any time after the first half cycle and a half
+    double level = 1;      ///< of the friction, as learned
     bool diverged = false; ///< error above 1 mm, a box at fault, or the amplifier clipped: no result
 };
 
@@ -113,6 +129,7 @@ struct moment {
     double reference;   ///< m
     double error;       ///< um, reference minus axis
     double friction;    ///< N
+    double level;       ///< of the friction, as learned so far
 };
 
 /// Runs the experiment; `tell(moment)` hears every sample.
@@ -133,7 +150,7 @@ lag run(const axis& a, const reading& how, Tell&& tell) {
         const double t = static_cast<double>(k) * T, turns = w * t / pi_;
         const auto now = motion(t), ahead = motion(t + how.preview.value());
         const double error = 1e6 * (now.position.value() - under_test.position()), size = std::abs(error);
-        tell(moment{t, turns, now.position.value(), error, under_test.friction()});
+        tell(moment{t, turns, now.position.value(), error, under_test.friction(), under_test.level()});
         if (turns >= 1.5) found.all = std::max(found.all, size);
         if (turns >= 2 && turns - std::floor(turns) < 0.25)
             peak = std::max(peak, size);
@@ -147,6 +164,7 @@ lag run(const axis& a, const reading& how, Tell&& tell) {
         under_test.step(now, ahead);
     }
     if (reversals > 0) found.glitch /= reversals;
+    found.level = under_test.level();
     return found;
 }
 template <class Compensation, class Observer = no_observer> lag run(const axis& a, const reading& how = {}) {

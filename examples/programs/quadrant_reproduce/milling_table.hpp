@@ -175,6 +175,7 @@ public:
         return (of_y ? loop_.table().y().wire.place : loop_.table().x().wire.place).value();
     }
     bool stopped() const { return loop_.faulted() || loop_.limited(); }
+    loop& whole() { return loop_; }
 
 private:
     static typename slide::parameters machine(const axis& a, const axis& friction, const cut& c) {

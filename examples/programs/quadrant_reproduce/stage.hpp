@@ -4,6 +4,7 @@
 #include <quadrant/base/literals.hpp>
 #include <quadrant/control/predictive.hpp>
 #include <quadrant/friction/lugre.hpp>
+#include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/loop/feed_control.hpp>
 #include <quadrant/observer/kalman.hpp>
 #include <quadrant/observer/lugre_observer.hpp>
@@ -118,8 +119,31 @@ struct moment {
     double error() const { return reference - position; }
 };
 
+/// The machine's motor on the friction that the controller believes in, with numbers of its own.
+struct lugre_machine {
+    using type = motor;
+    static type::parameters of(const machine& m) { return motor_of(m); }
+};
+/// The same on friction by another law: two springs that break away, over about the same way.
+struct springs_machine {
+    using type = linear_motor<maxwell_slip<2>>;
+    static type::parameters of(const machine& m) {
+        return {.mass = in_si(m.mass),
+                .force_constant = in_si(m.force_constant),
+                .friction = {.curve = {in_si(m.coulomb), in_si(m.static_level), in_si(m.stribeck),
+                                       in_si(m.viscous)},
+                             .weights = {0.6, 0.4},
+                             .forces = {},
+                             .stiffness = {in_si(0.8 * m.stiffness), in_si(0.2 * m.stiffness)},
+                             .attraction = 1000_N / 1_s},
+                .limit = 8_V,
+                .encoder_step = 1_um,
+                .substeps = m.substeps};
+    }
+};
+
 /// The stage under control; references are given `horizon` samples before they are due.
-template <class Compensation> class axis {
+template <class Compensation, class Machine = lugre_machine> class axis {
 public:
     axis(const machine& is, const machine& thought, const tuning& t)
         : control_{.box = {{.law = law_of(thought, t),
@@ -127,7 +151,7 @@ public:
                             .limit = 8_V},
                            period}},
           observer_(Compensation::observer_of(thought), period), filter_(filter_of(thought, t), period),
-          motor_(motor_of(is), period), drive_(drive_of(is), period), current_loops_(is.current_loops) {}
+          motor_(Machine::of(is), period), drive_(drive_of(is), period), current_loops_(is.current_loops) {}
 
     moment step(double time, const axis_motion<>& due_later) {
         const auto speed = filter_(measured_, command_);
@@ -153,7 +177,7 @@ private:
     feed_control<feed_control_boxes<law, typename Compensation::forward>> control_;
     typename Compensation::observer observer_;
     kalman<signal::voltage> filter_;
-    motor motor_;
+    typename Machine::type motor_;
     three_phase_drive<> drive_;
     bool current_loops_;
     quantity<si::length> measured_{};
@@ -161,10 +185,10 @@ private:
 };
 
 /// From rest at zero; `reference(t)` is defined for every time; `tell(moment)` hears every sample of 0 ... end.
-template <class Compensation, class Reference, class Tell>
+template <class Compensation, class Machine = lugre_machine, class Reference, class Tell>
 void run(const machine& is, const machine& thought, const tuning& t, const Reference& reference, double end,
          Tell&& tell) {
-    axis<Compensation> a(is, thought, t);
+    axis<Compensation, Machine> a(is, thought, t);
     const double T = period.value();
     const auto samples = static_cast<long>(end / T + 0.5);
     const long known = static_cast<long>(horizon);
@@ -181,7 +205,7 @@ struct figures {
     double peak_speed_at = 0;                      ///< [s]
     double stuck_from = 0; ///< [um] to go where it first stands still, below 0.1 mm/s, after half the move
 };
-template <class Compensation, class Tell>
+template <class Compensation, class Machine = lugre_machine, class Tell>
 figures move(const machine& is, const machine& thought, const tuning& t, double length, double time, double end,
              Tell&& tell) {
     const trajectory::s_curve curve({length * 1_m, time * 1_s});
@@ -190,7 +214,7 @@ figures move(const machine& is, const machine& thought, const tuning& t, double 
         return axis_motion<>{m.position, m.velocity, m.acceleration};
     };
     figures f;
-    run<Compensation>(is, thought, t, reference, end, [&](const moment& m) {
+    run<Compensation, Machine>(is, thought, t, reference, end, [&](const moment& m) {
         if (std::abs(m.velocity) > f.peak_speed) f.peak_speed = std::abs(m.velocity), f.peak_speed_at = m.time;
         if (f.stuck_from == 0 && m.time > time / 2 && std::abs(m.velocity) < 1e-4)
             f.stuck_from = 1e6 * std::abs(length - m.position);

@@ -2,9 +2,10 @@
 #include "experiment/stage_cycle.hpp"
 #include "experiment/stage_drive.hpp"
 #include "experiment/stage_moves.hpp"
+#include "experiment/stage_other.hpp"
 #include "experiment/stage_tuning.hpp"
 #include "experiments.hpp"
 
 std::vector<quadrant_reproduce::experiment> quadrant_reproduce::stage_experiments() {
-    return {stage_moves(), stage_cycle(), stage_drive(), stage_tuning()};
+    return {stage_moves(), stage_cycle(), stage_drive(), stage_other(), stage_tuning()};
 }

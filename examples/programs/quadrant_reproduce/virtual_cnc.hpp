@@ -153,11 +153,13 @@ struct circle {
 };
 
 /// One axis of the machine under any control law.
-template <class Law> class servo {
+template <class Law, class Boxes = machine_boxes> class servo {
 public:
-    servo(const axis& a, const typename Law::parameters& law, quantity<si::length> play, std::uint64_t seed)
-        : drive_{.box = {drive(a, play, seed), period}},
+    servo(const typename Boxes::parameters& machine, const typename Law::parameters& law)
+        : drive_{.box = {machine, period}},
           control_{.box = {{.law = law, .limit = command_limit, .dac_step = dac_step}, period}} {}
+    servo(const axis& a, const typename Law::parameters& law, quantity<si::length> play, std::uint64_t seed)
+        : servo(drive(a, play, seed), law) {}
     void settle(quantity<si::length> at) {
         drive_.settle(at);
         control_.settle(at);
@@ -167,7 +169,7 @@ public:
     const auto& control() const { return control_; }
 
 private:
-    feed_drive<machine_boxes> drive_;
+    feed_drive<Boxes> drive_;
     feed_control<feed_control_boxes<Law>> control_;
 };
 

@@ -30,8 +30,11 @@ struct reversal_error { // um
     double glitch;      ///< mean of the largest errors after the reversals but the first, as friction_run.hpp
     double between;     ///< largest error half-way between reversals
 };
-/// Nothing when it was stopped: an error beyond 1 mm or growing, a clipped command, or a box at fault.
-inline std::optional<reversal_error> reversals_with(const difference& d) {
+/// Drives that machine along `wanted(t)` for so long [s], from rest where it begins. `tell(t, wanted, at,
+/// reading, command)` hears every sample: the axis [m], what its encoder reads [m], what the controller answers
+/// [V]; false stops. False when it was stopped, by that or by a clipped command or a box at fault.
+template <class Wanted, class Tell>
+bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&& tell) {
     using loop_type = milling_axis<milling_axis_boxes<gms_model::box>>;
     using motor_type = linear_motor<maxwell_slip<4>>;
     auto controller = controller_of<decltype(loop_type::box)>(y);
@@ -59,34 +62,55 @@ inline std::optional<reversal_error> reversals_with(const difference& d) {
     motor_type motor{p, period};
 
     white_noise gauss(1);
-    const double amplitude = 0.03, w = 0.1 / amplitude, T = period.value();
-    divergence_guard runs_away(1000, static_cast<std::size_t>(pi_ / w / T), 3); // a window is one half cycle
-    quantity<si::length> reading{};
-    reversal_error found{0, 0};
-    double peak = 0;
-    int reversals = 0;
-    const auto samples = static_cast<int>(3 * 2 * pi_ / w / T);
+    const double T = period.value();
+    auto reading = wanted(0).position;
+    if (reading.value() != 0) { // else as new
+        motor.settle(reading);
+        loop.settle(reading);
+    }
+    const auto samples = static_cast<int>(lasts / T);
     for (int k = 0; k < samples; ++k) {
-        const double t = k * T, turns = w * t / pi_;
-        const typename loop_type::motion wanted{amplitude * (1 - std::cos(w * t)) * 1_m,
-                                                amplitude * w * std::sin(w * t) * 1_mps,
-                                                amplitude * w * w * std::cos(w * t) * 1_mps2};
-        const double at = motor.now().x.value(), error = 1e6 * (wanted.position.value() - at);
-        if (runs_away(error) || motor.faulted() || loop.faulted() || loop.limited()) return std::nullopt;
-        const double phase = turns - std::floor(turns);
-        if (turns >= 2 && phase < 0.25)
-            peak = std::max(peak, std::abs(error));
-        else if (peak > 0) {
-            found.glitch += std::exchange(peak, 0);
-            ++reversals;
-        }
-        if (turns >= 2 && phase > 0.4 && phase < 0.9) found.between = std::max(found.between, std::abs(error));
-        motor(loop(wanted, reading), d.cogging * std::sin(2 * pi_ * at / 0.032) * 1_N);
+        const typename loop_type::motion now = wanted(k * T);
+        const double at = motor.now().x.value();
+        if (motor.faulted() || loop.faulted() || loop.limited()) return false;
+        const auto command = loop(now, reading);
+        if (!tell(k * T, now, at, reading.value(), command.value())) return false;
+        motor(command, d.cogging * std::sin(2 * pi_ * at / 0.032) * 1_N);
         double seen = motor.now().x.value();
         if (d.noise > 0) seen += d.noise * gauss();
         if (d.jitter > 0) seen += d.jitter * gauss() * motor.now().v.value();
         reading = d.encoder * std::round(seen / d.encoder) * 1_m;
     }
+    return true;
+}
+
+/// Nothing when it was stopped: an error beyond 1 mm or growing, a clipped command, or a box at fault.
+inline std::optional<reversal_error> reversals_with(const difference& d) {
+    const double amplitude = 0.03, w = 0.1 / amplitude, T = period.value();
+    const auto wanted = [&](double t) {
+        return axis_motion<>{amplitude * (1 - std::cos(w * t)) * 1_m, amplitude * w * std::sin(w * t) * 1_mps,
+                             amplitude * w * w * std::cos(w * t) * 1_mps2};
+    };
+    divergence_guard runs_away(1000, static_cast<std::size_t>(pi_ / w / T), 3); // a window is one half cycle
+    reversal_error found{0, 0};
+    double peak = 0;
+    int reversals = 0;
+    const bool whole = drive_wrong(
+        d, wanted, 3 * 2 * pi_ / w, [&](double t, const axis_motion<>& asked, double at, double, double) {
+            const double turns = w * t / pi_, error = 1e6 * (asked.position.value() - at);
+            if (runs_away(error)) return false;
+            const double phase = turns - std::floor(turns);
+            if (turns >= 2 && phase < 0.25)
+                peak = std::max(peak, std::abs(error));
+            else if (peak > 0) {
+                found.glitch += std::exchange(peak, 0);
+                ++reversals;
+            }
+            if (turns >= 2 && phase > 0.4 && phase < 0.9)
+                found.between = std::max(found.between, std::abs(error));
+            return true;
+        });
+    if (!whole) return std::nullopt;
     found.glitch /= reversals;
     return found;
 }

@@ -10,9 +10,10 @@
 
 namespace quadrant::analysis {
 
-/// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder and tachometer see it at the
-/// samples: exact.
+/// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder, tachometer and accelerometer
+/// see it at the samples: exact.
 ///   velocity B gained/(z - kept),  position B {way + gained^2/(z - kept)}/(z - 1),  of `viscous_step`
+///   acceleration (1 - 1/z)/T times the velocity: the mean of the last period
 /// Source: [Franklin1998] zero-order hold.
 template <signal_tag Command = signal::voltage> struct sampled_axis {
     quadrant::axis_model<Command> plant;
@@ -22,6 +23,7 @@ template <signal_tag Command = signal::voltage> struct sampled_axis {
         const auto [z, step] = at(f);
         return plant.gain.value() * step.gained / (z - step.kept);
     }
+    complex acceleration(frequency f) const { return (1.0 - 1.0 / at(f).z) / period.value() * velocity(f); }
     complex position(frequency f) const {
         const auto [z, step] = at(f);
         return plant.gain.value() * (step.way + step.gained * step.gained / (z - step.kept)) / (z - 1.0);
@@ -39,7 +41,7 @@ private:
 };
 
 /// Every loop of one feed axis under a linear law: the blocks' own response around the sampled axis.
-///   L = S_x G_x + S_v G_v,   open at the command: what the margins are read from
+///   L = S_x G_x + S_v G_v + S_a G_a,   open at the command: what the margins are read from
 ///   tracking     (T_x + s T_v + s^2 T_a) G_x / (1 + L), of a reference that knows its derivatives (s = j w)
 ///   sensitivity  1/(1 + L)
 ///   disturbance  G_x/(1 + L), position over what is added to the command
@@ -54,7 +56,8 @@ struct law_loop {
 
     complex open(frequency f) const {
         const law_response r = law.response(f);
-        return r.from_position * axis.position(f) + r.from_velocity * axis.velocity(f);
+        return r.from_position * axis.position(f) + r.from_velocity * axis.velocity(f) +
+               r.from_acceleration * axis.acceleration(f);
     }
     complex sensitivity(frequency f) const { return 1.0 / (1.0 + open(f)); }
     complex disturbance(frequency f) const { return axis.position(f) * sensitivity(f); }

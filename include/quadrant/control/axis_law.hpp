@@ -11,6 +11,7 @@
 ///
 ///   reference  `axis_motion`: position, velocity, acceleration that the trajectory asks of sample k + lead().
 ///   measured   position of sample k, from the encoder; velocity of sample k, from the tachometer, in units of the table.
+///              A law that takes a fourth argument gets the acceleration of sample k, from an accelerometer.
 ///   u          command, to act from sample k on until sample k + 1. The law does not limit it: a `limiter` follows, and a law
 ///              that integrates is told what was left of it by applied(u), before the next sample.
 /// reset      as new: at rest at zero.
@@ -33,17 +34,18 @@
 /// Source: [Yeung2006] eq. (19).
 namespace quadrant {
 
-/// Eq. (19) of a linear law at one frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v). The lead is
+/// Eq. (19) of a linear law at a frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v, a). The lead is
 /// not in it: `to` takes the reference as it is given.
 struct law_response {
     std::complex<double> to_position, to_velocity, to_acceleration;
-    std::complex<double> from_position, from_velocity;
+    std::complex<double> from_position, from_velocity, from_acceleration{};
 };
 
-/// What encoder and tachometer say of one sample.
+/// What encoder, tachometer and accelerometer say of one sample.
 template <class Real = double> struct axis_measurement {
     quantity_of<signal::position, Real> position{};
     quantity_of<signal::velocity, Real> velocity{};
+    quantity_of<signal::acceleration, Real> acceleration{}; ///< 0 where nothing measures it
 };
 
 /// See above. Write `static_assert(axis_law<my_law<>>)` under your law.

@@ -99,7 +99,7 @@ static_assert(control_boxes<feed_control_boxes<>>);
 template <signal_tag Command, class Real> struct feed_control_wires {
     quantity_of<signal::position, Real> reference, measured, position_error;
     quantity_of<signal::velocity, Real> reference_velocity, measured_velocity;
-    quantity_of<signal::acceleration, Real> reference_acceleration;
+    quantity_of<signal::acceleration, Real> reference_acceleration, measured_acceleration;
     quantity_of<Command, Real> feedback, friction, wanted, limited, command;
 
     static constexpr auto taps() {
@@ -110,6 +110,7 @@ template <signal_tag Command, class Real> struct feed_control_wires {
                           tap<signal::velocity, &wires::reference_velocity>("reference_velocity"),
                           tap<signal::velocity, &wires::measured_velocity>("measured_velocity"),
                           tap<signal::acceleration, &wires::reference_acceleration>("reference_acceleration"),
+                          tap<signal::acceleration, &wires::measured_acceleration>("measured_acceleration"),
                           tap<Command, &wires::feedback>("feedback"),
                           tap<Command, &wires::friction>("friction"),
                           tap<Command, &wires::wanted>("wanted"),
@@ -147,7 +148,7 @@ template <control_boxes Boxes> struct feed_control {
 
     command operator()(const axis_motion<real>& reference, const axis_measurement<real>& measured) noexcept {
         if (!finite(reference.position, reference.velocity, reference.acceleration, measured.position,
-                    measured.velocity)) {
+                    measured.velocity, measured.acceleration)) {
             fault = true;
             return wire.command;
         }
@@ -158,7 +159,13 @@ template <control_boxes Boxes> struct feed_control {
         wire.measured = measured.position;
         wire.measured_velocity = measured.velocity;
         wire.position_error = wire.reference - wire.measured;
-        wire.feedback = box.law(known.ahead, measured.position, measured.velocity);
+        wire.measured_acceleration = measured.acceleration;
+        if constexpr (requires {
+                          box.law(known.ahead, measured.position, measured.velocity, measured.acceleration);
+                      })
+            wire.feedback = box.law(known.ahead, measured.position, measured.velocity, measured.acceleration);
+        else
+            wire.feedback = box.law(known.ahead, measured.position, measured.velocity);
         wire.friction = box.friction(wire.reference_velocity);
         wire.wanted = wire.feedback + wire.friction;
         wire.limited = box.limit(wire.wanted);

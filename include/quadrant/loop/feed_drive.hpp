@@ -38,6 +38,7 @@ concept drive_boxes =
     { b.encoder_noise() } -> std::same_as<quantity_of<signal::position, real_of<decltype(B::drive)>>>;
     requires maps<decltype(B::encoder), signal::position, signal::position, real_of<decltype(B::drive)>>;
     { b.tachometer_noise() } -> std::same_as<quantity_of<signal::velocity, real_of<decltype(B::drive)>>>;
+    { b.accelerometer_noise() } -> std::same_as<quantity_of<signal::acceleration, real_of<decltype(B::drive)>>>;
     { b.scale_on_table } -> std::convertible_to<bool>;
 };
 
@@ -58,12 +59,13 @@ struct feed_drive_boxes {
         typename Drive::parameters drive;
         typename Lead::parameters lead{};
         quantity<si::mass, number> table_mass{}; ///< that bends the screw; 0: does not bend it
-        gain_of<signal::position, signal::force, number> compliance{}; ///< of screw and nut; 0: rigid
-        quantity_of<signal::position, number> backlash{};              ///< from flank to flank; >= 0
-        quantity_of<signal::position, number> encoder_step{};          ///< 0: none
-        quantity_of<signal::position, number> encoder_noise{};         ///< standard deviation; 0: none
-        quantity_of<signal::velocity, number> tachometer_noise{};      ///< standard deviation; 0: none
-        std::uint64_t seed = 1;                                        ///< of the noise; another for every axis
+        gain_of<signal::position, signal::force, number> compliance{};   ///< of screw and nut; 0: rigid
+        quantity_of<signal::position, number> backlash{};                ///< from flank to flank; >= 0
+        quantity_of<signal::position, number> encoder_step{};            ///< 0: none
+        quantity_of<signal::position, number> encoder_noise{};           ///< standard deviation; 0: none
+        quantity_of<signal::velocity, number> tachometer_noise{};        ///< standard deviation; 0: none
+        quantity_of<signal::acceleration, number> accelerometer_noise{}; ///< standard deviation; 0: none
+        std::uint64_t seed = 1; ///< of the noise; another for every axis
         bool scale_on_table =
             true; ///< else the encoder sits on the motor and does not see lead error, screw and play
     };
@@ -73,7 +75,8 @@ struct feed_drive_boxes {
           table({gain_of<signal::force, signal::acceleration, number>(p.table_mass)}, period),
           screw({p.compliance}, period), play({p.backlash}, period),
           encoder_noise({p.encoder_noise, 2 * p.seed}, period), encoder({p.encoder_step}, period),
-          tachometer_noise({p.tachometer_noise, 2 * p.seed + 1}, period), scale_on_table(p.scale_on_table) {}
+          tachometer_noise({p.tachometer_noise, 2 * p.seed + 1}, period),
+          accelerometer_noise({p.accelerometer_noise, ~p.seed}, period), scale_on_table(p.scale_on_table) {}
 
     proportional<signal::voltage, effort, real> amplifier;
     limiter<effort, real> effort_limit;
@@ -86,6 +89,7 @@ struct feed_drive_boxes {
     white_noise<signal::position, real> encoder_noise;
     quantizer<signal::position, real> encoder;
     white_noise<signal::velocity, real> tachometer_noise;
+    white_noise<signal::acceleration, real> accelerometer_noise;
     bool scale_on_table;
 };
 static_assert(drive_boxes<feed_drive_boxes<>>);
@@ -101,6 +105,7 @@ template <signal_tag Effort, class Real> struct feed_drive_wires {
     quantity_of<signal::force, Real> transmitted;         ///< through the screw
     quantity_of<signal::position, Real> led, deflection, nut, place, reading;
     quantity_of<signal::velocity, Real> tachometer;
+    quantity_of<signal::acceleration, Real> accelerometer;
 
     static constexpr auto taps() {
         using wires = feed_drive_wires;
@@ -117,15 +122,17 @@ template <signal_tag Effort, class Real> struct feed_drive_wires {
                           tap<signal::position, &wires::nut>("nut"),
                           tap<signal::position, &wires::place>("place"),
                           tap<signal::position, &wires::reading>("reading"),
-                          tap<signal::velocity, &wires::tachometer>("tachometer")};
+                          tap<signal::velocity, &wires::tachometer>("tachometer"),
+                          tap<signal::acceleration, &wires::accelerometer>("accelerometer")};
     }
 };
 
 /// The machine's side of one feed axis as named boxes: current amplifier with its limit, motor and screw on
-/// friction, lead error, screw that yields, play, encoder and tachometer. The controller's side is
+/// friction, lead error, screw that yields, play, encoder, tachometer, accelerometer. The controller's side is
 /// `feed_control`.
 ///   effort = limit(Ka u),  turned = drive(effort, external),  nut = lead(turned) - compliance (table_mass a - external)
 ///   place = play(nut),  reading = encoder(place or turned + noise),  tachometer = v + noise
+///   accelerometer = mean acceleration of the last period + noise
 /// Source: [Yeung2006] eqs. (1-18); lead error and compliance are textbook.
 /// Ports: command u[k] [V] and the external force [N] on the table, held from sample k on, in; measurement of
 /// sample k+1 out. Where the table is: wire.place.
@@ -166,6 +173,7 @@ template <drive_boxes Boxes> struct feed_drive {
         wire.place = box.play(wire.nut);
         wire.reading = box.encoder((box.scale_on_table ? wire.place : wire.turned) + box.encoder_noise());
         wire.tachometer = wire.velocity + box.tachometer_noise();
+        wire.accelerometer = wire.acceleration + box.accelerometer_noise();
         return measured();
     }
     void settle(position x) noexcept {
@@ -186,7 +194,9 @@ template <drive_boxes Boxes> struct feed_drive {
         fault = false;
     }
 
-    axis_measurement<real> measured() const noexcept { return {wire.reading, wire.tachometer}; }
+    axis_measurement<real> measured() const noexcept {
+        return {wire.reading, wire.tachometer, wire.accelerometer};
+    }
     bool limited() const noexcept { return wire.effort != wire.amplified; } ///< amplifier or motor
     bool faulted() const noexcept {
         return fault ||
@@ -198,7 +208,7 @@ template <drive_boxes Boxes> struct feed_drive {
 private:
     static constexpr auto boxes(auto& b) noexcept {
         return std::tie(b.amplifier, b.effort_limit, b.drive, b.lead, b.change, b.table, b.screw, b.play,
-                        b.encoder_noise, b.encoder, b.tachometer_noise);
+                        b.encoder_noise, b.encoder, b.tachometer_noise, b.accelerometer_noise);
     }
 };
 

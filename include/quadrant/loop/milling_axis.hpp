@@ -166,7 +166,8 @@ template <signal_tag Command, class Real> struct milling_wires {
 ///   `ahead` is the reference at the moment when the command will act: the feedforward of plant and friction takes it.
 ///   Without preview it is the reference itself.
 /// Signs: a friction box gives what has to be added, a disturbance box what has to be subtracted. Friction
-/// enters behind the tap of the observer (wire.compensated): in front of it, it would be compensated twice. A
+/// enters behind the tap of the observer (wire.compensated): in front of it, it would be compensated twice; one
+/// that learns (`maxwell_slip_observer`) is told what the observer is left with. A
 /// `disturbance_observer` is fed this cycle's wish, a `harmonic_force_observer` what acted since the sample
 /// before, a `ferraris_force_estimator` the measured acceleration and what acts at this sample, less the
 /// friction that was fed forward: axis(reference, ahead, measured, acceleration). A memory box gives what is
@@ -373,7 +374,11 @@ private:
         wire.disturbance = estimate(measured, wire.linear, last_applied(), accelerated);
         wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
         wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
-        wire.friction = box.friction(wire.travel);
+        if constexpr (requires { box.friction(wire.travel, -wire.disturbance); })
+            wire.friction =
+                box.friction(wire.travel, -wire.disturbance); // it learns what the observer is left with
+        else
+            wire.friction = box.friction(wire.travel);
         wire.wanted = wire.compensated + wire.friction;
         wire.limited = box.amplifier(wire.wanted);
         wire.command = box.dac(wire.limited);

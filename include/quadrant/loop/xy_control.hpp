@@ -156,6 +156,8 @@ public:
     }
     const milling_axis<X>& x() const noexcept { return x_; }
     const milling_axis<Y>& y() const noexcept { return y_; }
+    milling_axis<X>& x() noexcept { return x_; } ///< for a box that follows the machine: the cycle of a memory
+    milling_axis<Y>& y() noexcept { return y_; }
 
 private:
     template <class Axis>

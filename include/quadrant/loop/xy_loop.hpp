@@ -93,6 +93,7 @@ public:
     bool limited() const noexcept { return control_.limited(); }
     bool faulted() const noexcept { return control_.faulted() || table_.faulted(); }
     const control_type& control() const noexcept { return control_; }
+    control_type& control() noexcept { return control_; }
     const Table& table() const noexcept { return table_; }
     Process& process_x() noexcept { return process_x_; } ///< to let the tool leave the cut
     Process& process_y() noexcept { return process_y_; }

@@ -40,20 +40,24 @@ struct log_case {
     std::function<written_case()> make;
 };
 
-/// Writes log.csv and machine.json into a folder.
-inline void write(const written_case& c, const std::filesystem::path& folder) {
-    std::filesystem::create_directories(folder);
-    std::ofstream log(folder / "log.csv");
+inline void write(const recording& what, const std::filesystem::path& to) {
+    std::ofstream log(to);
     log << "t_s";
-    for (const auto& a : c.log.axes) log << fmt::format(",{0}_ref_m,{0}_pos_m,{0}_cmd_{1}", a.name, a.unit);
+    for (const auto& a : what.axes) log << fmt::format(",{0}_ref_m,{0}_pos_m,{0}_cmd_{1}", a.name, a.unit);
     log << '\n';
-    for (std::size_t k = 0; k < c.log.axes.front().rows.size(); ++k) {
-        log << fmt::format("{:.7f}", static_cast<double>(k) * c.log.period);
-        for (const auto& a : c.log.axes)
+    for (std::size_t k = 0; k < what.axes.front().rows.size(); ++k) {
+        log << fmt::format("{:.7f}", static_cast<double>(k) * what.period);
+        for (const auto& a : what.axes)
             log << fmt::format(",{:.12f},{:.9f},{:.9f}", a.rows[k].reference, a.rows[k].reading,
                                a.rows[k].command);
         log << '\n';
     }
+}
+
+/// Writes log.csv and machine.json into a folder.
+inline void write(const written_case& c, const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    write(c.log, folder / "log.csv");
     std::ofstream(folder / "machine.json") << c.machine.dump(2) << '\n';
 }
 
