@@ -9,8 +9,8 @@
 namespace quadrant_gap {
 
 /// What a diagnosis needs of its files before it begins: log and hold-out log are of this machine (else
-/// bad_input), axes that the machine file does not describe are left out, the hold-out log is brought to the machine's period, and a note says where log and machine file
-/// disagree on where the command was taken.
+/// bad_input), axes that the machine file does not describe are left out, the hold-out log is brought to the
+/// machine's period, and a note says where log and machine file disagree on where the command was taken.
 inline void make_match(const quadrant::diagnosis::machine_description& machine,
                        quadrant::diagnosis::machine_log& log, quadrant::diagnosis::machine_log* holdout) {
     using namespace quadrant::diagnosis;

@@ -227,13 +227,15 @@ private:
         const auto& t = tables_[file].t;
         constexpr std::size_t many = 30; // rows from gap to gap, below which the pieces are too short to use
         if (choice_.period_s > 0 || clock.gaps < 3 || t.size() > many * clock.gaps) return;
-        std::vector<double> steps;
-        for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
-        const auto at = steps.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(steps.size()));
+        std::vector<double> steps; // across the gaps
+        for (std::size_t k = 1; k < t.size(); ++k)
+            if (clock.after_gap[k]) steps.push_back(t[k] - t[k - 1]);
+        if (steps.empty()) return;
+        const auto at = steps.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(steps.size()));
         std::nth_element(steps.begin(), at, steps.end());
         tell(file, fmt::format("rows are missing every {} rows or so: --sample-period {:.2g} bridges most of "
                                "the gaps",
-                               t.size() / clock.gaps, *at / longest_step));
+                               t.size() / clock.gaps, 1.05 * *at / longest_step));
     }
     static constexpr double longest_step = 1.5; ///< of the period: a longer one leaves a sample out
 

@@ -80,8 +80,8 @@ inline void refuse_driven(const machine_description& machine, std::string_view w
                             but == drive_kind::current ? "" : fmt::format(" or {}", name_of(but))));
 }
 
-/// Leaves out the axes of a log that the machine file says nothing of, with a note, when it describes another of
-/// them: the recorder of a robot writes all joints, and an owner begins with one.
+/// Leaves out the axes of a log that the machine file says nothing of, with a note, when it describes another
+/// of them: the recorder of a robot writes all joints, and an owner begins with one.
 inline void keep_described(const machine_description& machine, machine_log& log) {
     const auto described = [&](const axis_log& a) {
         return std::any_of(machine.axes.begin(), machine.axes.end(),
