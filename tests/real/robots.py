@@ -37,6 +37,22 @@ TIAGO = {
 DRONE = {"q": {"plant": {"inertia_kg_m2": 3.1, "viscous_Nm_s_per_rad": 2.0, "torque_constant_Nm_per_V": 1},
                "tolerance": {"inertia": 0.2, "viscous": 0.6, "torque_constant": 0.02},
                "actuator": {"lag_s": 0.1}}}
+
+
+def servo(friction=None, gain=1.87, **more):
+    """Goals and positions only: stiffness 1.87 * 12 V * 0.245 N m/V = 5.5 N m/rad, by the servo's current."""
+    plant = {"inertia_kg_m2": 0.0085, "viscous_Nm_s_per_rad": 0.12, "torque_constant_Nm_per_V": 0.245,
+             "delay_s": 0}
+    tolerance = {"inertia": 0.3, "viscous": 0.4, "position_gain": 0.1, "supply": 0.05, "torque_constant": 0.1,
+                 "command_delay": 0.5}
+    if friction:
+        plant["coulomb_Nm"], tolerance["coulomb"] = friction, 0.15
+    return {"plant": {**plant, **more}, "tolerance": tolerance, "encoder": {"resolution_rad": 0.00153398},
+            "actuator": {},
+            "drive": {"kind": "position_servo", "position_gain_per_rad": gain, "maximum_duty": 1,
+                      "supply_V": 12, "command_delay_s": 0.03}}
+
+
 MOUSE = {"left": wheel(0.02), "right": wheel(0.021)}
 
 LOGS = {
@@ -44,6 +60,8 @@ LOGS = {
              ["--sample-period", "0.002"]),
     "tiago": ("tiago", ["tiago/tiago_position.csv", "tiago/tiago_effort.csv"], []),
     "mouse": ("micromouse", ["micromouse/controllerDelayImpact5ms.csv"], ["--resample"]),
+    **{m: ("so101", [f"so101/{m}/{what}.csv" for what in ("state_motor", "control")], ["--to", "30"])
+       for m in ("large_amplitude", "repetitive_motion", "chirp_sweep", "multisine")},
     "drone": ("quarter_drone", ["quarter_drone/dados_14_drone.csv"], ["--resample"]),
     "drone_fast": ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"]),
 }
@@ -52,6 +70,11 @@ RECORDS = {
     "tiago": ("tiago", None, TIAGO, []),
     "mouse": ("mouse", None, MOUSE, []),
     "drone": ("drone", None, DRONE, []),
+    "servo_healthy": ("large_amplitude", "repetitive_motion", {"rotation": servo(0.055)}, []),
+    "servo_friction": ("large_amplitude", "repetitive_motion", {"rotation": servo()}, []),
+    "servo_gain": ("large_amplitude", "multisine", {"rotation": servo(0.055, gain=3.74)}, []),
+    "elbow_friction": ("repetitive_motion", "chirp_sweep", {"elbow": servo(constant_torque_Nm=0.21)}, []),
+    "elbow_weight": ("repetitive_motion", "chirp_sweep", {"elbow": servo(0.207)}, []),
     "drone_held": ("drone_fast", "drone", DRONE, []),
 }
 
@@ -59,6 +82,10 @@ RECORDS = {
 def one_of(d, names, axis):
     """A claim, or a claimed group, of these names on the axis."""
     return any(c["effect"] in names for c in claims(d, axis))
+
+
+def names_of(cause):
+    return {cause["effect"], *cause["confusable_with"]}
 
 
 def first_of(d, axis):
@@ -79,6 +106,18 @@ RIGHT = [
      lambda d: bool(claimed(d, "constant_force", "torso"))),
     ("tiago", "friction of arm 1 is claimed",
      lambda d: one_of(d, {"coulomb_friction", "stribeck_friction"}, "arm1")),
+    ("servo_healthy", "nobody is blamed", lambda d: not claims(d)),
+    ("servo_friction", "Coulomb friction is claimed and meets 0.054 to 0.06 N m",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.054, 0.06)),
+    ("servo_gain", "the gain, in a group with torque constant and supply, is the first cause, and nothing else",
+     lambda d: bool(d["causes"]) and len(claims(d)) < 2 and "drive_gain" in names_of(d["causes"][0])
+     and names_of(d["causes"][0]) <= {"drive_gain", "force_constant", "supply_voltage"}
+     and d["causes"][0]["group_probability"] >= 0.5),
+    ("elbow_friction", "Coulomb friction is claimed and meets 0.207 N m",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.207, 0.207)),
+    ("elbow_weight", "gravity, in a group with a constant torque, is the first cause and meets 0.21 N m",
+     lambda d: d["causes"][0]["effect"] == "gravity" and d["causes"][0]["group_probability"] >= 0.5
+     and meets(d["causes"][0], "gravity_torque_Nm", 0.21, 0.21)),
     ("mouse", "Coulomb friction of the right wheel is claimed and meets 1.2 to 1.3 V",
      lambda d: meets(claimed(d, "coulomb_friction", "right"), "coulomb_Nm", 1.2, 1.3)),
 ] + [(r, "nothing before the tap of a measured command is named", nothing_before_the_tap)
