@@ -447,7 +447,7 @@ TEST_CASE(
     CHECK(pushed(1, 0.4, 0, 0.05, 0) == "accepted");
     CHECK(pushed(-1, 0.4, 0, 0.05, 0).find("the command pushes against the motion (-0.") != std::string::npos);
     CHECK(pushed(-1, 0.01, 0, 0.05, 0) == "accepted"); // too little to be sure of
-    // Without friction, and with a command that leads the reading by four rows: what follows the speed is
-    // negative there, and the jerk tells why.
-    CHECK(pushed(1, 0, 0.02, 1, 0.04) == "accepted");
+    // Without friction, and with a command that leads the reading by 20 rows: what follows the speed is
+    // negative there and makes three fifths of the command, and the jerk tells why.
+    CHECK(pushed(1, 0, 0.02, 0.5, 0.2) == "accepted");
 }
