@@ -340,3 +340,114 @@ TEST_CASE("import: the units of a log are checked against its machine, and no ot
     CHECK(checked(1, 1, 1000).find("the distance of the reference") != std::string::npos);
     CHECK(checked(1, 1, -1).find("moves against the reference") != std::string::npos);
 }
+
+TEST_CASE("import: one number of a list that a cell holds") {
+    const char* const map =
+        R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "stamp", "unit": "us"},
+            "files": [{}, {}],
+            "axes": {"q": {"position": {"column": "is", "element": 2, "unit": "rad"},
+                           "reference": {"column": "want", "element": 1, "unit": "deg", "file": 2}}}})";
+    const foreign_file is{"kind,stamp,is\nS,0,\"[0.5, -1.25]\"\nS,1000,\"[0.5, -1.5]\"\nS,2000,\"[0.5, "
+                          "-1.75]\"\nS,3000,\"[0.5, -2]\"\n",
+                          "is.csv"},
+        want{"stamp,want\n0,(90 1)\n1000,(180;2)\n2000,[270]\n3000,360\n", "want.csv"};
+    const foreign_file both[]{is, want};
+    const auto in = import_log(read_import_map(std::string_view(map), "map.json"), both);
+    CHECK(in.log.axes.at(0).position == std::vector<double>{-1.25, -1.5, -1.75, -2});
+    CHECK(near(in.log.axes[0].reference[2], 1.5 * std::numbers::pi, 1e-6));
+    CHECK(in.log.axes[0].command_unit.empty()); // none is needed where there is a reference
+    const foreign_file cut[]{{"kind,stamp,is\nS,0,\"[0.5]\"\nS,1000,\"[0.5]\"\n", "is.csv"}, want};
+    CHECK(said([&] { import_log(read_import_map(std::string_view(map), "map.json"), cut); }) ==
+          "is.csv:2:5: \"[0.5]\": the list has 1 entries; q_pos_rad is number 2");
+    CHECK(of_map(changed("/axes/x/position/element", 0)) ==
+          "map.json: axes.x.position.element: must be the place of a number in the list, from 1");
+}
+
+TEST_CASE("import: rows that are missing every other moment are bridged by the period that a note names") {
+    std::string text = "t_ms,q_pos_rad,q_cmd_Nm\n";
+    for (int k = 0; k < 2000; ++k) // six rows of 2 ms are lost in every ten
+        if (k % 10 < 4) text += fmt::format("{},{:.6f},{:.3f}\n", 2 * k, std::sin(0.004 * k), 0.1);
+    const auto map = map_of_header(text, "in.csv");
+    const auto as_it_is = import_log(map, text, "in.csv", {.resample = true});
+    CHECK(
+        told(as_it_is, "rows are missing every 4 rows or so: --sample-period 0.0098 bridges most of the gaps"));
+    CHECK(told(as_it_is, "the record is read as 200 pieces"));
+    const auto bridged = import_log(map, text, "in.csv", {.period_s = 0.0098});
+    CHECK(!told(bridged, "pieces"));
+    CHECK(!told(bridged, "rows are missing"));
+    for (std::size_t k = 0; k < bridged.log.samples; ++k) // a cubic over 14 ms of a slow sine
+        CHECK(std::abs(bridged.log.axes.at(0).position[k] -
+                       std::sin(0.004 * 0.0098 / 0.002 * static_cast<double>(k))) < 2e-5);
+}
+
+TEST_CASE("import: a command is needed where nothing but the position is there; a reference stands in for it") {
+    auto json = nlohmann::json::parse(semicolons);
+    json["axes"]["x"].erase("command");
+    CHECK(of_map(json.dump()) == "accepted");
+    json["axes"]["x"].erase("reference");
+    CHECK(of_map(json.dump()) == "map.json: axes.x.command: is missing");
+}
+
+TEST_CASE("import: where only the speed was recorded its integral is the position, and that is told") {
+    std::string text = "t_ms,speed,u\n";
+    constexpr double w = 2 * std::numbers::pi;
+    for (int k = 0; k < 2000; ++k) text += fmt::format("{},{:.4f},{:.3f}\n", k, std::sin(w * 0.001 * k), 0.1);
+    const auto map = read_import_map(
+        std::string_view(R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "t_ms"},
+            "axes": {"q": {"velocity": {"column": "speed", "unit": "rad/s"},
+                           "command": {"column": "u", "unit": "Nm"}}}})"),
+        "map.json");
+    const auto in = import_log(map, text, "in.csv");
+    CHECK(told(in, "axis q: no position: the integral of q_vel_rad_per_s stands for it"));
+    CHECK(in.log.axes.at(0).kind == axis_kind::rotary);
+    for (int k = 0; k < 2000; k += 100) // the trapezoid, and the digits that are written
+        CHECK(std::abs(in.log.axes[0].position[static_cast<std::size_t>(k)] -
+                       (1 - std::cos(w * 0.001 * k)) / w) < 2e-6);
+    auto json = nlohmann::json::parse(semicolons);
+    json["axes"]["x"].erase("position");
+    CHECK(of_map(json.dump()) == "map.json: axes.x.position: is missing");
+    json["axes"]["x"]["velocity"] = {{"column", "v"}, {"unit", "mm"}};
+    CHECK(of_map(json.dump()) == "map.json: axes.x.velocity.unit: must be a speed, of a length or of an angle");
+}
+
+namespace {
+
+/// A slow axis with friction alone, read in coarse counts, or a fast one whose command is far earlier than the
+/// reading: neither shows by its acceleration whether the command is turned.
+std::string pushed(double sign, double friction, double inertia, double frequency, double lead) {
+    machine_log log;
+    log.file = "log.csv";
+    log.sample_period_s = 0.01;
+    axis_log a;
+    a.name = "q";
+    a.kind = axis_kind::rotary;
+    a.command_unit = "Nm";
+    a.has_reference = false;
+    for (int k = 0; k < 6000; ++k) {
+        const double t = 0.01 * k, w = 2 * std::numbers::pi * frequency;
+        const auto x = [&](double s) { return std::sin(w * s) + 0.4 * std::sin(2.3 * w * s + 1); };
+        const double v = x(t + 1e-4) - x(t - 1e-4), e = t + lead;
+        const double acceleration = (x(e + 1e-3) - 2 * x(e) + x(e - 1e-3)) / 1e-6;
+        a.position.push_back(0.002 * std::round(x(t) / 0.002));
+        a.command.push_back(sign * (friction * (v > 0 ? 1 : -1) + inertia * acceleration + 3 +
+                                    0.3 * std::sin(1.7 * k) + 0.1 * std::sin(0.0071 * k)));
+    }
+    a.reference = a.position;
+    a.position_step = 0.002;
+    log.axes = {a};
+    log.samples = a.position.size();
+    imported_log in;
+    in.log = log;
+    return said([&] { check_physics(in); });
+}
+} // namespace
+
+TEST_CASE(
+    "import: a turned command is seen by the friction where the motion is too slow for the acceleration") {
+    CHECK(pushed(1, 0.4, 0, 0.05, 0) == "accepted");
+    CHECK(pushed(-1, 0.4, 0, 0.05, 0).find("the command pushes against the motion (-0.") != std::string::npos);
+    CHECK(pushed(-1, 0.01, 0, 0.05, 0) == "accepted"); // too little to be sure of
+    // Without friction, and with a command that leads the reading by 20 rows: what follows the speed is
+    // negative there and makes three fifths of the command, and the jerk tells why.
+    CHECK(pushed(1, 0, 0.02, 0.5, 0.2) == "accepted");
+}

@@ -158,3 +158,45 @@ TEST_CASE("init: a rotary axis takes its gravity by option, a linear one refuses
     CHECK(*machine.axes[0].plant.gravity_torque_Nm == 3.2);
     CHECK(*machine.axes[0].plant.gravity_phase_rad == 0.3);
 }
+
+TEST_CASE("init: the command's limit is where it stops, not the largest value that it passes") {
+    const auto limit_of = [](double top) {
+        auto log = workshop_log(); // a coarse command, cut at `top` steps
+        for (std::size_t k = 0; k < log.samples; ++k) {
+            const double u = std::round(60 * std::sin(0.003 * static_cast<double>(k)));
+            log.axes[0].command[k] = 0.05 * std::clamp(u, -top, top);
+        }
+        auto r = request();
+        r.unchecked = true;
+        const auto machine = read_machine(init_machine(r, &log).machine.dump(), "m.json");
+        return machine.axes[0].actuator.limit_V;
+    };
+    CHECK(workshop::near(limit_of(40).value_or(0), 2, 1e-9));
+    CHECK_FALSE(limit_of(1000));
+}
+
+TEST_CASE("init: a mass of which the log is not sure is told with its standard deviation") {
+    machine_log log;
+    log.file = "log.csv";
+    log.sample_period_s = 0.01;
+    axis_log a;
+    a.name = "x";
+    a.command_unit = "N";
+    a.has_reference = false;
+    unsigned noise = 1; // white, far above the 2 kg's force
+    for (int k = 0; k < 4000; ++k) {
+        noise = noise * 1664525U + 1013904223U;
+        const double t = 0.01 * k;
+        a.position.push_back(std::sin(t) + 0.3 * std::sin(2.7 * t));
+        a.command.push_back(-2 * (std::sin(t) + 2.187 * std::sin(2.7 * t)) +
+                            400 * (static_cast<double>(noise >> 8) / 16777216.0 - 0.5));
+    }
+    a.reference = a.position;
+    log.axes = {a};
+    log.samples = a.position.size();
+    init_request r;
+    r.from_log = true;
+    const std::string said = refusal(r, &log);
+    CHECK(said.find("init: axis x: --mass is missing; the log is not sure of it (") == 0);
+    CHECK(said.find("kg with a standard deviation of") != std::string::npos);
+}

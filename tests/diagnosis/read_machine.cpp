@@ -571,3 +571,24 @@ TEST_CASE("check_match: a log of another machine is refused") {
     CHECK(said(newtons, log(0.0005, {"x"}, "V")) == "machine.json: axes.x.plant.force_constant_N_per_V: is "
                                                     "missing; the command column of log.csv is x_cmd_V");
 }
+
+TEST_CASE("keep_described: axes that the machine file says nothing of are left out, with a note") {
+    const auto machine = read_machine(std::string_view(example), "machine.json");
+    machine_log log;
+    log.file = "log.csv";
+    for (const char* name : {"w", "x", "y"}) log.axes.emplace_back().name = name;
+    log.notes = {"log.csv: axis y has no position reference.", "log.csv: axis x has no position reference."};
+    keep_described(machine, log);
+    REQUIRE(log.axes.size() == 1);
+    CHECK(log.axes[0].name == "x");
+    CHECK(log.notes ==
+          std::vector<std::string>{"log.csv: axis x has no position reference.",
+                                   "log.csv: left out, not described in machine.json: axis w, y."});
+    keep_described(machine, log);
+    CHECK(log.notes.size() == 2);
+    machine_log stranger; // no axis in common: check_match says so
+    stranger.axes.emplace_back().name = "u";
+    keep_described(machine, stranger);
+    CHECK(stranger.axes.size() == 1);
+    CHECK(stranger.notes.empty());
+}

@@ -300,12 +300,21 @@ checked += 1
 if units != set(import_map.schema["$defs"]["source"]["properties"]["unit"]["enum"]):
     faults.append("import.schema.json and import/units.hpp name other units")
 good_map = load(root / "examples" / "import" / "twincat_scope.map.json")
-for path, to in [(["time"], ...), (["axes"], {}), (["axes", "y", "command"], ...), (["separator"], "|"), (["header"], 0),
+for path, to in [(["time"], ...), (["axes"], {}), (["axes", "y", "position"], ...), (["separator"], "|"), (["header"], 0),
                  (["axes", "y", "command", "scale"], 0), (["axes", "y", "command", "unit"], "furlong"),
                  (["time"], {"period_s": 0}), (["colour"], 1), (["files"], []), (["layout"], "sampler"),
                  (["axes", "y", "command", "is"], "guessed"), (["axes", "y", "position", "is"], "measured"),
                  (["axes", "y", "position", "file"], 0)]:
     refuse(import_map, changed(good_map, path, to), f"map with {path} = {to}")
+of_goals = changed(good_map, ["axes", "y", "command"], ...)
+accept(import_map, of_goals, "map of a servo that takes positions")
+refuse(import_map, changed(of_goals, ["axes", "y", "reference"], ...), "map with a position alone")
+of_lists = changed(good_map, ["axes", "y", "position", "element"], 2)
+accept(import_map, of_lists, "map of cells that hold lists")
+refuse(import_map, changed(of_lists, ["axes", "y", "position", "element"], 0), "map with entry 0 of a list")
+of_speed = changed(changed(good_map, ["axes", "y", "position"], ...), ["axes", "y", "velocity"],
+                   {"column": 2, "unit": "mm/s"})
+accept(import_map, of_speed, "map of an axis of which the speed was recorded")
 
 for fault in faults:
     print(fault, file=sys.stderr)

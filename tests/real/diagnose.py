@@ -5,7 +5,7 @@ usage: diagnose.py PROGRAM SHARED     exit code 77: the records are not there
 What it does not find yet (NOT_YET) is run and printed as well, and fails as soon as it is found: move it to RIGHT
 then.
 EMPS is in tests/acceptance/emps.py. Pages of these records: docs/real."""
-import json, math, os, resource, subprocess, sys, tempfile
+import collections, json, math, os, resource, subprocess, sys, tempfile
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 # A measured command is taken behind these: they cannot be causes.
@@ -126,14 +126,19 @@ NOT_YET = [
 ]
 
 
+# Logs by name (map, raw files, options of import), records (log, hold-out log, machine, options of diagnose), and
+# what is asked of them: (record, words, test).
+Suite = collections.namedtuple("Suite", "logs records right not_yet")
+
+
 def run(*command):
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         sys.exit(f"BAD  {' '.join(command[1:3])}: exit code {done.returncode}: {done.stderr.strip()}")
 
 
-def import_log(program, data, folder, name):
-    name_of_map, raw, options = LOGS[name]
+def import_log(program, data, folder, logs, name):
+    name_of_map, raw, options = logs[name]
     out = os.path.join(folder, name + ".csv")
     if not os.path.exists(out):
         run(program, "import", *options, "--map", os.path.join(ROOT, "examples", "import", name_of_map + ".map.json"),
@@ -147,16 +152,16 @@ def period(log):
     return (float(rows[-1].split(",")[0]) - float(rows[0].split(",")[0])) / (len(rows) - 1)
 
 
-def diagnosis_of(program, data, folder, name):
-    log, holdout, machine, options = RECORDS[name]
-    logs = [import_log(program, data, folder, n) for n in (log, holdout) if n]
+def diagnosis_of(program, data, folder, suite, name):
+    log, holdout, machine, options = suite.records[name]
+    logs = [import_log(program, data, folder, suite.logs, n) for n in (log, holdout) if n]
     path, out = os.path.join(folder, name + ".machine.json"), os.path.join(folder, name + ".diagnosis.json")
     if isinstance(machine, dict):
-        axes = {q: {**a, "actuator": {"command_is": "measured"}} for q, a in machine.items()}
+        axes = {q: {"actuator": {"command_is": "measured"}, **a} for q, a in machine.items()}
         with open(path, "w") as file:
             json.dump({"schema": "quadrant.machine/1", "sample_period_s": period(logs[0]), "axes": axes}, file)
     else:
-        begun_from = import_log(program, data, folder, machine[1])
+        begun_from = import_log(program, data, folder, suite.logs, machine[1])
         run(program, "init", "--quiet", "--log", begun_from, *machine[0], "--out", path)
     run(program, "diagnose", "--quiet", "--threads", "1", *options, "--machine", path, "--log", logs[0],
         *(["--holdout", logs[1]] if holdout else []), "--json", out)
@@ -164,24 +169,25 @@ def diagnosis_of(program, data, folder, name):
         return json.load(file)
 
 
-def is_there(data, record):
-    return all(os.path.isfile(os.path.join(data, r)) for n in RECORDS[record][:2] if n for r in LOGS[n][1])
+def is_there(data, suite, record):
+    return all(os.path.isfile(os.path.join(data, r)) for n in suite.records[record][:2] if n
+               for r in suite.logs[n][1])
 
 
-def main(program, shared):
+def main(program, shared, suite):
     data, bad = os.path.join(shared, "data"), 0
-    there = [r for r in RECORDS if is_there(data, r)]
-    for record in RECORDS:
+    there = [r for r in suite.records if is_there(data, suite, r)]
+    for record in suite.records:
         if record not in there:
-            print(f"SKIPPED: no {os.path.join(data, LOGS[record][1][0])}")
+            print(f"SKIPPED: no {os.path.join(data, suite.logs[suite.records[record][0]][1][0])}")
     with tempfile.TemporaryDirectory() as folder:
-        found = {r: diagnosis_of(program, data, folder, r) for r in there}
-    for record, what, test in RIGHT:
+        found = {r: diagnosis_of(program, data, folder, suite, r) for r in there}
+    for record, what, test in suite.right:
         if record in there:
             good = test(found[record])
             bad += not good
             print("ok     " if good else "BAD    ", record, what, "" if good else f"(says: {says(found[record])})")
-    for record, what, test in NOT_YET:
+    for record, what, test in suite.not_yet:
         if record in there:
             good = test(found[record])
             bad += good
@@ -193,4 +199,4 @@ def main(program, shared):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(main(*sys.argv[1:], Suite(LOGS, RECORDS, RIGHT, NOT_YET)))

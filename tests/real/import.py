@@ -23,6 +23,23 @@ RECORDS = [
     ("odrive_slow_move", ["odrive_cogging/odrive_slow2_nocomp_1.csv"], ["--resample"],
      "t_s,q_pos_rad,q_current_A", (4200, 4310), ["resampled", "resampling makes an error"]),
     (None, ["emps/log.csv"], [], "t_s,x_ref_m,x_pos_m,x_cmd_V", (24841, 24841), []),
+    # Those that the shared folder may lack: docs/real says where they are.
+    ("staubli_tx40", ["staubli_tx40/pos_read_data.csv", "staubli_tx40/curr_data.csv"], ["--sample-period", "0.002"],
+     ",".join(["t_s"] + [f"q{j}_pos_rad" for j in range(1, 5)] + [f"q{j}_torque_Nm" for j in range(1, 5)]),
+     (4499, 4501), ["no time column", "axis q1, q2, q3, q4: the command is a measured one"]),
+    ("tiago", ["tiago/tiago_position.csv", "tiago/tiago_effort.csv"], [],
+     "t_s,arm1_pos_rad,arm2_pos_rad,arm3_pos_rad,torso_pos_m,arm1_current_A,arm2_current_A,arm3_current_A,"
+     "torso_current_A", (8015, 8025), ["resampled", "measured"]),
+    ("so101", ["so101/large_amplitude/state_motor.csv", "so101/large_amplitude/control.csv"], [],
+     "t_s,elbow_pos_rad,rotation_pos_rad,elbow_ref_rad,rotation_ref_rad", (6650, 6652), ["resampled"]),
+    ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"],
+     "t_s,q_ref_rad,q_pos_rad,q_cmd_V", (6030, 6075), ["resampled", "rows are missing in 2 places"]),
+    ("micromouse", ["micromouse/controllerDelayImpact5ms.csv"], ["--resample"],
+     "t_s,left_cmd_V,left_ref_rad_per_s,left_vel_rad_per_s,right_cmd_V,right_ref_rad_per_s,right_vel_rad_per_s,"
+     "left_pos_rad,right_pos_rad", (785, 791), ["the integral of left_vel_rad_per_s stands for it"]),
+    ("micromouse", ["micromouse/controllerDelayImpact1ms.csv"], ["--resample"],
+     "t_s,left_cmd_V,left_ref_rad_per_s,left_vel_rad_per_s,right_cmd_V,right_ref_rad_per_s,right_vel_rad_per_s,"
+     "left_pos_rad,right_pos_rad", (600, 1060), ["--sample-period 0.0", "rows are missing every"]),
 ] + [
     (None, [f"servo_pendulum/records/{motion}_kp{kp}.csv"], ["--resample"],
      "t_s,q_ref_rad,q_pos_rad,q_cmd_V,q_duty,q_supply_V,q_enabled", (1000, 1800),

@@ -28,7 +28,8 @@ void run(const compensate_options& o) {
     files.writes("--json", o.json).writes("--controller", o.controller);
     const auto machine = read_machine(std::filesystem::path(o.machine));
     const auto diagnosis = read_diagnosis(std::filesystem::path(o.diagnosis));
-    const auto log = read_log(std::filesystem::path(o.log));
+    auto log = read_log(std::filesystem::path(o.log));
+    keep_described(machine, log);
     check_match(machine, log);
     const auto result = quadrant::diagnosis::compensate(machine, diagnosis, log, o.all ? 0 : o.at_least);
     const auto write = [](const std::string& file, const nlohmann::ordered_json& json) {

@@ -9,14 +9,16 @@
 namespace quadrant_gap {
 
 /// What a diagnosis needs of its files before it begins: log and hold-out log are of this machine (else
-/// bad_input), the hold-out log is brought to the machine's period, and a note says where log and machine file
-/// disagree on where the command was taken.
+/// bad_input), axes that the machine file does not describe are left out, the hold-out log is brought to the
+/// machine's period, and a note says where log and machine file disagree on where the command was taken.
 inline void make_match(const quadrant::diagnosis::machine_description& machine,
                        quadrant::diagnosis::machine_log& log, quadrant::diagnosis::machine_log* holdout) {
     using namespace quadrant::diagnosis;
+    keep_described(machine, log);
     check_match(machine, log);
     check_physics(machine, log);
     if (holdout) {
+        keep_described(machine, *holdout);
         if (!has_period_of(machine, *holdout)) *holdout = at_period(*holdout, log.sample_period_s);
         check_match(machine, *holdout);
         check_physics(machine, *holdout);

@@ -24,7 +24,8 @@ void run(const simulate_options& o) {
     files.reads("--machine", o.machine).reads("--log", o.log);
     files.writes("--json", o.json).writes("--report", o.report);
     const auto machine = read_digested_machine(o.machine);
-    const auto log = read_digested_log(o.log);
+    auto log = read_digested_log(o.log);
+    keep_described(machine.contents, log.contents);
     check_match(machine.contents, log.contents);
     auto result = quadrant::diagnosis::simulate(machine.contents, log.contents);
     result.machine_sha256 = machine.sha256;

@@ -41,7 +41,10 @@ public:
     void refuse_what_cannot_be() const {
         if (!(c_.travel > 0)) return;
         if (a_.has_reference && std::abs(c_.correlation) > 0.9) against_the_reference();
-        if (!c_.sign_is_known()) return;
+        if (!c_.sign_is_known()) {
+            against_the_motion();
+            return;
+        }
         const double mass = c_.command_per_acceleration * constant_;
         const bool right_size = known_.mass > 0 && constant_ > 0 && -mass < remarkable * known_.mass &&
                                 -mass * remarkable > known_.mass;
@@ -50,8 +53,7 @@ public:
             refuse(fmt::format(
                 "the command drives against the acceleration ({:.3g} {} per {}/s^2): the sign of {} or "
                 "of {} is turned; give one of them a negative scale",
-                c_.command_per_acceleration, a_.command_unit, m_, column("pos", m_),
-                column("cmd", a_.command_unit)));
+                c_.command_per_acceleration, a_.command_unit, m_, column("pos", m_), command_column()));
         if (mass_is_known() && mass > 0 && c_.share > least_share) against_the_mass(mass / known_.mass);
     }
 
@@ -63,6 +65,7 @@ public:
             fmt::format("axis {}: travel {:.4g} {}, peak {:.3g} {}/s and {:.3g} {}/s^2, below "
                         "{:.3g} Hz",
                         a_.name, c_.travel, m_, c_.peak_speed, m_, c_.peak_acceleration, m_, c_.corner_Hz)};
+        if (a_.command_unit.empty()) return out;
         if (!c_.sign_is_known()) {
             out.push_back(fmt::format(
                 "axis {}: the motion is too slow to check the command by the acceleration", a_.name));
@@ -83,6 +86,10 @@ private:
     std::string column(std::string_view what, std::string_view unit) const {
         return fmt::format("{}_{}_{}", a_.name, what, unit);
     }
+    std::string command_column() const {
+        const bool measured = a_.command_is == command_origin::measured;
+        return column(!measured ? "cmd" : a_.command_unit == "A" ? "current" : "torque", a_.command_unit);
+    }
     [[noreturn]] void refuse(const std::string& message) const {
         throw bad_input(file_, fmt::format("axis {}: {}", a_.name, message));
     }
@@ -99,12 +106,21 @@ private:
                 "turned; give one of them a negative scale",
                 ratio, column("pos", m_), column("ref", m_)));
     }
+    /// Friction takes work. A command whose part that follows speed and direction gives work instead is turned.
+    void against_the_motion() const {
+        if (c_.friction > -sure_of_a_sign * c_.friction_spread || c_.friction_share < least_share) return;
+        refuse(fmt::format(
+            "the command pushes against the motion ({:.3g} {} on average while the axis moves), and friction "
+            "cannot: the sign of {} or of {} is turned; give one of them a negative scale (or something else "
+            "moves the axis, a hand or another drive: then the log says nothing of its friction)",
+            c_.friction, a_.command_unit, column("pos", m_), command_column()));
+    }
     void against_the_mass(double ratio) const {
         if (ratio < slip_of_a_unit && ratio > 1 / slip_of_a_unit) return;
         refuse(fmt::format(
             "the command moves {} the {} of {:g}: check the units of {} ({}), of {} ({}), and of {}",
             times(ratio), text_of("mass", a_.kind), known_.mass, column("pos", m_),
-            ratio < 1 ? "mm in it make 1/1000" : "km in it make 1000", column("cmd", a_.command_unit),
+            ratio < 1 ? "mm in it make 1/1000" : "km in it make 1000", command_column(),
             ratio < 1 ? "kV in it make 1/1000" : "mV in it make 1000 times",
             text_of("mass and force constant", a_.kind)));
     }

@@ -120,12 +120,15 @@ inline bool untested(const axis_case& c) { return !c.second && c.record.segments
 
 /// A value that the tolerance stopped: either the tolerance is too narrow, or something else acts.
 inline void note_bounds(diagnosis_result& out, const axis_result& result) {
-    for (const parameter_estimate& p : result.calibrated)
-        if (p.on_bound)
-            out.notes.push_back(
-                worded("axis %s: the calibrated %s stops at the end of its tolerance: the tolerance "
-                       "is too narrow, or an effect acts that is not named.",
-                       result.name.c_str(), p.key.c_str()));
+    for (const parameter_estimate& p : result.calibrated) {
+        if (!p.on_bound) continue;
+        std::string name(parts_of(p.key.substr(p.key.rfind('.') + 1)).stem);
+        std::replace(name.begin(), name.end(), '_', ' ');
+        out.notes.push_back(
+            worded("axis %s: the calibrated %s stops at the end of its tolerance: the tolerance "
+                   "is too narrow, or an effect acts that is not named.",
+                   result.name.c_str(), name.c_str()));
+    }
 }
 
 /// What the owner excludes although it explains the record better than what is named.
@@ -277,13 +280,23 @@ inline rules for_one_of(rules r, std::ptrdiff_t axes) {
 
 /// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
 inline axis_case& need_blocks(axis_case& c, const std::string& file) {
-    if (c.record.score.channels.front().segment_of_block.empty())
-        throw bad_input(file,
-                        worded("%zu samples of axis %s: a diagnosis needs at least %zu, one block to start "
-                               "the observer and one to score",
-                               c.log.position.size(), c.axis.name.c_str(),
-                               c.record.score.skip + c.record.score.block));
-    return c;
+    if (!c.record.score.channels.front().segment_of_block.empty()) return c;
+    std::size_t longest = 0, pieces = 0, row = 0;
+    for (const unsigned char out : c.log.left_out) {
+        row = out ? 0 : row + 1;
+        pieces += row == 1;
+        longest = std::max(longest, row);
+    }
+    const std::string in_pieces =
+        pieces < 2 ? ""
+                   : worded(" in %zu pieces, the longest of %zu (import with a longer --sample-period bridges "
+                            "short gaps)",
+                            pieces, longest);
+    throw bad_input(file,
+                    worded("%zu samples of axis %s%s: a diagnosis needs at least %zu in a row, one block to "
+                           "start the observer and one to score",
+                           c.log.position.size(), c.axis.name.c_str(), in_pieces.c_str(),
+                           c.record.score.skip + c.record.score.block));
 }
 
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found

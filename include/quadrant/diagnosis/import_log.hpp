@@ -52,6 +52,7 @@ public:
                     tell(i, fmt::format("{} starts again {} times within one turn: it goes on here", c.name,
                                         times));
             }
+        integrate_velocities();
         const double zero = tables_.front().t.front();
         for (auto& table : tables_)
             for (double& t : table.t) t -= zero;
@@ -66,6 +67,40 @@ public:
 private:
     void tell(std::size_t file, const std::string& note) {
         out_.notes.push_back(files_.size() > 1 ? one_line(files_[file].name) + ": " + note : note);
+    }
+
+    /// Of an axis without a position: the integral of its velocity, from zero at the first row.
+    void integrate_velocities() {
+        for (const auto& a : map_.axes) {
+            if (a.find(signal_role::position)) continue;
+            const import_map::source& v = *a.find(signal_role::velocity);
+            const std::string name = a.name + "_vel_" + v.si;
+            foreign_table& table = tables_[v.file];
+            const auto from = std::find_if(table.columns.begin(), table.columns.end(),
+                                           [&](const foreign_column& c) { return c.name == name; });
+            const std::string unit = v.si.substr(0, v.si.find('_'));
+            foreign_column x{a.name + "_pos_" + unit, from->index, from->factor};
+            std::vector<double> steps;
+            for (std::size_t k = 0; k < table.t.size(); ++k) {
+                const double step = k == 0 ? 0 : table.t[k] - table.t[k - 1];
+                if (k > 0) steps.push_back(step);
+                x.values.push_back(
+                    k == 0 ? 0 : x.values.back() + 0.5 * step * (from->values[k - 1] + from->values[k]));
+            }
+            std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                             steps.end());
+            const double most =
+                std::abs(*std::max_element(from->values.begin(), from->values.end(),
+                                           [](double p, double q) { return std::abs(p) < std::abs(q); }));
+            const double digit = from->step() > 0 ? from->step() : 1e-9 * most;
+            x.factor = digit > 0 ? 0.5 * digit * steps[steps.size() / 2] : 1; // of the speed over half a row
+            x.written.add("1", 1);
+            tell(v.file,
+                 fmt::format("axis {}: no position: the integral of {} stands for it, zero at the first "
+                             "row; an error of the velocity adds up in it",
+                             a.name, name));
+            table.columns.push_back(std::move(x));
+        }
     }
 
     /// Each row as it stands. What read_log could not take is refused here, with the place in the file.
@@ -145,7 +180,11 @@ private:
             const double t = by_row ? table.t[0] + static_cast<double>(k) * clock.period : table.t[k];
             at.push_back((t - begin) / period);
         }
-        const even_rows rows(std::move(at), clock.after_gap, samples_);
+        std::vector<unsigned char> apart = clock.after_gap;
+        if (choice_.period_s > 0) // on a slower clock a gap is what leaves samples of that clock out
+            for (std::size_t k = 1; k < apart.size(); ++k)
+                if (table.t[k] - table.t[k - 1] <= longest_step * period) apart[k] = 0;
+        const even_rows rows(std::move(at), std::move(apart), samples_);
         const auto left = rows.left_out();
         tell_clock(file, clock, period);
         for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= left[k];
@@ -175,16 +214,38 @@ private:
         c.values = rows.smooth(c.values, bad);
     }
     void tell_clock(std::size_t file, const row_clock& clock, double period) {
+        if (!map_.files[file].time && std::abs(clock.period / period - 1) < 1e-9)
+            return; // the rows as they are
         tell(file, fmt::format(
                        "resampled onto a period of {:.6g} s; its rows come every {:.6g} s, single steps up to "
                        "{:.2g} % off, with {} gaps ({} rows missing)",
                        period, clock.period, 100 * clock.spread, clock.gaps, clock.missing));
+        tell_of_pieces(file, clock);
     }
+    /// Where rows are missing every other moment, the clock on which they are not.
+    void tell_of_pieces(std::size_t file, const row_clock& clock) {
+        const auto& t = tables_[file].t;
+        constexpr std::size_t many = 30; // rows from gap to gap, below which the pieces are too short to use
+        if (choice_.period_s > 0 || clock.gaps < 3 || t.size() > many * clock.gaps) return;
+        std::vector<double> steps; // across the gaps
+        for (std::size_t k = 1; k < t.size(); ++k)
+            if (clock.after_gap[k]) steps.push_back(t[k] - t[k - 1]);
+        if (steps.empty()) return;
+        const auto at = steps.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(steps.size()));
+        std::nth_element(steps.begin(), at, steps.end());
+        tell(file, fmt::format("rows are missing every {} rows or so: --sample-period {:.2g} bridges most of "
+                               "the gaps",
+                               t.size() / clock.gaps, 1.05 * *at / longest_step));
+    }
+    static constexpr double longest_step = 1.5; ///< of the period: a longer one leaves a sample out
+
     static bool is_held(const std::string& name) {
         for (const signal_kind& kind : signal_kinds)
             if (kind.held && name.find(kind.infix) != name.npos) return true;
         return false;
     }
+
+    static constexpr int most_decimals = 15;
 
     /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so
     /// that its rounding is still seen. What was resampled has digits of its own.
@@ -193,7 +254,8 @@ private:
                      power = -std::log10(step * std::abs(c.factor));
         const bool exact = samples_ == 0 && std::abs(power - std::round(power)) < 1e-9;
         constexpr int guard = 3;
-        return {std::clamp(static_cast<int>(exact ? std::round(power) : std::ceil(power) + guard), 0, 15),
+        return {std::clamp(static_cast<int>(exact ? std::round(power) : std::ceil(power) + guard), 0,
+                           most_decimals),
                 exact};
     }
     void head() {
@@ -203,7 +265,7 @@ private:
                 out_.text += ',' + c.name;
                 const auto [d, exact] = decimals(c);
                 digits_.push_back(d);
-                if (!exact && c.step() > 0)
+                if (!exact && c.step() > 0 && d < most_decimals) // 15 digits are no rounding to speak of
                     tell(i, fmt::format("{} is written with {} decimals; its own rounding is {:.3g}", c.name, d,
                                         c.step()));
             }
@@ -228,13 +290,14 @@ private:
             if (note.ends_with('.')) note.pop_back();
             out_.notes.push_back(note);
         }
+        std::string measured;
         for (const auto& a : map_.axes)
-            if (a.command_is == command_origin::measured)
-                out_.notes.push_back(
-                    fmt::format("axis {}: the command is a measured one: the machine file needs "
-                                "\"command_is\": \"measured\" under actuator (init --command-is "
-                                "measured writes it)",
-                                a.name));
+            if (a.command_is == command_origin::measured) measured += (measured.empty() ? "" : ", ") + a.name;
+        if (!measured.empty())
+            out_.notes.push_back(fmt::format("axis {}: the command is a measured one: the machine file needs "
+                                             "\"command_is\": \"measured\" under actuator (init --command-is "
+                                             "measured writes it)",
+                                             measured));
     }
 
     const import_map& map_;

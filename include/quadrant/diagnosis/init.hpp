@@ -310,6 +310,12 @@ private:
         if (told && !mass && (constant || is_force(unit)))
             text += fmt::format("; the log speaks of about {:.4g} kg (--from-log takes it)",
                                 by_log * constant.value_or(1));
+        if (!told && by_log > 0 && std::isfinite(found.acceleration.spread) && !mass &&
+            (constant || is_force(unit)))
+            text +=
+                fmt::format("; the log is not sure of it ({:.3g} kg with a standard deviation of {:.2g}): "
+                            "record faster motion",
+                            by_log * constant.value_or(1), found.acceleration.spread * constant.value_or(1));
         if (told && mass) text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / by_log, unit);
         if (found.acceleration.sure() && by_log < 0)
             text += "; in the log the axis accelerates against its command: check the sign of one of the two";
@@ -349,8 +355,13 @@ private:
                                      std::abs(*std::min_element(log.command.begin(), log.command.end())));
         const auto at_limit = std::count_if(log.command.begin(), log.command.end(),
                                             [&](double u) { return std::abs(u) >= most * (1 - 1e-6); });
+        // A command that only passes its largest value has as many rows close below it.
+        constexpr double close = 0.95;
+        const auto below = std::count_if(log.command.begin(), log.command.end(), [&](double u) {
+            return std::abs(u) > close * most && std::abs(u) < most * (1 - 1e-6);
+        });
         constexpr long often = 5;
-        if (!ask_.value("limit", axis) && at_limit >= often) {
+        if (!ask_.value("limit", axis) && at_limit >= often && at_limit > below) {
             const init_field& f = field("limit");
             put(axis, f, f.key, most, fmt::format("{} rows of the log stop there", at_limit));
         }

@@ -80,6 +80,27 @@ inline void refuse_driven(const machine_description& machine, std::string_view w
                             but == drive_kind::current ? "" : fmt::format(" or {}", name_of(but))));
 }
 
+/// Leaves out the axes of a log that the machine file says nothing of, with a note, when it describes another
+/// of them: the recorder of a robot writes all joints, and an owner begins with one.
+inline void keep_described(const machine_description& machine, machine_log& log) {
+    const auto described = [&](const axis_log& a) {
+        return std::any_of(machine.axes.begin(), machine.axes.end(),
+                           [&](const axis_description& axis) { return axis.name == a.name; });
+    };
+    if (std::none_of(log.axes.begin(), log.axes.end(), described)) return;
+    std::string names;
+    for (const axis_log& a : log.axes) {
+        if (described(a)) continue;
+        names += (names.empty() ? "" : ", ") + a.name;
+        const std::string of_it = fmt::format(": axis {} ", a.name);
+        std::erase_if(log.notes, [&](const std::string& note) { return note.find(of_it) != note.npos; });
+    }
+    if (names.empty()) return;
+    log.notes.push_back(fmt::format("{}: left out, not described in {}: axis {}.", detail::one_line(log.file),
+                                    detail::one_line(machine.file), names));
+    std::erase_if(log.axes, [&](const axis_log& a) { return !described(a); });
+}
+
 /// Refuses a log that cannot be of the machine described: bad_input.
 inline void check_match(const machine_description& machine, const machine_log& log) {
     if (!has_period_of(machine, log))

@@ -11,6 +11,7 @@ struct foreign_column {
     std::string name; ///< in our log
     std::size_t index;
     double factor;
+    std::size_t element = 0; ///< of the list in its cells, from 1; 0: they hold a number
     std::vector<double> values{};
     written_step written{}; ///< before the factor
 
@@ -103,7 +104,7 @@ private:
             index = static_cast<std::size_t>(found - names_.begin());
         }
         if (layout_.halscope) index = 2 * index + 1;
-        out_.columns.push_back({name, index, s.factor});
+        out_.columns.push_back({name, index, s.factor, s.element});
     }
 
     bool next() { return std::exchange(again_, false) || lines_.next(); }
@@ -147,7 +148,8 @@ private:
         if (c.index >= cells.size())
             lines_.refuse(lines_.length(), fmt::format("the row has {} cells; {} is number {}", cells.size(),
                                                        c.name, c.index + 1));
-        const auto [offset, text] = cells[c.index];
+        const auto [offset, cell] = cells[c.index];
+        const std::string_view text = c.element == 0 ? cell : entry(cell, offset, c);
         double value = 0;
         if (const char* fault = lines_.parse(text, value))
             lines_.refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(text), fault));
@@ -155,6 +157,21 @@ private:
         std::string as_written(text);
         std::replace(as_written.begin(), as_written.end(), ',', '.');
         c.written.add(as_written, value);
+    }
+
+    /// One entry of a cell that holds a list: "[1.5, 2.5]", "(1.5 2.5)", "1.5;2.5".
+    std::string_view entry(std::string_view cell, std::size_t offset, const foreign_column& c) const {
+        constexpr std::string_view between = " \t,;[]()";
+        std::size_t at = 0;
+        for (std::size_t k = 1;; ++k) {
+            at = cell.find_first_not_of(between, at);
+            if (at == cell.npos)
+                lines_.refuse(offset, fmt::format("{}: the list has {} entries; {} is number {}",
+                                                  in_quotes(cell), k - 1, c.name, c.element));
+            const std::size_t end = std::min(cell.find_first_of(between, at), cell.size());
+            if (k == c.element) return cell.substr(at, end - at);
+            at = end;
+        }
     }
 
     /// Stamps in seconds; rows whose stamp is that of the row before are dropped.

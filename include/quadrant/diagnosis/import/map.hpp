@@ -59,12 +59,13 @@ constexpr const signal_kind& kind_of(signal_role role) {
 struct import_map {
     /// Where one quantity is found in a file, and what makes it SI.
     struct source {
-        std::string column;     ///< its name; empty: by number
-        std::size_t number = 0; ///< from 1
-        std::string si;         ///< unit of the converted column; empty: the end of the column's name says it
-        double factor = 1;      ///< SI per unit of the file
-        std::string place;      ///< key path in the map, for messages
-        std::size_t file = 0;   ///< which of the files, from 0
+        std::string column;      ///< its name; empty: by number
+        std::size_t number = 0;  ///< from 1
+        std::size_t element = 0; ///< of the list that its cells hold, from 1; 0: they hold a number
+        std::string si;          ///< unit of the converted column; empty: the end of the column's name says it
+        double factor = 1;       ///< SI per unit of the file
+        std::string place;       ///< key path in the map, for messages
+        std::size_t file = 0;    ///< which of the files, from 0
     };
     /// One signal of an axis.
     struct signal {

@@ -18,6 +18,9 @@ struct unit_check {
         0;             ///< A of command = A a + B v + C sign v + D + E x (and sin x, cos x of an angle)
     double spread = 0; ///< standard deviation of A, from stretches of five blocks
     double share = 0;  ///< of the command's variance that the acceleration alone explains beside the rest
+    /// What moving costs on average, B |v| + C [unit of the command]: friction takes it, so it is not negative;
+    /// its standard deviation, and the share of the command's variance that speed and direction explain.
+    double friction = 0, friction_spread = 0, friction_share = 0;
     bool sign_is_known() const { return std::abs(command_per_acceleration) > 4 * spread; }
 };
 
@@ -90,6 +93,35 @@ inline void solve_units(unit_check& out, const std::vector<unit_sums>& stretches
     out.spread = std::sqrt(sum * (n - 1) / n);
 }
 
+/// Terms of the same regression with speed and direction first and the jerk beside the acceleration: a command
+/// that comes earlier than the reading moves a part of the inertia into the speed, and the jerk takes it back.
+inline constexpr int friction_terms = 8;
+using friction_sums = regression_sums<friction_terms>;
+
+inline void solve_friction(unit_check& out, const std::vector<friction_sums>& stretches) {
+    friction_sums all;
+    for (const auto& s : stretches) all.add(s);
+    const auto taken = [](const friction_sums& s) {
+        const auto moving = s.left(1, 1); // rows that move; the speed times the direction is its size
+        const auto x = s.solved().first;
+        return moving > 0 ? x[0] * s.left(0, 1) / moving + x[1] : 0.0;
+    };
+    const double left = all.solved().second, left_without = all.solved(2).second;
+    const double mean = all.right[4] / std::max(1.0, all.left(4, 4));
+    const double variance = all.square - mean * all.right[4];
+    out.friction = taken(all);
+    out.friction_share = variance > 0 ? (left_without - left) / variance : 0;
+    double sum = 0; // jackknife over the stretches
+    for (const auto& s : stretches) {
+        friction_sums rest = all;
+        rest.add(s, -1);
+        const double d = taken(rest) - out.friction;
+        sum += d * d;
+    }
+    const auto n = static_cast<double>(stretches.size());
+    out.friction_spread = std::sqrt(sum * (n - 1) / n);
+}
+
 /// Slope and correlation of the position over the reference.
 inline void compare_with_reference(unit_check& out, const axis_log& log) {
     const auto n = static_cast<double>(log.position.size());
@@ -124,7 +156,8 @@ inline unit_check check_units(const axis_log& log, double period) {
     if (!(out.travel > 0) || n < 64) return out;
     out.corner_Hz = motion_corner(log.position, period, observed_count(log.position, log.position_step));
     const auto x = zero_phase(log.position, out.corner_Hz, period), v = derivative(x, period),
-               a = derivative(v, period), u = zero_phase(log.command, out.corner_Hz, period);
+               a = derivative(v, period), j = derivative(a, period),
+               u = zero_phase(log.command, out.corner_Hz, period);
     for (std::size_t k = 0; k < n; ++k) {
         if (!log.left_out.empty() && log.left_out[k]) continue;
         out.peak_speed = std::max(out.peak_speed, std::abs(v[k]));
@@ -135,6 +168,8 @@ inline unit_check check_units(const axis_log& log, double period) {
     const std::size_t stretch = std::min(rows, n / least), stretches = n / stretch;
     if (!(out.peak_acceleration > 0) || stretch < 8) return out;
     std::vector<unit_sums> sums(stretches);
+    std::vector<friction_sums> friction(stretches);
+    const double jerk = out.peak_acceleration * 2 * std::numbers::pi * out.corner_Hz;
     for (std::size_t k = 0; k < stretches * stretch; ++k) {
         if (!log.left_out.empty() && log.left_out[k]) continue;
         const double direction = std::abs(v[k]) > 0.01 * out.peak_speed ? (v[k] > 0 ? 1 : -1) : 0;
@@ -143,8 +178,12 @@ inline unit_check check_units(const axis_log& log, double period) {
         row << a[k] / out.peak_acceleration, v[k] / out.peak_speed, direction, 1, (x[k] - *low) / out.travel,
             std::sin(angle), log.kind == axis_kind::rotary ? std::cos(angle) : 0;
         sums[k / stretch].add(row, u[k]);
+        Eigen::Matrix<double, friction_terms, 1> moved;
+        moved << row[1], row[2], row[0], j[k] / jerk, row[3], row[4], row[5], row[6];
+        friction[k / stretch].add(moved, u[k]);
     }
     solve_units(out, sums);
+    solve_friction(out, friction);
     return out;
 }
 

@@ -100,10 +100,14 @@ private:
         constexpr number_rule index{"must be the name of a column, or its number from 1",
                                     [](double x) { return x >= 1 && x <= 1e4 && x == std::floor(x); }};
         constexpr number_rule not_zero{"must be a number, not 0", [](double x) { return x != 0; }};
-        constexpr std::string_view keys[] = {"column", "unit", "scale", "file", "is"};
+        constexpr number_rule element{"must be the place of a number in the list, from 1",
+                                      [](double x) { return x >= 1 && x <= 1e4 && x == std::floor(x); }};
+        constexpr std::string_view keys[] = {"column", "element", "unit", "scale", "file", "is"};
         refuse_unknown_keys(node.object(), keys);
         import_map::source s;
         s.place = node.path;
+        if (const auto given = node.find("element"))
+            s.element = static_cast<std::size_t>(given->number(element));
         const json_node column = node.need("column");
         if (!column.value->is_string())
             s.number = static_cast<std::size_t>(column.number(index));
@@ -154,11 +158,16 @@ private:
         }();
         refuse_unknown_keys(node, keys);
         import_map::axis a{name, {}, command_origin::asked};
-        const auto position = read_signal(node.need("position"));
-        const bool rotary = position.si == "rad";
-        if (position.si != "m" && !rotary)
-            node.need("position").need("unit").refuse("must be a length or an angle");
-        if (!node.find("current") && !node.find("torque")) node.need("command");
+        // Without a position the integral of the velocity stands for it.
+        const bool placed = node.find("position") || !node.find("velocity");
+        const json_node moves = placed ? node.need("position") : node.need("velocity");
+        const auto motion = read_signal(moves);
+        const bool rotary = motion.si == (placed ? "rad" : "rad_per_s");
+        if (!rotary && motion.si != (placed ? "m" : "m_per_s"))
+            moves.find("unit").value_or(moves).refuse(placed ? "must be a length or an angle"
+                                                             : "must be a speed, of a length or of an angle");
+        const bool only_positions = node.find("reference") || node.find("motor_position");
+        if (!node.find("current") && !node.find("torque") && !only_positions) node.need("command");
         for (const signal_kind& kind : signal_kinds) {
             const auto given = node.find(std::string(kind.key));
             if (!given) continue;
