@@ -13,7 +13,7 @@ namespace quadrant_gap::trial {
 inline chain_record run_two_masses(const chain_truth& a, const std::vector<double>& reference, double period,
                                    std::uint64_t seed) {
     constexpr double coarsest = 1.25e-5;
-    const auto fine = static_cast<std::size_t>(std::max(20.0, std::ceil(period / coarsest)));
+    const auto fine = static_cast<std::size_t>(std::max(10.0, std::ceil(period / coarsest)));
     const double h = period / static_cast<double>(fine), load_mass = a.mass - a.motor_mass;
     const double together = a.motor_mass * load_mass / a.mass;
     const gears_truth& g = a.gears;
