@@ -186,10 +186,14 @@ TEST_CASE("velocity drive behind LinuxCNC's pid: with the values to type the fol
         CHECK(best->after.peak_m.value == doctest::Approx(peak).epsilon(0.15).scale(0));
     }
 }
-/// What a forecast says of the hold-out log's motion from its reference alone, and what simulate finds on that log.
+/// What a forecast says of the hold-out log's motion from its reference alone, and what simulate finds on that
+/// log.
 void check_forecast(const std::string& file, const records& r, const std::string& effect) {
     const auto machine = read_machine(file, "machine.json");
-    const auto d = diagnose(machine, r.log, nullptr, [](const std::string&) {}, {.threads = 1});
+    rules one;
+    one.threads = 1;
+    const auto d = diagnose(
+        machine, r.log, nullptr, [](const std::string&) {}, one);
     REQUIRE(only_claim(d, effect));
     machine_log planned = r.holdout;
     planned.axes[0].position.assign(planned.samples, 0.0);
@@ -217,8 +221,9 @@ TEST_CASE(
 }
 TEST_CASE("forecast: a velocity drive without a described controller has none, with a note") {
     const auto r = recorded(takes::volts, p_drive);
-    const auto f = forecast(read_machine(linear(coulomb, of_p), "machine.json"),
-                            {.axes = {axis_result{.name = "q"}}}, r.holdout);
+    diagnosis_result found;
+    found.axes.emplace_back().name = "q";
+    const auto f = forecast(read_machine(linear(coulomb, of_p), "machine.json"), found, r.holdout);
     CHECK(f.axes.empty());
     REQUIRE(f.notes.size() == 1);
     CHECK(f.notes[0].find("without a controller") != std::string::npos);

@@ -35,8 +35,8 @@ inline axis_log recorded(const axis_description& axis, const axis_log& motion, d
     return out;
 }
 
-/// The same of an axis whose drive closes loops of its own: from its set-points, or for a velocity drive under its
-/// controller. Its columns are those that such a machine records.
+/// The same of an axis whose drive closes loops of its own: from its set-points, or for a velocity drive under
+/// its controller. Its columns are those that such a machine records.
 inline axis_log recorded_driven(const axis_description& axis, const axis_log& motion, double period) {
     axis_log out = motion;
     out.position = motion.reference;

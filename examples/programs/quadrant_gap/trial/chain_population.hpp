@@ -53,8 +53,8 @@ inline bool works(const drawn_chain& m, const chain_truth& a, bool holdout = fal
     return changes <= 0.1 * square;
 }
 
-/// What one machine's readings differ by from another's: in the difference of the two positions; for causes that
-/// act on the force, in the force that is asked for.
+/// What one machine's readings differ by from another's: in the difference of the two positions; for causes
+/// that act on the force, in the force that is asked for.
 struct chain_gap {
     double readings = 0, force = 0;
 };

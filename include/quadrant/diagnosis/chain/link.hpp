@@ -117,8 +117,8 @@ struct between_rows {
         thrice = (d - a) / 6 + (b - c) / 2;
     }
     double operator()(double s) const { return at_row + s * (once + s * (twice + s * thrice)); }
-    /// What is at rest behind a first-order lag of `lag` periods while this goes on: the part of its answer that
-    /// does not depend on where it began.
+    /// What is at rest behind a first-order lag of `lag` periods while this goes on: the part of its answer
+    /// that does not depend on where it began.
     double lagged(double s, double lag) const {
         const double first = once + s * (2 * twice + s * 3 * thrice), second = 2 * twice + s * 6 * thrice;
         return (*this)(s)-lag * (first - lag * (second - lag * 6 * thrice));

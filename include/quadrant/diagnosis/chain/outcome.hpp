@@ -46,9 +46,9 @@ QUADRANT_DIAGNOSIS_DECL cause cause_of(const described_link& d, const answer& a,
 QUADRANT_DIAGNOSIS_DECL std::string note_without_name(const described_link& d, const answer& a,
                                                       const axis_description& axis, term what);
 
-/// A link whose described numbers are moved, inside their tolerances, to where they fit the readings best, all of
-/// them together: play and stiffness that are both a little off look like a third cause. `moved` gets those that
-/// were moved, where that pays; else the link is left as it is.
+/// A link whose described numbers are moved, inside their tolerances, to where they fit the readings best, all
+/// of them together: play and stiffness that are both a little off look like a third cause. `moved` gets those
+/// that were moved, where that pays; else the link is left as it is.
 QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const described_link& d,
                                                        const axis_description& axis, const rules& limits,
                                                        std::vector<parameter_estimate>& moved);

@@ -10,8 +10,8 @@ QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
     const std::size_t n = link_.rows();
     std::vector<unsigned char> out(n, 0);
     for (std::size_t k = 0; k < link_.left_out.size(); ++k) out[k] |= link_.left_out[k];
-    // Between the rows of a slow record what was asked is not known where it bends: a cubic is wrong by 3 / 128 of
-    // the fourth difference in the middle.
+    // Between the rows of a slow record what was asked is not known where it bends: a cubic is wrong by 3 / 128
+    // of the fourth difference in the middle.
     for (std::size_t k = 0; link_.asked && k < n; ++k)
         if (k < 2 || k + 3 >= n) out[k] = 1; // no four rows around it
     for (std::size_t k = 2; link_.asked && k + 3 < n; ++k) {

@@ -37,8 +37,8 @@ QUADRANT_DIAGNOSIS_DECL double left_along(const readings& r, const fitted& f);
 /// force.
 class seeker {
 public:
-    /// `excluded`: terms that the owner says cannot be. They join a model like the others, so that no other term
-    /// stands for them, and are never a rival by name.
+    /// `excluded`: terms that the owner says cannot be. They join a model like the others, so that no other
+    /// term stands for them, and are never a rival by name.
     seeker(const readings& r, link_model described, std::vector<term> excluded, const rules& limits);
 
     answer find() const;
