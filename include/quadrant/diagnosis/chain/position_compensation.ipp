@@ -91,7 +91,8 @@ QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     const auto known = [](double x) { return estimate{x, x, x}; };
     out.forecast = out.positions_only = true;
     out.noise_m = l.noise();
-    const auto [rms_now, peak_now] = left_with({}, axis, corrected, l, from);
+    const auto now = left_with({}, axis, corrected, l, from);
+    const double rms_now = now.first, peak_now = now.second;
     out.measured = {known(rms_now), known(peak_now), known(0), known(0)};
 
     const auto found = [&](std::string_view name) {
