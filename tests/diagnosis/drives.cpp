@@ -5,8 +5,10 @@
 #include "shared.hpp"
 
 #include <doctest/doctest.h>
+#include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/forecast.hpp>
 #include <quadrant/diagnosis/match.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
@@ -184,6 +186,48 @@ TEST_CASE("velocity drive behind LinuxCNC's pid: with the values to type the fol
         CHECK(best->after.peak_m.value == doctest::Approx(peak).epsilon(0.15).scale(0));
     }
 }
+/// What a forecast says of the hold-out log's motion from its reference alone, and what simulate finds on that
+/// log.
+void check_forecast(const std::string& file, const records& r, const std::string& effect) {
+    const auto machine = read_machine(file, "machine.json");
+    rules one;
+    one.threads = 1;
+    const auto d = diagnose(
+        machine, r.log, nullptr, [](const std::string&) {}, one);
+    REQUIRE(only_claim(d, effect));
+    machine_log planned = r.holdout;
+    planned.axes[0].position.assign(planned.samples, 0.0);
+    planned.axes[0].command.clear();
+    const auto expected = forecast(machine, d, planned).axes.at(0);
+    const double before = simulate(machine, r.holdout).axes[0].gap.force_rms_N,
+                 after = simulate(apply(machine, d, 0.5), r.holdout).axes[0].gap.force_rms_N;
+    CHECK(expected.before.force_rms_N == doctest::Approx(before).epsilon(0.15));
+    CHECK(std::abs(expected.shrink - (1 - after / before)) < 0.1);
+}
+TEST_CASE(
+    "forecast: behind a drive of each kind the gap shrinks on another motion as forecast from its reference") {
+    auto file = nlohmann::json::parse(linear("", of_p));
+    auto m = p_drive;
+    m.stock_pid = true;
+    file["axes"]["q"]["controller"] = {
+        {"kind", "linuxcnc_pid"}, {"Pgain", 1000}, {"maxoutput", 10}, {"error-previous-target", false}};
+    check_forecast(file.dump(), recorded(takes::volts, m), "coulomb_friction");
+    auto position = pi_drive;
+    position.position_gain = 40;
+    check_forecast(linear("", of_position), recorded(takes::set_points, position), "coulomb_friction");
+    auto described = nlohmann::json::parse(of_servo);
+    described["axes"]["q"]["plant"].erase("coulomb_Nm");
+    check_forecast(described.dump(), recorded(takes::servo, servo, true), "coulomb_friction");
+}
+TEST_CASE("forecast: a velocity drive without a described controller has none, with a note") {
+    const auto r = recorded(takes::volts, p_drive);
+    diagnosis_result found;
+    found.axes.emplace_back().name = "q";
+    const auto f = forecast(read_machine(linear(coulomb, of_p), "machine.json"), found, r.holdout);
+    CHECK(f.axes.empty());
+    REQUIRE(f.notes.size() == 1);
+    CHECK(f.notes[0].find("without a controller") != std::string::npos);
+}
 TEST_CASE("velocity drive: one that switches itself off for half a second is found, with the times") {
     auto m = p_drive;
     m.off_from = 4.3;
@@ -255,6 +299,24 @@ TEST_CASE("a drive's description survives writing and reading") {
         CHECK(to_json(read_machine(once, "machine.json")).dump() == once);
         CHECK(once.find("\"drive\"") != once.npos);
     }
+}
+TEST_CASE("position drive: set-points at another rate than the readings are refused until the file says their "
+          "period") {
+    auto m = p_drive;
+    m.position_gain = 40;
+    auto log = recorded(takes::set_points, m).log;
+    auto& reference = log.axes[0].reference;
+    for (std::size_t k = 0; k < reference.size(); ++k) reference[k] = reference[k - k % 4];
+    auto file = nlohmann::json::parse(linear(coulomb, of_position));
+    try {
+        check_match(read_machine(file.dump(), "machine.json"), log);
+        FAIL("accepted");
+    } catch (const bad_input& e) {
+        CHECK(std::string(e.what()).find("set_point_period_s: is missing") != std::string::npos);
+        CHECK(std::string(e.what()).find("every 4 rows") != std::string::npos);
+    }
+    file["axes"]["q"]["drive"]["set_point_period_s"] = 0.004;
+    CHECK_NOTHROW(check_match(read_machine(file.dump(), "machine.json"), log));
 }
 TEST_CASE("what no drive has is refused by key, value and rule") {
     const auto refused = [](const std::string& drive) {

@@ -4,6 +4,9 @@
 
 #include <quadrant/diagnosis/compensate.hpp>
 
+#include <algorithm>
+#include <utility>
+
 /// What compensations would gain, as text for a terminal of 100 columns.
 namespace quadrant_gap {
 
@@ -23,6 +26,12 @@ inline std::string settings(const std::vector<key_value>& keys) {
             text += fmt::format("{}{:.5g}", i == 0 ? "" : " ", k.values[i]);
     }
     return text;
+}
+
+/// Settings that are one number each; tables are in the JSON.
+inline std::vector<key_value> short_of(std::vector<key_value> keys) {
+    std::erase_if(keys, [](const key_value& k) { return k.values.size() > 1; });
+    return keys;
 }
 
 inline std::string sentence(const compensation& c, const compensated_axis& a) {
@@ -65,27 +74,37 @@ inline std::string summary(const compensation_result& r, bool verbose) {
         wrapped(fmt::format("What a compensation in the controller would gain on {}", r.log_file), 0) + "\n";
     for (const compensated_axis& a : r.axes) {
         text += wrapped(fmt::format("Axis {}", a.name), 0);
-        if (a.forecast && !a.compensations.empty())
-            text +=
-                table(a) + wrapped(fmt::format("The simulated loop is {} rms beside the logged position before "
-                                               "anything is compensated.",
-                                               quantity(a.missed_rms_m, "m")),
-                                   2);
+        if (a.forecast && !a.compensations.empty()) text += table(a);
+        if (a.forecast && !a.positions_only && !a.compensations.empty())
+            text += wrapped(fmt::format("The simulated loop is {} rms beside the logged position before "
+                                        "anything is compensated.",
+                                        quantity(a.missed_rms_m, "m")),
+                            2);
         if (a.compensations.empty()) text += wrapped("No cause of the diagnosis has a feedforward.", 2);
         for (const compensation& c : a.compensations) {
             text += wrapped(sentence(c, a), 2);
             if (!c.keys.empty() && c.by_keys()) text += wrapped("in the controller: " + settings(c.keys), 4);
+            if (c.block.empty() && c.keys.empty()) // in a control that takes positions
+                text += wrapped("in the control: " + settings(short_of(c.settings)), 4);
             if (!c.settings.empty() && verbose) text += wrapped(c.block + ": " + settings(c.settings), 4);
         }
         for (const advice& o : a.others)
             text += wrapped(fmt::format("{}: no feedforward. {}.", name_of_effect(o.effect), o.text), 2);
         text += "\n";
     }
-    if (!r.axes.empty())
+    const auto of_positions =
+        std::count_if(r.axes.begin(), r.axes.end(), [](const compensated_axis& a) { return a.positions_only; });
+    if (std::cmp_less(of_positions, r.axes.size()))
         text += wrapped(
             "The forecast: logged error plus what the compensation changes in the simulated loop, over 16 "
             "plants drawn from the intervals of the diagnosis; the feedforward has the values found.",
             0);
+    if (of_positions > 0)
+        text +=
+            wrapped("The forecast of two positions: their logged difference, less what the control's "
+                    "compensation moves the second one by; in brackets with values from the intervals of the "
+                    "diagnosis. Tables are in the JSON.",
+                    0);
     for (const std::string& note : r.notes) text += wrapped("Note: " + note + ".", 0);
     return text;
 }

@@ -50,8 +50,12 @@ void run(const forecast_options& o) {
     const auto machine = read_machine(std::filesystem::path(o.machine));
     auto motion = read_motion(std::filesystem::path(o.motion));
     for (auto& planned : motion.axes)
-        if (const auto axis = quadrant::diagnosis::detail::named(machine.axes, planned.name))
-            planned.command_unit = axis->command_unit;
+        if (const auto axis = quadrant::diagnosis::detail::named(machine.axes, planned.name)) {
+            planned.command_unit = axis->drive.kind == drive_kind::velocity
+                                       ? axis->drive.velocity_per_V ? "V" : key_of("m_per_s", axis->kind)
+                                   : axis->drive.closes() ? ""
+                                                          : axis->command_unit;
+        }
     check_match(machine, motion);
     const auto found = read_diagnosis(std::filesystem::path(o.diagnosis));
     const auto result = forecast(machine, found, motion, o.at_least);

@@ -5,6 +5,7 @@
 #include "../page/scratch_folder.hpp"
 #include "commands.hpp"
 #include "sha256.hpp"
+#include "trial/chain_files.hpp"
 #include "trial/child.hpp"
 #include "trial/files.hpp"
 #include "trial/page.hpp"
@@ -87,6 +88,17 @@ std::optional<shrink_pair> forecast_and_achieved(const trial_options& o, const s
     return shrink_pair{*forecast, 1 - *after / *before};
 }
 
+/// A drawn machine of whatever population: what the parent keeps, and its files.
+struct drawn_files {
+    ordered_json truth{};
+    std::function<void(const std::filesystem::path&)> write{};
+};
+template <class Machine> drawn_files files_of(Machine m) {
+    ordered_json truth = truth_of(m);
+    const auto kept = std::make_shared<const Machine>(std::move(m));
+    return {std::move(truth), [kept](const std::filesystem::path& folder) { write_files(*kept, folder); }};
+}
+
 /// Before the work, that what it finds can be written.
 void check_folders(const trial_options& o, outputs& files) {
     files.writes("--json", o.json).writes("--report", o.report);
@@ -118,10 +130,11 @@ void run_trial(trial_options o) {
         if (k >= o.machines) throw bad_input("--only", fmt::format("there is no machine {}", k));
     std::vector<ordered_json> truths(chosen.size());
     progress drawn("drawn", chosen.size(), o.say);
-    std::vector<drawn_machine> machines(chosen.size());
+    std::vector<drawn_files> machines(chosen.size());
     for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
-        machines[k] = draw(o.seed, chosen[k], planned_machines.at(chosen[k]));
-        truths[k] = truth_of(machines[k]);
+        machines[k] = is_chain(of) ? files_of(draw_chain(o.seed, chosen[k], planned_machines.at(chosen[k])))
+                                   : files_of(draw(o.seed, chosen[k], planned_machines.at(chosen[k])));
+        truths[k] = machines[k].truth;
         drawn();
     });
     const std::string truth = ordered_json(truths).dump(1) + "\n", digest = sha256(truth);
@@ -135,7 +148,7 @@ void run_trial(trial_options o) {
     progress diagnosed("diagnosed", chosen.size(), o.say);
     for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
         const quadrant_page::scratch_folder folder(neutral_folder());
-        write_files(machines[k], folder.path());
+        machines[k].write(folder.path());
         machines[k] = {};
         const answer a = diagnose_files(o.program, folder.path(), true, o.limit_s);
         judged[k].judged = judge(truths[k], a.diagnosis);
@@ -179,7 +192,9 @@ void add_trial(CLI::App& app) {
         ->add_option("--logs", o->how,
                      "how the machines are logged: plain, coarse, measured, gaps, jitter, no_reference")
         ->check(CLI::IsMember(std::vector<std::string>(names_of_logs.begin(), names_of_logs.end())));
-    command->add_option("--population", o->population, "the machines' drives")
+    command
+        ->add_option("--population", o->population,
+                     "the machines: their drives, a second encoder, or positions alone")
         ->check(CLI::IsMember(std::vector<std::string>(populations.begin(), populations.end())));
     command->add_option("--only", o->only, "of that population, these machines alone")
         ->delimiter(',')

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "apply.hpp"
+#include "chain/position_compensation.hpp"
 #include "compensate/advice.hpp"
 #include "compensate/tracking_forecast.hpp"
 #include "compensate/velocity_drive_feedforward.hpp"
@@ -13,6 +14,13 @@
 namespace quadrant::diagnosis {
 
 namespace detail {
+
+/// Whether one of an axis' compensations is against this effect.
+inline bool paid(const compensated_axis& a, const std::string& effect) {
+    return std::any_of(a.compensations.begin(), a.compensations.end(), [&](const compensation& c) {
+        return std::find(c.effects.begin(), c.effects.end(), effect) != c.effects.end();
+    });
+}
 
 /// A diagnosis with every fitted value elsewhere: place() says where, -1 and 1 at the ends of its interval.
 /// Values are moved independently, since a diagnosis does not say how they go together.
@@ -75,7 +83,6 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
             throw bad_input(
                 machine.file,
                 fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
-    refuse_positions_only(machine, "a feedforward");
     refuse_driven(machine, "a feedforward", drive_kind::velocity);
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
@@ -85,6 +92,20 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         const auto logged = std::find_if(log.axes.begin(), log.axes.end(),
                                          [&](const axis_log& l) { return l.name == axis.name && !l.still; });
         if (logged == log.axes.end()) continue;
+        if (axis.positions_only) {
+            std::vector<const axis_description*> inside, at_ends;
+            for (const auto& m : drawn.inside) inside.push_back(&m.axes[i]);
+            for (const auto& m : drawn.at_ends) at_ends.push_back(&m.axes[i]);
+            std::vector<std::string> effects;
+            for (const cause& c : d.causes)
+                if (c.axis == axis.name && c.probability >= at_least) effects.push_back(c.effect);
+            out.axes.push_back(chain::compensated_positions(
+                machine.axes[i], axis, *logged, machine.sample_period_s, log.file, inside, at_ends, effects));
+            for (const std::string& effect : effects)
+                if (!detail::paid(out.axes.back(), effect))
+                    out.axes.back().others.push_back({effect, std::string(effect_named(effect)->remedy)});
+            continue;
+        }
         const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s,
                                                         bandwidth_of(axis, *logged, machine.sample_period_s));
         const detail::tracking_forecast forecast(axis, coupled, machine.sample_period_s);

@@ -402,8 +402,12 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
         const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
-        if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr)
-            other = detail::with_neighbour(*holdout, *found, machine.sample_period_s, band);
+        if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr) {
+            const axis_log carried = transmission ? chain::carried_too(*transmission, axis, *found,
+                                                                       machine.sample_period_s, holdout->file)
+                                                  : *found;
+            other = detail::with_neighbour(*holdout, carried, machine.sample_period_s, band);
+        }
         detail::add_own_effects(out.own_effects, axis);
         if (axis.controller && axis.controller->own) // its file's kind is known after all
             std::erase_if(out.notes, [&](const std::string& note) {

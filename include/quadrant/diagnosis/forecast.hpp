@@ -28,8 +28,9 @@ struct forecast_result {
 /// How far the gap will shrink on another motion, known by its reference only: the corrected machine
 /// (apply.hpp) runs it in closed loop, with sensor noise, and both machine files are compared with that record
 /// as `simulate` compares them with a real one. What the diagnosis left unexplained on its own log is added to
-/// both. An axis without a controller in the machine file is left out, with a note. Costs a few passes over the
-/// motion.
+/// both. An axis without a controller in the machine file is left out, with a note,
+/// unless its drive takes positions. A drive's loops are closed inside the plant, its readings rounded to
+/// counts. Costs a few passes over the motion.
 QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& machine,
                                                  const diagnosis_result& found, const machine_log& motion,
                                                  double at_least = 0.5);

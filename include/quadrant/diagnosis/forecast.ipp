@@ -3,7 +3,9 @@
 #include "apply.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/record.hpp"
+#include "fit/with_drives.hpp"
 #include "how_far/closed_loop.hpp"
+#include "how_far/driven_loop.hpp"
 #include "match.hpp"
 #include "simulate.hpp"
 #include "write_diagnosis.hpp"
@@ -33,6 +35,30 @@ inline axis_log recorded(const axis_description& axis, const axis_log& motion, d
     return out;
 }
 
+/// The same of an axis whose drive closes loops of its own: from its set-points, or for a velocity drive under
+/// its controller. Its columns are those that such a machine records.
+inline axis_log recorded_driven(const axis_description& axis, const axis_log& motion, double period) {
+    axis_log out = motion;
+    out.position = motion.reference;
+    const bool velocity = axis.drive.kind == drive_kind::velocity;
+    if (velocity) {
+        const double speed = (motion.reference[1] - motion.reference[0]) / period;
+        out.command_unit = axis.drive.velocity_per_V ? "V" : key_of("m_per_s", axis.kind);
+        out.command.assign(motion.reference.size(), speed / axis.drive.velocity_per_V.value_or(1));
+    } else {
+        out.command_unit.clear();
+        out.command.clear();
+    }
+    const auto [low, high] = std::minmax_element(motion.reference.begin(), motion.reference.end());
+    const record_scales scale{.travel = *high - *low, .count = axis.encoder.resolution_m};
+    std::vector<double> set_points(motion.reference.size());
+    auto run = simulate_driven(axis, plant_model(axis, scale.give()), period, with_drive(axis, out, period), {},
+                               &set_points);
+    out.position = std::move(run.position);
+    if (velocity) out.command = std::move(set_points);
+    return out;
+}
+
 /// White noise of an axis' position beside its rounding, from the floor that the diagnosis says. In the floor
 /// of a measured command stands that command's noise, too: then the rounding alone.
 inline double noise_beside_rounding(const axis_description& axis, const axis_result& found, double period) {
@@ -48,14 +74,14 @@ QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& mach
                                                  const diagnosis_result& found, const machine_log& motion,
                                                  double at_least) {
     refuse_positions_only(machine, "a forecast");
-    refuse_driven(machine, "a forecast");
     const machine_description corrected = apply(machine, found, at_least);
     forecast_result out;
     out.machine_file = machine.file;
     out.motion_file = motion.file;
     machine_log expected = motion;
     for (axis_log& planned : expected.axes)
-        if (const auto axis = detail::named(corrected.axes, planned.name); axis && !axis->controller) {
+        if (const auto axis = detail::named(corrected.axes, planned.name);
+            axis && !axis->controller && !axis->drive.takes_position()) {
             out.notes.push_back(
                 fmt::format("axis {}: without a controller its motion cannot be forecast.", planned.name));
             planned.still = true;
@@ -67,6 +93,10 @@ QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& mach
             const auto was = detail::named(found.axes, planned.name);
             if (!axis || !was || planned.still) continue;
             axis_log motion_of = *detail::named(motion.axes, planned.name);
+            if (axis->drive.closes()) { // one round is enough: no neighbour acts on it
+                if (round == 0) planned = detail::recorded_driven(*axis, motion_of, machine.sample_period_s);
+                continue;
+            }
             motion_of =
                 detail::with_neighbour(before, motion_of, machine.sample_period_s, was->gap_after.bandwidth_Hz);
             planned = detail::recorded(*axis, motion_of, machine.sample_period_s,

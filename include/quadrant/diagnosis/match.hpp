@@ -5,6 +5,7 @@
 #include "text/bad_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace quadrant::diagnosis {
@@ -16,6 +17,22 @@ inline bool has_period_of(const machine_description& machine, const machine_log&
 }
 
 namespace detail {
+
+/// Every how many rows a column of set-points changes while it changes at all; 1: in every row, or at no steady
+/// rate.
+inline std::size_t rows_of_a_set_point(const std::vector<double>& x) {
+    constexpr std::size_t longest = 64, enough = 50;
+    std::array<std::size_t, longest + 1> times{};
+    std::size_t all = 0, last = 0;
+    for (std::size_t k = 1; k < x.size(); ++k) {
+        if (x[k] == x[k - 1]) continue;
+        if (last > 0 && k - last <= longest) ++times[k - last], ++all;
+        last = k;
+    }
+    const auto most = std::max_element(times.begin(), times.end());
+    const bool steady = all >= enough && 20 * *most >= 19 * all;
+    return steady ? static_cast<std::size_t>(most - times.begin()) : 1;
+}
 
 /// Refuses a log whose command a drive of this kind does not take.
 inline void check_drive(const axis_description& axis, const axis_log& log, const std::string& machine,
@@ -40,6 +57,12 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
     if (!unit.empty() && !measured && unit != m && !(servo && (unit == "V" || unit == "duty")))
         refuse(fmt::format("it takes positions, column {0}_cmd_{1} or {0}_ref_{1}, not {0}_cmd_{2}", axis.name,
                            m, unit));
+    if (const auto rows = rows_of_a_set_point(unit == m ? log.command : log.reference);
+        rows > 1 && axis.drive.kind == drive_kind::position && !axis.drive.set_point_period_s)
+        throw bad_input(machine,
+                        fmt::format("axes.{0}.drive.set_point_period_s: is missing; the set-points in {1} "
+                                    "change every {2} rows",
+                                    axis.name, file, rows));
     if (unit != m && !log.has_reference)
         refuse(fmt::format("column {0}_cmd_{1} or {0}_ref_{1}, what the drive received, is missing", axis.name,
                            m));

@@ -10,6 +10,8 @@
 #include "chain/links.ipp"
 #include "chain/outcome.hpp"
 #include "chain/outcome.ipp"
+#include "chain/position_compensation.hpp"
+#include "chain/position_compensation.ipp"
 #include "chain/readings.hpp"
 #include "chain/readings.ipp"
 #include "chain/search.hpp"

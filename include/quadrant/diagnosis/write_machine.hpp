@@ -59,6 +59,7 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
         if (!content.empty()) out[std::string(name)] = in_words_of(a.kind, name, content);
     };
     for (const std::string_view name : boxes_of_effects()) {
+        if (name == "plant" && a.positions_only) continue;
         auto content = effects_json(name, a);
         if (name == "actuator") content.update(numbers_json(actuator_keys, a.actuator));
         if (name == "actuator" && a.actuator.dac_bits) content["dac_bits"] = *a.actuator.dac_bits;

@@ -10,15 +10,26 @@
 /// balanced.
 namespace quadrant_gap::trial {
 
-/// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format), or
-/// with drives that close loops of their own.
-enum class population { current, velocity_p, velocity_pi, position, position_servo };
-inline constexpr std::array<const char*, 5> populations{"current", "velocity_p", "velocity_pi", "position",
-                                                        "position_servo"};
+/// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format); with
+/// drives that close loops of their own; with a second encoder on the motor; or known by positions alone.
+enum class population {
+    current,
+    velocity_p,
+    velocity_pi,
+    position,
+    position_servo,
+    two_encoders,
+    kinematic
+};
+inline constexpr std::array<const char*, 7> populations{
+    "current", "velocity_p", "velocity_pi", "position", "position_servo", "two_encoders", "kinematic"};
+/// Whether its machines have two positions an axis.
+constexpr bool is_chain(population p) { return p == population::two_encoders || p == population::kinematic; }
 inline quadrant::diagnosis::drive_kind drive_of(population p) {
     using quadrant::diagnosis::drive_kind;
-    constexpr std::array kinds{drive_kind::current, drive_kind::velocity, drive_kind::velocity,
-                               drive_kind::position, drive_kind::position_servo};
+    constexpr std::array kinds{drive_kind::current,  drive_kind::velocity,       drive_kind::velocity,
+                               drive_kind::position, drive_kind::position_servo, drive_kind::current,
+                               drive_kind::current};
     return kinds[static_cast<std::size_t>(p)];
 }
 
@@ -59,6 +70,9 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
         {"drive_gain", "supply_voltage", "force_constant"},
         {"command_delay", "set_point_loss", "clock_slip"},
         {"minimum_duty", "coulomb_friction"},
+        {"command_delay", "drive_gain"},
+        {"wind_up", "motor_friction"},
+        {"coulomb_friction", "motor_friction"},
         {"cogging", "force_ripple", "encoder_cyclic_error", "position_dependent_friction"}};
     for (const auto& f : families)
         if (std::find(f.begin(), f.end(), a) != f.end() && std::find(f.begin(), f.end(), b) != f.end())
@@ -73,19 +87,41 @@ inline bool has_a_twin(std::string_view effect) {
            effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain";
 }
 
+/// The effects that a population withholds, in the order of the list.
+inline std::vector<const quadrant::diagnosis::effect*> withheld_from(population of, logs how = logs::plain) {
+    if (!is_chain(of)) {
+        auto out = withheld_effects(drive_of(of));
+        std::erase_if(out, [&](const auto* e) { return !shows(how, *e); });
+        return out;
+    }
+    const std::vector<std::string_view> gears{"lost_motion", "pitch_error", "scale_error", "travel_error",
+                                              "encoder_cyclic_error"},
+        forces{"wind_up", "motor_friction", "coulomb_friction", "viscous_friction", "mass", "constant_force"},
+        drive{"command_delay", "drive_gain", "missed_steps"};
+    const auto in = [](const auto& names, std::string_view name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    std::vector<const quadrant::diagnosis::effect*> out;
+    for (const auto* e : quadrant::diagnosis::every_effect())
+        if (in(gears, e->name) || in(of == population::two_encoders ? forces : drive, e->name))
+            out.push_back(e);
+    return out;
+}
+
 /// Of every 20 machines: 6 without an effect (one with slow strokes only), 6 with one, 3 with two, 2 with
 /// something that is in no list, 2 with an effect that the machine file excludes from the candidates, 1 with
-/// slow strokes only. One in ten has two axes, and all with cross-coupling.
+/// slow strokes only. One in ten has two axes, and all with cross-coupling. Machines with two positions an axis
+/// have one effect in place of slow strokes, and one axis.
 inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, population of = population::current,
                                  logs how = logs::plain) {
     using enum kind;
-    const auto withheld = withheld_effects(drive_of(of));
+    const auto withheld = withheld_from(of, how);
     dice random(seed, 1);
     std::vector<std::string> turn, slow_turn, removed_turn;
     const auto next = [&](std::vector<std::string>& bag, auto&& may) {
         if (bag.empty()) {
             for (const auto* e : withheld)
-                if (shows(how, *e) && may(*e)) bag.emplace_back(e->name);
+                if (may(*e)) bag.emplace_back(e->name);
             random.shuffle(bag);
         }
         std::string out = bag.back();
@@ -98,17 +134,17 @@ inline std::vector<planned> plan(std::uint64_t seed, std::size_t machines, popul
                                  single, single, pair, pair, pair, unknown, unknown, removed, removed, poor};
         random.shuffle(twenty);
         bool slow_none = true;
-        for (const kind k : twenty) {
+        for (const kind drawn : twenty) {
+            const kind k = drawn == poor && is_chain(of) ? single : drawn;
             planned p{k, {}, random.chance(0.1) && of == population::current, k == poor, of, how};
-            if (k == none && slow_none) slow_none = false, p.slow_only = true;
+            if (k == none && slow_none && !is_chain(of)) slow_none = false, p.slow_only = true;
             if (k == single) p.effects = {next(turn, [](const auto&) { return true; })};
             if (k == poor) p.effects = {next(slow_turn, [](const auto& e) { return e.trial.slow_shows_it; })};
             if (k == removed)
                 p.effects = {next(removed_turn, [](const auto& e) { return !has_a_twin(e.name); })};
             if (k == pair) {
                 std::vector<std::string> all;
-                for (const auto* e : withheld)
-                    if (shows(how, *e)) all.emplace_back(e->name);
+                for (const auto* e : withheld) all.emplace_back(e->name);
                 p.effects = {random.one_of(all)};
                 while (p.effects.size() < 2)
                     if (const std::string& other = random.one_of(all); !near_relatives(other, p.effects[0]))

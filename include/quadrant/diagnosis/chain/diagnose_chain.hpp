@@ -31,7 +31,15 @@ struct two_encoders {
     axis_log carried;
     double motor_coulomb =
         0; ///< friction on the motor's side, described or claimed: part of what the force overcomes [N]
+    double motor_share = 0; ///< of the mass; 0: not described, or the two move as one
 
+    /// Puts the centre of mass in the place of the scale, whose load is so far from the motor in each row.
+    void carry(axis_log& log, const axis_description& axis, const std::vector<double>& elastic) const {
+        log.controller_reads = log.position;
+        // While the load sticks, the centre of mass moves with the motor.
+        log.least_give = motor_share * (found.play / 2 + axis.plant.coulomb_N.value_or(0) * found.compliance);
+        for (std::size_t k = 0; k < log.position.size(); ++k) log.position[k] -= motor_share * elastic[k];
+    }
     /// The axis as the force sees it: the friction of both sides in one.
     axis_description rigid(axis_description a) const {
         if (motor_coulomb == 0) return a;
@@ -47,6 +55,10 @@ struct two_encoders {
                     e = {e.value - motor_coulomb, e.low - motor_coulomb, e.high - motor_coulomb};
     }
 };
+/// Another log of the same axis with the centre of mass for the position, by the transmission that was found;
+/// as it is where it has no second encoder or is too short.
+QUADRANT_DIAGNOSIS_DECL axis_log carried_too(const two_encoders& found, const axis_description& axis,
+                                             const axis_log& log, double period, const std::string& file);
 QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_description& axis, const axis_log& log,
                                                            double period, const std::string& file,
                                                            const std::vector<std::string>& excluded,

@@ -103,13 +103,20 @@ QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_descriptio
         return out;
     }
     if (out.found.elastic.empty()) return out;
-    const double share = std::min(1.0, *mass / axis.plant.mass_kg);
-    out.carried.controller_reads = log.position;
-    // While the load sticks, the centre of mass moves with the motor.
-    out.carried.least_give =
-        share * (out.found.play / 2 + axis.plant.coulomb_N.value_or(0) * out.found.compliance);
-    for (std::size_t k = 0; k < log.position.size(); ++k)
-        out.carried.position[k] -= share * out.found.elastic[k];
+    out.motor_share = std::min(1.0, *mass / axis.plant.mass_kg);
+    out.carry(out.carried, axis, out.found.elastic);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL axis_log carried_too(const two_encoders& found, const axis_description& axis,
+                                             const axis_log& log, double period, const std::string& file) {
+    axis_log out = log;
+    if (found.motor_share == 0 || log.motor.empty()) return out;
+    auto d = motor_to_scale(axis, log, period, file);
+    give_force(d, axis, log);
+    const readings r(d.readings);
+    // The zeros and moments of the readings are this log's own.
+    if (r.rows().size() >= 4 * pieces) found.carry(out, axis, apart(r, fit_columns(r, found.found.best)));
     return out;
 }
 

@@ -86,6 +86,14 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
                 next.play = std::max(next.play + by, 0.05 * next.play);
                 change = std::max(change, std::abs(by) / std::max(next.play, 1e-300));
             }
+            if (f.of[j] == term::motor_friction && f.model.play > 0) {
+                double compliance = f.model.compliance;
+                for (std::size_t i = 0; i < f.of.size(); ++i)
+                    if (f.of[i] == term::spring) compliance += f.values[static_cast<Eigen::Index>(i)];
+                if (!(compliance > 0)) continue;
+                next.motor_coulomb = std::max(0.0, next.motor_coulomb + by / compliance);
+                change = std::max(change, std::abs(by) / std::max(next.motor_coulomb * compliance, 1e-300));
+            }
             if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
                 next.lag = std::max(next.lag + by, 0.05 * next.lag);
                 change = std::max(change, std::abs(by) / std::max(next.lag, 1e-300));
@@ -93,7 +101,7 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
         }
         if (change < 1e-7) break;
         fitted moved = fit_columns(r, next);
-        if (!(moved.rms <= f.rms * (1 + 1e-6))) break; // where the columns are exact the rms stays
+        if (!(moved.rms <= f.rms * (1 + 1e-4))) break; // where the columns are exact the rms stays
 
         f = std::move(moved);
     }

@@ -22,6 +22,7 @@ struct position_link {
     /// smooth as the difference; empty: no force is known.
     std::vector<double> force{}, motor_direction{};
     double force_band_Hz = 0; ///< to which force and difference are smoothed; 0: they are not
+    double force_doubt = 0;   ///< relative, how well the owner knows force constant and mass
 
     std::size_t rows() const { return first.size(); }
     double travel() const {
@@ -84,26 +85,65 @@ inline behind_play play_of(std::span<const double> x, double width) {
 /// How a drive follows what it is asked for.
 enum class following { at_once, delayed, first_order };
 
+/// A signal that is held from row to row, `late` seconds later: its mean over the period of each row.
+inline std::vector<double> held_later(std::span<const double> x, double period, double late) {
+    std::vector<double> out(x.begin(), x.end());
+    const double rows = late / period, whole = std::floor(rows), part = rows - whole;
+    const auto at = [&](std::ptrdiff_t k) {
+        return x[static_cast<std::size_t>(std::max<std::ptrdiff_t>(k, 0))];
+    };
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const auto from = static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(whole);
+        out[k] = (1 - part) * at(from) + part * at(from - 1);
+    }
+    return out;
+}
+
+/// The cubic through four rows, from the second of them on, in periods: between rows that are tens of
+/// milliseconds apart a motion is no straight line.
+struct between_rows {
+    double at_row, once, twice, thrice; ///< coefficients of s^0 to s^3
+
+    /// Between row k and k + 1.
+    between_rows(std::span<const double> x, std::ptrdiff_t k) {
+        const auto at = [&](std::ptrdiff_t i) {
+            return x[static_cast<std::size_t>(
+                std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(x.size()) - 1))];
+        };
+        const double a = at(k - 1), b = at(k), c = at(k + 1), d = at(k + 2);
+        at_row = b;
+        once = -a / 3 - b / 2 + c - d / 6;
+        twice = a / 2 - b + c / 2;
+        thrice = (d - a) / 6 + (b - c) / 2;
+    }
+    double operator()(double s) const { return at_row + s * (once + s * (twice + s * thrice)); }
+    /// What is at rest behind a first-order lag of `lag` periods while this goes on: the part of its answer
+    /// that does not depend on where it began.
+    double lagged(double s, double lag) const {
+        const double first = once + s * (2 * twice + s * 3 * thrice), second = 2 * twice + s * 6 * thrice;
+        return (*this)(s)-lag * (first - lag * (second - lag * 6 * thrice));
+    }
+};
+
 /// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 /
 /// lag).
 inline std::vector<double> followed(std::span<const double> x, double period, following how, double lag) {
     std::vector<double> out(x.begin(), x.end());
     if (how == following::at_once || !(lag > 0)) return out;
+    const double rows = lag / period;
     if (how == following::delayed) {
-        const double rows = lag / period, whole = std::floor(rows), part = rows - whole;
-        const auto at = [&](std::ptrdiff_t k) {
-            return x[static_cast<std::size_t>(std::max<std::ptrdiff_t>(k, 0))];
-        };
+        const double whole = std::ceil(rows);
         for (std::size_t k = 0; k < x.size(); ++k) {
             const auto from = static_cast<std::ptrdiff_t>(k) - static_cast<std::ptrdiff_t>(whole);
-            out[k] = (1 - part) * at(from) + part * at(from - 1);
+            out[k] = between_rows(x, from)(whole - rows);
         }
         return out;
     }
-    // The exact answer to straight lines between the samples.
-    const double q = period / lag, keeps = std::exp(-q), mean = (1 - keeps) / q;
-    for (std::size_t k = 1; k < x.size(); ++k)
-        out[k] = keeps * out[k - 1] + (mean - keeps) * x[k - 1] + (1 - mean) * x[k];
+    const double keeps = std::exp(-1 / rows);
+    for (std::size_t k = 1; k < x.size(); ++k) {
+        const between_rows in(x, static_cast<std::ptrdiff_t>(k) - 1);
+        out[k] = in.lagged(1, rows) + keeps * (out[k - 1] - in.lagged(0, rows));
+    }
     return out;
 }
 

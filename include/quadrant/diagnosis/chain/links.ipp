@@ -124,11 +124,11 @@ QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_descriptio
         scales_of(axis.plant, log, l.period, std::max(axis.encoder.resolution_m, l.last_count)).bandwidth_Hz();
     // The command of a row acts from its delay on, for one period.
     const double late = log.drive ? 0 : axis.plant.delay_s + l.period / 2;
-    const auto acting =
-        zero_phase(followed(log.command, l.period, following::delayed, late), l.force_band_Hz, l.period);
+    const auto acting = zero_phase(held_later(log.command, l.period, late), l.force_band_Hz, l.period);
     const auto smooth = zero_phase(l.first, l.force_band_Hz, l.period);
     const auto velocity = derivative(smooth, l.period), acceleration = derivative(velocity, l.period);
     const double mass = axis.transmission.motor_mass_kg.value_or(0);
+    l.force_doubt = std::hypot(axis.tolerance.of("force_constant"), mass > 0 ? axis.tolerance.of("mass") : 0);
     std::vector<double> sign(l.rows());
     l.force.resize(l.rows());
     for (std::size_t k = 0; k < l.rows(); ++k) {

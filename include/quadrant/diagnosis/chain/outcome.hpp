@@ -23,11 +23,12 @@ struct outcome {
     std::vector<double>
         elastic; ///< how far load and motor are apart, one entry a row; empty: they move as one [m]
     double play = 0, compliance = 0; ///< of the best model [m], [m/N]
+    link_model best{};               ///< as found
 };
 
 /// The described value of a cause's first key, 0 when there is none.
 QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key);
-/// Whether a value ends inside what its owner says of it.
+/// Whether a value, or a part of its interval, is inside what its owner says of it.
 QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p);
 
 /// How far the load is from the motor, at every row, but for what the readings alone make: their zeros and
@@ -44,6 +45,13 @@ QUADRANT_DIAGNOSIS_DECL cause cause_of(const described_link& d, const answer& a,
 /// What is said of a finding that no name stands for: a drift over time, or readings of two moments.
 QUADRANT_DIAGNOSIS_DECL std::string note_without_name(const described_link& d, const answer& a,
                                                       const axis_description& axis, term what);
+
+/// A link whose described numbers are moved, inside their tolerances, to where they fit the readings best, all
+/// of them together: play and stiffness that are both a little off look like a third cause. `moved` gets those
+/// that were moved, where that pays; else the link is left as it is.
+QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const described_link& d,
+                                                       const axis_description& axis, const rules& limits,
+                                                       std::vector<parameter_estimate>& moved);
 
 /// One link diagnosed.
 QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axis_description& axis,

@@ -14,8 +14,10 @@ QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, con
 QUADRANT_DIAGNOSIS_DECL bool inside_tolerance(const axis_description& axis, const parameter_estimate& p) {
     const machine_key* key = key_named(p.key);
     const double described = described_value(axis, p.key);
-    return key && key->tolerance && described != 0 &&
-           std::abs(p.values[0].value / described - 1) <= axis.tolerance.of(std::string(key->tolerance_name()));
+    if (!key || !key->tolerance || described == 0) return false;
+    const double half = axis.tolerance.of(std::string(key->tolerance_name())) * std::abs(described);
+    // A value that may as well be a described one is none that differs.
+    return p.values[0].low <= described + half && p.values[0].high >= described - half;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> apart(const readings& r, const fitted& f) {
@@ -75,34 +77,95 @@ QUADRANT_DIAGNOSIS_DECL std::string note_without_name(const described_link& d, c
         axis.name, d.to, d.from, 1e6 * (part.maxCoeff() - part.minCoeff()));
 }
 
-QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axis_description& axis,
+QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const described_link& d,
+                                                       const axis_description& axis, const rules& limits,
+                                                       std::vector<parameter_estimate>& moved) {
+    std::vector<term> waiting;
+    const link_model& given = d.described;
+    if (given.play > 0) waiting.push_back(term::play);
+    if (given.compliance > 0 && !d.readings.force.empty()) waiting.push_back(term::spring);
+    if (given.motor_coulomb > 0 && !d.readings.force.empty()) waiting.push_back(term::motor_friction);
+    if (given.how == following::delayed) waiting.push_back(term::delay);
+    if (given.how == following::first_order) waiting.push_back(term::first_order);
+    described_link out = d;
+    while (!waiting.empty()) {
+        link_model m = out.described;
+        m.freed = waiting;
+        const fitted f = settled(r, fit_columns(r, m));
+        std::vector<term> held; // those that end at a bound: the others are fitted beside them
+        std::vector<parameter_estimate> found;
+        for (const term t : waiting) {
+            parameter_estimate p = term_values(out, f, axis).of(t)[0];
+            const machine_key* key = key_named(p.key);
+            const double described = described_value(axis, p.key);
+            const double part =
+                key && key->tolerance ? axis.tolerance.of(std::string(key->tolerance_name())) : 0;
+            const double value = std::clamp(p.values[0].value, (1 - part) * described, (1 + part) * described);
+            if (value != p.values[0].value) held.push_back(t);
+            p.values[0].value = value;
+            if (value != described) found.push_back(p);
+            if (t == term::play) out.described.play = value;
+            if (t == term::spring) out.described.compliance = 1 / value;
+            if (t == term::motor_friction) out.described.motor_coulomb = value;
+            if (t == term::delay) out.described.lag = value;
+            if (t == term::first_order) out.described.lag = 1 / value;
+        }
+        if (held.empty() || held.size() == waiting.size()) {
+            moved.insert(moved.end(), found.begin(), found.end());
+            break;
+        }
+        for (const parameter_estimate& p : found)
+            for (const term t : held)
+                if (p.key == term_values(out, f, axis).of(t)[0].key) moved.push_back(p);
+        std::erase_if(waiting, [&](term t) { return std::find(held.begin(), held.end(), t) != held.end(); });
+    }
+    if (fit_columns(r, out.described).score > fit_columns(r, given).score + limits.margin) return out;
+    moved.clear();
+    return d;
+}
+
+QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described, const axis_description& axis,
                                               const std::vector<std::string>& excluded, const rules& limits) {
     std::vector<term> left_out;
     for (term t : all_terms)
         if (std::find(excluded.begin(), excluded.end(), name_of(t)) != excluded.end() && !name_of(t).empty())
             left_out.push_back(t);
-    const readings r(d.readings);
+    const readings r(as_described.readings);
     if (r.rows().size() < 4 * pieces)
         throw std::length_error(fmt::format("{} rows that count; a comparison of two positions needs {}",
                                             r.rows().size(), 4 * pieces));
-    const answer a = seeker(r, d.described, left_out, limits).find();
     outcome out;
-    out.gap = {.position_rms_m = a.given.rms, .position_peak_m = a.given.left.cwiseAbs().maxCoeff()};
+    const described_link d = calibrated_link(r, as_described, axis, limits, out.calibrated);
+    const answer a = seeker(r, d.described, left_out, limits).find();
+    const fitted given = fit_columns(r, as_described.described);
+    out.gap = {.position_rms_m = given.rms, .position_peak_m = given.left.cwiseAbs().maxCoeff()};
     out.gap_after = {.position_rms_m = a.best.held_out, .position_peak_m = a.best.left.cwiseAbs().maxCoeff()};
     out.gap.noise_floor_position_rms_m = out.gap_after.noise_floor_position_rms_m = r.noise();
     const double whole = std::max(a.given.held_out * a.given.held_out, 1e-300);
     const auto share_of = [&](const finding& f) {
         return std::clamp((f.before * f.before - f.after * f.after) / whole, 0.0, 1.0);
     };
-    bool all_claimed = true, drifts = false;
+    bool all_claimed = true, without_name = false;
+    double unnamed = 0;
     for (const finding& f : a.findings) {
+        if (std::find(left_out.begin(), left_out.end(), f.what) != left_out.end()) {
+            without_name = true;
+            unnamed += share_of(f);
+            out.notes.push_back(
+                fmt::format("axis {}: {}, which the machine file excludes, explains what lies between "
+                            "{} and {} best: check excluded_effects.",
+                            axis.name, effect_named(name_of(f.what))->label, d.from, d.to));
+            continue;
+        }
         if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
-            drifts |= f.what == term::drift;
+            without_name |= f.what == term::drift;
             out.notes.push_back(note_without_name(d, a, axis, f.what));
             continue;
         }
         cause c = cause_of(d, a, axis, f);
         if (!c.parameters.empty() && inside_tolerance(axis, c.parameters[0])) {
+            std::erase_if(out.calibrated,
+                          [&](const parameter_estimate& p) { return p.key == c.parameters[0].key; });
             out.calibrated.push_back(c.parameters[0]);
             continue;
         }
@@ -120,11 +183,16 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axi
         all_claimed &= claimed(c);
         out.causes.push_back(std::move(c));
     }
+    // What the force is known to moves the wind-up by as much.
+    const double doubt = std::hypot(d.readings.force_doubt, best_law) *
+                         term_values(d, a.best, axis).compliance() *
+                         (d.readings.force.empty() ? 0 : rms(d.readings.force));
     const double floor = r.noise() * r.noise(), after = a.best.held_out * a.best.held_out;
-    const bool at_floor = !drifts && (a.at_floor || after - floor < law_error * law_error * (whole - floor));
-    double unnamed = 0;
+    const bool at_floor =
+        !without_name &&
+        (a.at_floor || after - floor < law_error * law_error * (whole - floor) + doubt * doubt);
     for (const finding& f : a.findings)
-        if (f.what == term::drift) unnamed = share_of(f);
+        if (f.what == term::drift) unnamed += share_of(f);
     out.share_left = at_floor ? 0 : std::clamp(unnamed + (after - floor) / whole, 0.0, 1.0);
     const double rest = std::clamp(unnamed + after / whole, 0.0, 1.0);
     out.places.push_back({"block",
@@ -145,7 +213,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axi
     give_signals(out, r, a.best);
     out.play = a.best.model.play;
     out.compliance = term_values(d, a.best, axis).compliance();
-    const link_model& m = a.best.model;
+    const link_model& m = out.best = a.best.model;
     const bool moves = m.play > 0 || out.compliance > 0 || !m.pitch.empty() || !m.smooth.empty() ||
                        m.has(term::pitch) || m.has(term::smooth);
     if (moves && !d.readings.force.empty()) out.elastic = apart(r, a.best);

@@ -49,7 +49,13 @@ public:
     equations of_model(const link_model& m) const;
     /// A function of the place, at every row, as smooth as the readings.
     template <class Value> std::vector<double> along_travel(const link_model& m, Value value) const {
-        auto out = followed(link_.first, link_.period, m.how, m.lag);
+        return as_smooth(followed(link_.first, link_.period, m.how, m.lag), value);
+    }
+    /// The same of the place where the scale is read.
+    template <class Value> std::vector<double> along_scale(Value value) const {
+        return as_smooth(link_.last, value);
+    }
+    template <class Value> std::vector<double> as_smooth(std::vector<double> out, Value value) const {
         for (double& x : out) x = value(x);
         return link_.force_band_Hz > 0 ? zero_phase(out, link_.force_band_Hz, link_.period) : out;
     }

@@ -29,10 +29,16 @@ struct answer {
     bool at_floor = false;         ///< nothing is left beside noise and rounding
 };
 
+/// Energy of what a model leaves that is a function of the place: means of bins along the travel, less what the
+/// scatter in a bin makes [m^2].
+QUADRANT_DIAGNOSIS_DECL double left_along(const readings& r, const fitted& f);
+
 /// Finds the terms of a link: greedy, with every earlier term tried again, as the search among the causes of a
 /// force.
 class seeker {
 public:
+    /// `excluded`: terms that the owner says cannot be. They join a model like the others, so that no other
+    /// term stands for them, and are never a rival by name.
     seeker(const readings& r, link_model described, std::vector<term> excluded, const rules& limits);
 
     answer find() const;
@@ -65,7 +71,7 @@ private:
     const readings& r_;
     link_model described_;
     rules limits_;
-    std::vector<term> suspects_;
+    std::vector<term> suspects_, excluded_;
 };
 
 } // namespace quadrant::diagnosis::chain

@@ -5,10 +5,26 @@ namespace quadrant::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL seeker::seeker(const readings& r, link_model described, std::vector<term> excluded,
                                        const rules& limits)
-    : r_(r), described_(std::move(described)), limits_(limits) {
-    suspects_ = suspects_of(r.of());
-    std::erase_if(suspects_,
-                  [&](term t) { return std::find(excluded.begin(), excluded.end(), t) != excluded.end(); });
+    : r_(r), described_(std::move(described)), limits_(limits), suspects_(suspects_of(r.of())),
+      excluded_(std::move(excluded)) {}
+
+QUADRANT_DIAGNOSIS_DECL double left_along(const readings& r, const fitted& f) {
+    constexpr std::size_t bins = 60;
+    struct bin {
+        double n = 0, sum = 0, square = 0;
+    };
+    std::vector<bin> all(bins);
+    const auto where = places(r, false);
+    for (std::size_t i = 0; i < where.size(); ++i) {
+        const double u = std::clamp((r.along(where[i]) + 1) / 2, 0.0, 1.0);
+        bin& b = all[std::min(bins - 1, static_cast<std::size_t>(u * bins))];
+        const double e = f.left[static_cast<Eigen::Index>(i)];
+        b.n += 1, b.sum += e, b.square += e * e;
+    }
+    double energy = 0;
+    for (const bin& b : all)
+        if (b.n > 1) energy += b.sum * b.sum / b.n - (b.square - b.sum * b.sum / b.n) / (b.n - 1);
+    return std::max(0.0, energy / static_cast<double>(where.size()));
 }
 
 QUADRANT_DIAGNOSIS_DECL answer seeker::find() const {
@@ -121,6 +137,7 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::joined(const fitted& from, const fitted& 
     if (t == term::pitch)
         m.pitch_period = best.model.pitch_period, m.pitch_harmonics = best.model.pitch_harmonics;
     if (t == term::cyclic) m.cyclic_period = best.model.cyclic_period;
+    if (t == term::motor_friction) m.motor_coulomb = best.model.motor_coulomb;
     if (t == term::steps) m.steps = best.model.steps;
     return fit_columns(r_, m);
 }
@@ -140,12 +157,17 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
         if (alike && pays(rival, without, u))
             weight = std::max(weight, std::min(1.0, odds(u) / odds(f.what)) * 0.5);
         sum += weight;
-        if (weight > 0.01 && pays(rival, without, u) && !name_of(u).empty()) {
+        const bool may_be = std::find(excluded_.begin(), excluded_.end(), u) == excluded_.end();
+        if (weight > 0.01 && may_be && pays(rival, without, u) && !name_of(u).empty()) {
             f.same.push_back(u);
             same += weight;
         }
     }
-    const double known = 1 - detail::by_chance(suspects_.size(), std::sqrt(left / explained));
+    double known = 1 - detail::by_chance(suspects_.size(), std::sqrt(left / explained));
+    // What is left along the travel is a curve that none of these names stands for.
+    const bool of_place = f.what == term::smooth || f.what == term::cyclic || f.what == term::scale;
+    if (of_place && !out.at_floor && left_along(r_, out.best) > law_error * explained)
+        known = std::min(known, 0.45);
     f.probability = known / sum;
     f.group_probability = known * same / sum;
 }

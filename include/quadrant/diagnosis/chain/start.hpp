@@ -10,15 +10,16 @@ namespace quadrant::diagnosis::chain {
 /// Terms that can lie between these two readings.
 QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l);
 
-/// Positions at which what is left was read.
-QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r);
+/// Positions at which what is left was read, of the first reading or of the scale.
+QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r, bool of_scale);
 
 /// Whether a period is not told from a turn or a fraction of it on this travel.
 QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double turn);
 
 /// The period at which what a model leaves repeats best along the travel; 0: none. Those near a fraction of
 /// `but` do not count.
-QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but);
+QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but,
+                                                bool of_scale);
 
 /// The period beside p at which one wave takes most off what a model leaves.
 template <class Put> fitted refined_period(const readings& r, link_model m, double p, Put put) {
@@ -36,6 +37,9 @@ template <class Put> fitted refined_period(const readings& r, link_model m, doub
 /// The row that counts before which and behind which the means of `left` differ most, by the energy that it
 /// takes; and that energy.
 QUADRANT_DIAGNOSIS_DECL std::pair<std::size_t, double> best_cut(const Eigen::VectorXd& left);
+
+/// Whether each jump happens from one row to the next, not over a stretch of the record.
+QUADRANT_DIAGNOSIS_DECL bool sudden(const readings& r, const fitted& f);
 
 /// Jumps, one after the other, while each pays.
 QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from, double margin);

@@ -17,9 +17,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l) {
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r) {
+QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r, bool of_scale) {
     std::vector<double> out;
-    for (std::size_t k : r.rows()) out.push_back(r.first()[k]);
+    for (std::size_t k : r.rows()) out.push_back(of_scale ? r.of().last[k] : r.first()[k]);
     return out;
 }
 
@@ -29,8 +29,9 @@ QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double tur
     return false;
 }
 
-QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but) {
-    const auto z = places(r);
+QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but,
+                                                bool of_scale) {
+    const auto z = places(r, of_scale);
     const std::vector<double> left(from.left.data(), from.left.data() + from.left.size());
     const double longest = r.travel() / 2, shortest = std::max(8 * r.of().count(), r.travel() / 4000);
     for (double p : spatial_peaks(left, z, longest, shortest, 12))
@@ -51,6 +52,23 @@ QUADRANT_DIAGNOSIS_DECL std::pair<std::size_t, double> best_cut(const Eigen::Vec
     return {at, best};
 }
 
+QUADRANT_DIAGNOSIS_DECL bool sudden(const readings& r, const fitted& f) {
+    constexpr Eigen::Index beside = 6;
+    for (std::size_t j = 0; j < f.of.size(); ++j) {
+        if (f.of[j] != term::steps) continue;
+        const auto column = static_cast<Eigen::Index>(j);
+        const double size = f.values[column];
+        Eigen::Index at = 0;
+        while (at < f.left.size() && f.columns(at, column) == 0) ++at;
+        const Eigen::Index before = std::min(beside, at), behind = std::min(beside, f.left.size() - at);
+        if (before == 0 || behind == 0) return false;
+        const double jump =
+            size + f.left.segment(at, behind).mean() - f.left.segment(at - before, before).mean();
+        if (!(jump * size > 0.25 * size * size) && std::abs(size) > 4 * r.noise()) return false;
+    }
+    return true;
+}
+
 QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from, double margin) {
     fitted best = from;
     link_model m = from.model;
@@ -65,8 +83,9 @@ QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from,
         for (std::size_t j = 0; j < next.of.size(); ++j)
             if (next.of[j] == term::steps)
                 smallest = std::min(smallest, std::abs(next.values[static_cast<Eigen::Index>(j)]));
-        // A step that is missed is one of the counter at least.
-        if (!(next.score > best.score + margin) || smallest < std::max(r.of().first_count, r.of().last_count))
+        // A step that is missed is one of the counter at least, and is there from one row to the next.
+        if (!(next.score > best.score + margin) || smallest < std::max(r.of().first_count, r.of().last_count) ||
+            !sudden(r, next))
             break;
         m = next.model;
         best = std::move(next);
@@ -91,7 +110,7 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
                 m.lag = lag;
                 return fit_columns(r, m).rms;
             },
-            0.05 * r.of().period, seconds / 20, 16, 12);
+            0.002 * r.of().period, seconds / 20, 22, 12);
         freed(m);
         return settled(r, fit_columns(r, m));
     }
@@ -110,7 +129,7 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
         m.pitch_harmonics = 1;
         const bool passed = known > 0 && r.travel() >= 1.5 * known;
         if (known > 0 && !passed) return from;
-        const double p = known > 0 ? known : repeating_period(r, from, 0);
+        const double p = known > 0 ? known : repeating_period(r, from, 0, false);
         if (!(p > 0)) return from;
         m.pitch_period = p;
         fitted best = known > 0 ? fit_columns(r, m)
@@ -125,7 +144,7 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
         return settled(r, std::move(best));
     }
     case term::cyclic: {
-        const double p = repeating_period(r, from, r.of().turn);
+        const double p = repeating_period(r, from, r.of().turn, true);
         if (!(p > 0)) return from;
         freed(m);
         m.cyclic_period = p;
@@ -134,6 +153,13 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
     }
     case term::motor_friction:
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
+        if (m.play > 0)                                              // it decides which flank is in contact
+            m.motor_coulomb = least(
+                [&](double level) {
+                    m.motor_coulomb = level;
+                    return fit_columns(r, m).rms;
+                },
+                0.01 * rms(r.of().force), 1.5 * rms(r.of().force), 16, 10);
         break;
     case term::steps:
         return with_steps(r, from, margin);
@@ -150,6 +176,7 @@ QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& fro
     std::erase(m.freed, t);
     if (t == term::play) m.play = described.play;
     if (t == term::delay || t == term::first_order) m.how = described.how, m.lag = described.lag;
+    if (t == term::motor_friction) m.motor_coulomb = described.motor_coulomb;
     if (t == term::steps) m.steps.clear();
     return settled(r, fit_columns(r, m));
 }

@@ -8,6 +8,9 @@
 /// The findings of a link as keys of the machine file, with intervals.
 namespace quadrant::diagnosis::chain {
 
+/// What no law is better than, relative.
+inline constexpr double best_law = 0.01;
+
 /// A value with 95 %: scatter between pieces, and what no law is better than: one per cent, and `count`.
 QUADRANT_DIAGNOSIS_DECL estimate with_interval(double value, double deviation, double count);
 

@@ -5,7 +5,7 @@ namespace quadrant::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL estimate with_interval(double value, double deviation, double count) {
     constexpr double t = 1.96 + 2.4 / (pieces - 1); // Student's factor, two terms
-    const double half = std::hypot(t * deviation, 0.01 * value, count);
+    const double half = std::hypot(t * deviation, best_law * value, count);
     return {value, value - half, value + half};
 }
 
@@ -15,11 +15,12 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
     const link_model& m = f_.model;
     switch (t) {
     case term::play:
-        return {{"transmission.backlash_m", {with_interval(m.play, deviation(at[0]), half_a_count)}}};
+        return {{"transmission.backlash_m",
+                 {with_interval(m.play + value(at[0]), deviation(at[0]), half_a_count)}}};
     case term::delay:
-        return {{"drive.command_delay_s", {with_interval(m.lag, deviation(at[0]), 0)}}};
+        return {{"drive.command_delay_s", {with_interval(m.lag + value(at[0]), deviation(at[0]), 0)}}};
     case term::first_order: {
-        const estimate lag = with_interval(m.lag, deviation(at[0]), 0);
+        const estimate lag = with_interval(std::max(m.lag + value(at[0]), 0.05 * m.lag), deviation(at[0]), 0);
         return {{"drive.position_gain_per_s",
                  {{1 / lag.value, 1 / lag.high, 1 / std::max(lag.low, 1e-3 * lag.value)}}}};
     }
@@ -27,14 +28,14 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
         return scale(at[0]);
     case term::spring: {
         const double c = d_.described.compliance + value(at[0]);
-        const estimate e = with_interval(c, deviation(at[0]), 0);
+        const estimate e = with_interval(c, deviation(at[0]), d_.readings.force_doubt * c);
         const double most = 1 / std::max(e.low, 1e-3 * std::abs(c));
         return {{"transmission.stiffness_N_per_m", {{1 / c, 1 / e.high, most}}}};
     }
     case term::motor_friction: {
-        const double c = compliance();
+        const double c = compliance(), level = m.motor_coulomb + value(at[0]) / c;
         return {{"transmission.motor_coulomb_N",
-                 {with_interval(d_.described.motor_coulomb + value(at[0]) / c, deviation(at[0]) / c, 0)}}};
+                 {with_interval(level, deviation(at[0]) / c, d_.readings.force_doubt * level)}}};
     }
     case term::pitch:
         return wave(at, "transmission.pitch_error_m", "transmission.pitch_period_m",

@@ -38,6 +38,7 @@ struct advice {
 struct compensated_axis {
     std::string name, command_unit;
     bool forecast = false;                   ///< a controller is described, so that there is a loop to simulate
+    bool positions_only = false;             ///< forecast on the readings of two positions, without a loop
     tracking measured;                       ///< on the log as it is
     double missed_rms_m = 0;                 ///< simulated beside logged position, nothing compensated
     double noise_m = 0;                      ///< of the position reading

@@ -9,7 +9,9 @@ QUADRANT_DIAGNOSIS_DECL bool can_close(const axis_description& axis, const axis_
 }
 
 QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& axis, const plant_model& plant,
-                                                        double period, const axis_log& log) {
+                                                        double period, const axis_log& log,
+                                                        std::span<const double> sensor_noise,
+                                                        std::vector<double>* set_points) {
     const driven_motion& motion = *log.drive;
     const std::size_t n = log.position.size();
     std::unique_ptr<loop_inputs> in;
@@ -20,16 +22,19 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& 
     }
     const double count = axis.encoder.resolution_m;
     closed_loop_run out{std::vector<double>(n), {}};
-    out.command =
-        run_closed(plant, motion, period, (log.position[1] - log.position[0]) / period, log.other_acceleration,
-                   [&](std::size_t k, double reading, std::vector<double>& set_point) {
-                       out.position[k] = count > 0 ? std::round(reading / count) * count : reading;
-                       if (!controller || k == 0) return;
-                       const std::size_t ahead = std::min(k + controller->lead(), n - 1);
-                       set_point[k] = controller->step(
-                           in->asked(static_cast<std::ptrdiff_t>(ahead)),
-                           {in_si(out.position[k]), in_si((out.position[k] - out.position[k - 1]) / period)});
-                   });
+    out.command = run_closed(
+        plant, motion, period, (log.position[1] - log.position[0]) / period, log.other_acceleration,
+        [&](std::size_t k, double reading, std::vector<double>& set_point) {
+            if (!sensor_noise.empty()) reading += sensor_noise[k];
+            out.position[k] = count > 0 ? std::round(reading / count) * count : reading;
+            if (controller && k > 0) {
+                const std::size_t ahead = std::min(k + controller->lead(), n - 1);
+                set_point[k] = controller->step(
+                    in->asked(static_cast<std::ptrdiff_t>(ahead)),
+                    {in_si(out.position[k]), in_si((out.position[k] - out.position[k - 1]) / period)});
+            }
+            if (set_points) (*set_points)[k] = set_point[k];
+        });
     return out;
 }
 
