@@ -154,7 +154,8 @@ tidy() { # clang-tidy over every header
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
-    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace || exit 1
+    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace \
+    python3-dev python3-pybind11 python3-numpy python3-pandas python3-setuptools python3-wheel python3-venv python3-pytest python3-build || exit 1
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
     libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
