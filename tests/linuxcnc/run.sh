@@ -110,4 +110,31 @@ claim "1 kHz, cogging and delay on the pins of quadrant_plant: both named, on th
 machine fast 's/^SERVO_PERIOD = .*/SERVO_PERIOD = 250000/'
 diagnose fast 0.25
 claim "4 kHz, nothing injected: no gap" said fast 'v in ("no_gap", "within_tolerance") and not named'
+
+# The panel: recorded, diagnosed, shown, the values saved; the next start has them.
+if ! /usr/bin/python3 -c 'import PyQt5.QtWebEngineWidgets' 2>/dev/null || ! command -v xvfb-run >/dev/null; then
+    echo "SKIPPED: LinuxCNC: the panel: no python3-pyqt5.qtwebengine or no xvfb"
+    exit $failed
+fi
+cp -r "$example/machine" "$work/panel"
+cp -r "$example/panel" "$work/panel/panel"
+cp "$here/panel_display.py" "$gap" "$work/panel"
+sed -i "s|^HALFILE = plant.hal|&\nHALFILE = inject.hal|
+    s|^DISPLAY = .*|DISPLAY = ./panel_display.py $work/panel/panel $work/panel/${gap##*/} circle.ngc diamond.ngc|" "$work/panel/quadrant.ini"
+chown -R $user "$work/panel"
+su $user -c "cd '$work/panel' && export QTWEBENGINE_CHROMIUM_FLAGS='--disable-gpu --no-sandbox' && timeout 600 xvfb-run -a -s '-screen 0 1280x1024x24' \
+    script -qfec 'linuxcnc quadrant.ini' run.log" </dev/null >/dev/null || { tail -20 "$work/panel/run.log"; failed=1; }
+sed 's/^/    /' "$work/panel/panel.txt" | head -n 40
+cp "$work/panel/diagnosed/diagnosis.json" "$work/panel/found.json"
+claim "panel: both effects named from its own record" said panel 'named == {"x.cogging", "x.time_delay"}'
+delay() { awk -F' *= *' -v s="$2" '/^\[/ { at = $0 } at == s && $1 == "DELAY" { print $2 }' "$1"; }
+claim "panel: the delay of x is saved for the next start" \
+    awk "BEGIN { d = $(delay "$work/panel/quadrant.ini" '[JOINT_0]') - 0.0012; exit !(d * d < 1e-8) }"
+claim "panel: the file as it was stands beside" [ "$(delay "$work/panel/quadrant.ini.before" '[JOINT_0]')" = 0.0004 ]
+claim "panel: y keeps its delay" awk "BEGIN { d = $(delay "$work/panel/quadrant.ini" '[JOINT_1]') - 0.0004; exit !(d * d < 1e-8) }"
+for shot in panel values; do claim "panel: screenshot $shot.png" [ -s "$work/panel/screen_$shot.png" ]; done
+# Started again with these values.
+sed -i 's|^DISPLAY = .*|DISPLAY = ./run_program.py circle.ngc|' "$work/panel/quadrant.ini"
+su $user -c "cd '$work/panel' && timeout 300 script -qfec 'linuxcnc quadrant.ini' again.log" </dev/null >/dev/null || failed=1
+claim "panel: the machine starts with the saved values and runs" [ -s "$work/panel/record.txt" ]
 exit $failed

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "report/html.hpp"
+
 #include <quadrant/diagnosis/log/log.hpp>
 #include <quadrant/diagnosis/model/plant_model.hpp>
 #include <quadrant/diagnosis/result/result.hpp>
@@ -24,7 +26,7 @@ struct settings_text {
 
 namespace settings_detail {
 
-inline std::string number(double x) { return fmt::format("{:.6g}", x == 0 ? 0.0 : x); } // no -0
+inline std::string in_six(double x) { return fmt::format("{:.6g}", x == 0 ? 0.0 : x); } // no -0
 
 /// Joints in the order in which LinuxCNC lists coordinates; axes with other names come behind, as in the file.
 inline std::vector<const axis_description*> joints(const machine_description& m) {
@@ -61,15 +63,23 @@ inline std::vector<line> of_pid(const axis_description& a, const plant_model& p,
             {"bias", -p.constant_force / p.force_constant}};
 }
 
-/// The pins of quadrant_axis, in SI.
+inline bool is_cascade(const axis_description& a) {
+    return a.controller && !a.controller->own && a.controller->kind == "cascade_p_pi";
+}
+
+/// The pins of quadrant_axis, in SI: gains where a cascade is described, and what its feedforwards and its observer
+/// know of the plant.
 inline std::vector<line> of_quadrant_axis(const axis_description& a, const plant_model& p) {
-    const auto& c = *a.controller;
-    std::vector<line> out{{"position-gain", c.number("position_gain_per_s")},
-                          {"velocity-gain", c.number("velocity_gain_V_s_per_m")},
-                          {"velocity-integral", c.number("velocity_integral_V_per_m")}};
-    if (c.has("notch.frequency_Hz")) {
-        out.emplace_back("notch-centre", c.number("notch.frequency_Hz"));
-        out.emplace_back("notch-damping", c.number("notch.width"));
+    std::vector<line> out;
+    if (is_cascade(a)) {
+        const auto& c = *a.controller;
+        out = {{"position-gain", c.number("position_gain_per_s")},
+               {"velocity-gain", c.number("velocity_gain_V_s_per_m")},
+               {"velocity-integral", c.number("velocity_integral_V_per_m")}};
+        if (c.has("notch.frequency_Hz")) {
+            out.emplace_back("notch-centre", c.number("notch.frequency_Hz"));
+            out.emplace_back("notch-damping", c.number("notch.width"));
+        }
     }
     out.emplace_back("plant-gain", p.force_constant / p.moving_mass());
     out.emplace_back("plant-pole", p.friction.viscous_slope / p.moving_mass());
@@ -112,35 +122,32 @@ inline settings_text linuxcnc_lines(const machine_description& m) {
                     ? fmt::format("# COMP_FILE, COMP_FILE_TYPE = 1: position, forward and reverse of the table "
                                   "of corrections, in {}\n",
                                   unit_of(*a))
-                    : fmt::format("BACKLASH = {}\n", number(p.backlash * units));
-        if (!a->controller || a->controller->own) {
-            out.notes.push_back(
-                fmt::format("axis {}: no controller is described, so there are no gains", a->name));
-        } else if (a->controller->kind == "cascade_p_pi" && a->kind == axis_kind::linear &&
-                   a->command_unit == "V") {
+                    : fmt::format("BACKLASH = {}\n", in_six(p.backlash * units));
+        if (a->kind == axis_kind::linear && a->command_unit == "V" && !a->positions_only)
             for (const auto& [name, value] : of_quadrant_axis(*a, p)) {
-                out.text += fmt::format("{} = {}\n", ini_name(name), number(value));
-                hal += fmt::format("setp quadrant-axis.{}.{:<18} {}\n", joint, name, number(value));
+                out.text += fmt::format("{} = {}\n", ini_name(name), in_six(value));
+                hal += fmt::format("setp quadrant-axis.{}.{:<18} {}\n", joint, name, in_six(value));
             }
-        } else if (a->controller->kind == "linuxcnc_pid") {
-            for (const auto& [key, values] : a->controller->values)
-                if (key != "units_per_m")
-                    hal += key == "error-previous-target"
-                               ? fmt::format("setp pid.{}.{:<22} {}\n", joint, key,
-                                             values[0] != 0 ? "TRUE" : "FALSE")
-                               : fmt::format("setp pid.{}.{:<22} {}\n", joint, key, number(values[0]));
-        } else if (a->controller->kind != "cascade_p_pi") {
-            out.notes.push_back(
-                fmt::format("axis {}: LinuxCNC has no component like {}", a->name, a->controller->kind));
-        }
-        if (a->controller && a->controller->kind == "cascade_p_pi") {
+        if (is_cascade(*a)) {
             hal += fmt::format("# instead of quadrant_axis, LinuxCNC's pid (error in {}):\n", unit_of(*a));
             for (const auto& [name, value] : of_pid(*a, p, units))
-                hal += fmt::format("# setp pid.{}.{:<6} {}\n", joint, name, number(value));
+                hal += fmt::format("# setp pid.{}.{:<6} {}\n", joint, name, in_six(value));
             if (p.friction.coulomb > 0)
                 out.notes.push_back(fmt::format(
                     "axis {}: pid has no feedforward against Coulomb friction ({} {}); quadrant_axis has",
-                    a->name, number(p.friction.coulomb / p.force_constant), a->command_unit));
+                    a->name, in_six(p.friction.coulomb / p.force_constant), a->command_unit));
+        } else if (a->controller && a->controller->kind == "linuxcnc_pid") {
+            for (const auto& [key, values] : a->controller->values)
+                if (key != "units_per_m")
+                    hal += fmt::format("setp pid.{}.{:<22} {}\n", joint, key,
+                                       key != "error-previous-target" ? in_six(values[0])
+                                       : values[0] != 0               ? "TRUE"
+                                                                      : "FALSE");
+        } else {
+            out.notes.push_back(
+                a->controller
+                    ? fmt::format("axis {}: LinuxCNC has no component like {}", a->name, a->controller->kind)
+                    : fmt::format("axis {}: no controller is described, so there are no gains", a->name));
         }
         ++joint;
     }
@@ -184,7 +191,7 @@ inline settings_text drive_values(const machine_description& m) {
         if (p.mode.mass > 0) {
             const double first = p.moving_mass() - p.mode.mass,
                          pole = first > 0 ? p.mode.frequency_Hz * std::sqrt(1 + p.mode.mass / first) : 0;
-            row("resonance, for a notch", pole, "Hz");
+            row("resonance (for a notch)", pole, "Hz");
             row("antiresonance", p.mode.frequency_Hz, "Hz");
         }
         row("dead zone of the amplifier", p.dead_zone, u);

@@ -15,9 +15,9 @@
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/forecast.hpp>
-#include <quadrant/diagnosis/import/mat_file.hpp>
 #include <quadrant/diagnosis/import/own_header.hpp>
 #include <quadrant/diagnosis/import/read_map.hpp>
+#include <quadrant/diagnosis/import/table_file.hpp>
 #include <quadrant/diagnosis/import_log.hpp>
 #include <quadrant/diagnosis/init.hpp>
 #include <quadrant/diagnosis/read_diagnosis.hpp>
@@ -67,7 +67,7 @@ std::string csv_of(const std::vector<std::pair<std::string, array>>& columns) {
 
 /// Text of a log, as our own reader has it, or by its names with units; a MAT-file as a table.
 machine_log log_of_text(const std::string& bytes, const std::string& name) {
-    const std::string text = is_mat_file(bytes) ? table_of_mat_file(bytes, name) : detail::in_utf8(bytes);
+    const std::string text = text_of_table_file(bytes, name);
     std::optional<bad_input> refused;
     try {
         return detail::log_reader(text, name).read();
@@ -89,8 +89,7 @@ machine_log log_of_text(const std::string& bytes, const std::string& name) {
 machine_log mapped_log(const std::string& map, const std::string& map_name,
                        const std::vector<std::pair<std::string, std::string>>& files, bool resample) {
     std::vector<foreign_file> tables;
-    for (const auto& [bytes, name] : files)
-        tables.push_back({is_mat_file(bytes) ? table_of_mat_file(bytes, name) : detail::in_utf8(bytes), name});
+    for (const auto& [bytes, name] : files) tables.push_back({text_of_table_file(bytes, name), name});
     auto imported = import_log(read_import_map(map, map_name), tables, {.resample = resample});
     check_physics(imported);
     imported.log.notes.insert(imported.log.notes.begin(), imported.notes.begin(), imported.notes.end());

@@ -16,6 +16,14 @@ struct number_column {
     std::vector<double> values;
 };
 
+/// A name from a file of numbers as the head of a column: what would end the cell or the line is replaced.
+inline std::string column_name(std::string_view name) {
+    std::string out(name);
+    for (char& c : out)
+        if (c == ',' || c == '"' || static_cast<unsigned char>(c) < ' ') c = '_';
+    return out;
+}
+
 /// What import_log reads: a line of names, then rows. No value is an empty cell. Columns of one log are of one
 /// length.
 inline std::string text_of_table(const std::vector<number_column>& columns, std::string_view file) {

@@ -55,7 +55,7 @@ private:
         std::vector<double> dictionary{}, values{};
     };
 
-    [[noreturn]] void refuse(const std::string& message) const { throw bad_input(file_, message); }
+    [[noreturn]] void refuse(const std::string& why) const { throw bad_input(file_, why); }
     [[noreturn]] void refuse(const column& c, const std::string& message) const {
         refuse("column " + c.name + ": " + message);
     }
@@ -94,7 +94,7 @@ private:
     }
     static column described(const thrift_struct& s, bool nested) {
         constexpr std::int64_t repeated = 2, millis = 9, micros = 10, first_unsigned = 11, last_unsigned = 14;
-        column c{.name = std::string(s.text(4))};
+        column c{.name = column_name(s.text(4))};
         c.type = static_cast<int>(s.integer(1, fixed));
         c.optional = s.integer(3, 0) == 1;
         const auto converted = s.integer(6, -1);
@@ -148,10 +148,9 @@ private:
             at += page.size();
             read_page(c, header, page, static_cast<std::size_t>(whole), static_cast<int>(packing), end);
         }
-        if (c.unit_s > 0 && rows_before == 0 && !c.values.empty()) start_ = c.values.front();
+        if (c.unit_s > 0 && rows_before == 0 && !c.values.empty()) start_s_ = c.values.front();
         if (c.unit_s > 0)
-            for (std::size_t k = rows_before; k < c.values.size(); ++k)
-                c.values[k] = (c.values[k] - start_) * c.unit_s;
+            for (std::size_t k = rows_before; k < c.values.size(); ++k) c.values[k] -= start_s_;
     }
 
     void read_page(column& c, const thrift_struct& header, std::string_view page, std::size_t whole,
@@ -225,7 +224,7 @@ private:
 
     // --- values ---
 
-    std::vector<double> plain_values(const column& c, std::string_view from, std::size_t count) const {
+    std::vector<double> plain_values(const column& c, std::string_view from, std::size_t count) {
         std::vector<double> out;
         const std::size_t each = c.type == int32 || c.type == of_float ? 4 : 8;
         if (from.size() < (c.type == boolean ? (count + 7) / 8 : count * each))
@@ -242,7 +241,11 @@ private:
                 out.push_back(std::bit_cast<double>(raw));
             else if (c.type == of_float)
                 out.push_back(static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw))));
-            else if (c.is_unsigned)
+            else if (c.unit_s > 0) {
+                if (!epoch_) epoch_ = static_cast<std::int64_t>(raw);
+                out.push_back(c.unit_s * static_cast<double>(static_cast<std::int64_t>(
+                                             raw - static_cast<std::uint64_t>(*epoch_))));
+            } else if (c.is_unsigned)
                 out.push_back(static_cast<double>(raw));
             else
                 out.push_back(each == 4 ? static_cast<double>(static_cast<std::int32_t>(low))
@@ -367,8 +370,9 @@ private:
 
     std::string_view file_, bytes_;
     std::vector<column> columns_{};
-    std::size_t numbers_ = 0; ///< of all columns so far
-    double start_ = 0;        ///< of the time stamps
+    std::size_t numbers_ = 0;             ///< of all columns so far
+    std::optional<std::int64_t> epoch_{}; ///< near the time stamps: a double does not hold nanoseconds of 1970
+    double start_s_ = 0;                  ///< of the first row, from there
 };
 
 } // namespace detail
