@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-/// The numbers of a machine file as other programs take them: lines for LinuxCNC, values for a drive, a table of
-/// corrections over the position.
+/// The numbers of a machine file as other programs take them: lines for LinuxCNC, values for a drive, a table
+/// of corrections over the position.
 namespace quadrant_gap {
 using namespace quadrant::diagnosis;
 
@@ -28,7 +28,8 @@ namespace settings_detail {
 
 inline std::string in_six(double x) { return fmt::format("{:.6g}", x == 0 ? 0.0 : x); } // no -0
 
-/// Joints in the order in which LinuxCNC lists coordinates; axes with other names come behind, as in the file.
+/// Joints in the order in which LinuxCNC lists coordinates; axes with other names come behind, as in the
+/// file.
 inline std::vector<const axis_description*> joints(const machine_description& m) {
     constexpr std::string_view coordinates = "xyzabcuvw";
     const auto place = [&](const axis_description* a) {
@@ -67,8 +68,8 @@ inline bool is_cascade(const axis_description& a) {
     return a.controller && !a.controller->own && a.controller->kind == "cascade_p_pi";
 }
 
-/// The pins of quadrant_axis, in SI: gains where a cascade is described, and what its feedforwards and its observer
-/// know of the plant.
+/// The pins of quadrant_axis, in SI: gains where a cascade is described, and what its feedforwards and its
+/// observer know of the plant.
 inline std::vector<line> of_quadrant_axis(const axis_description& a, const plant_model& p) {
     std::vector<line> out;
     if (is_cascade(a)) {
@@ -102,9 +103,9 @@ inline double force_at(const plant_model& p, double x) { return p.static_force(x
 
 } // namespace settings_detail
 
-/// Lines for LinuxCNC, axis by axis: what belongs into the INI file, and the pins of `quadrant_axis` (SI) and of
-/// `pid` (machine units: mm, degrees) for the HAL file. Gains are those of the described controller, what is fed
-/// forward is what the plant asks for.
+/// Lines for LinuxCNC, axis by axis: what belongs into the INI file, and the pins of `quadrant_axis` (SI) and
+/// of `pid` (machine units: mm, degrees) for the HAL file. Gains are those of the described controller, what
+/// is fed forward is what the plant asks for.
 inline settings_text linuxcnc_lines(const machine_description& m) {
     using namespace settings_detail;
     settings_text out;
@@ -155,8 +156,8 @@ inline settings_text linuxcnc_lines(const machine_description& m) {
     return out;
 }
 
-/// Values for the parameters of a drive, one a row: axis, quantity, value, unit, name in ODrive's firmware (0.6)
-/// where it has one. What is neutral is left out.
+/// Values for the parameters of a drive, one a row: axis, quantity, value, unit, name in ODrive's firmware
+/// (0.6) where it has one. What is neutral is left out.
 inline settings_text drive_values(const machine_description& m) {
     settings_text out;
     out.text = "axis,quantity,value,unit,odrive\n";
@@ -229,9 +230,9 @@ inline spans travel_of(const machine_log& log) {
 }
 
 /// Corrections over the position (CSV): what to add to the command against forces that depend on the place
-/// (cogging, spring, gravity, a constant force), and what to add to the asked position on the way forth and back
-/// against errors of the encoder and play, as LinuxCNC's COMP_FILE of type 1 has it. An axis that is in no span
-/// gets one period from 0 on. An axis without such an effect has no rows.
+/// (cogging, spring, gravity, a constant force), and what to add to the asked position on the way forth and
+/// back against errors of the encoder and play, as LinuxCNC's COMP_FILE of type 1 has it. An axis that is in
+/// no span gets one period from 0 on. An axis without such an effect has no rows.
 inline settings_text compensation_table(const machine_description& m, const spans& travel = {}) {
     settings_text out;
     out.text = "axis,position,command,forward,reverse\n";

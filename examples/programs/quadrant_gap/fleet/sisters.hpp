@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-/// Which machine differs from its sisters, and by what: logs that were diagnosed with one machine file are of machines
-/// that are meant to be alike.
+/// Which machine differs from its sisters, and by what: logs that were diagnosed with one machine file are of
+/// machines that are meant to be alike.
 namespace quadrant_gap::fleet {
 
 /// One difference of one log from the others of its machine file.
@@ -85,8 +85,8 @@ inline odd_one beside(const row& r, const std::string& axis, const std::string& 
 
 } // namespace detail
 
-/// Every difference, the largest over its floor first. Machines with fewer than two sisters are left out: of two it is
-/// not known which is the odd one (quadrant-gap compare says what differs between them).
+/// Every difference, the largest over its floor first. Machines with fewer than two sisters are left out: of
+/// two it is not known which is the odd one (quadrant-gap compare says what differs between them).
 inline std::vector<odd_one> odd_ones(const std::vector<row>& rows) {
     std::map<std::string, std::vector<const row*>> families;
     for (const row& r : rows)

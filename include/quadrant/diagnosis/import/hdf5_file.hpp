@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/portable.hpp"
 #include "inflated.hpp"
 #include "number_table.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -14,9 +14,9 @@ namespace quadrant::diagnosis {
 
 namespace detail {
 
-/// An HDF5 file on its way to a table of text: vectors and matrices of numbers in the layout that MATLAB (save
-/// -v7.3) and h5py write by default: superblock 0 or 1, symbol tables, whole or in chunks, with deflate, shuffle
-/// and checksums.
+/// An HDF5 file on its way to a table of text: vectors and matrices of numbers in the layout that MATLAB
+/// (-v7.3) and h5py write by default: superblock 0 or 1, symbol tables, whole or in chunks, with deflate,
+/// shuffle and checksums.
 class hdf5_reader {
 public:
     hdf5_reader(std::string_view bytes, std::string_view file) : file_(file), bytes_(bytes) {}
@@ -269,8 +269,8 @@ private:
             raw = turned;
         }
         if (d.type == 1) {
-            if (d.size == 8) return std::bit_cast<double>(little<std::uint64_t>(raw));
-            return static_cast<double>(std::bit_cast<float>(little<std::uint32_t>(raw)));
+            if (d.size == 8) return quadrant::detail::bits_as<double>(little<std::uint64_t>(raw));
+            return static_cast<double>(quadrant::detail::bits_as<float>(little<std::uint32_t>(raw)));
         }
         const bool negative_too = (d.bits & 8) != 0 && d.type == 0;
         switch (d.size) {
@@ -428,8 +428,8 @@ inline bool is_hdf5_file(std::string_view bytes) { return detail::hdf5_reader::i
 
 /// The vectors and matrices of numbers of an HDF5 file or of a MAT-file of level 7.3 as a table of text whose
 /// first line names them: what import_log reads. Single numbers, texts, compounds and cells are left out.
-/// Refuses the layouts of libver='latest', other filters than deflate, shuffle and checksums, and a damaged file
-/// (bad_input).
+/// Refuses the layouts of libver='latest', other filters than deflate, shuffle and checksums, and a damaged
+/// file (bad_input).
 inline std::string table_of_hdf5_file(std::string_view bytes, std::string_view file) {
     return detail::hdf5_reader(bytes, file).take();
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/portable.hpp"
 #include "inflated.hpp"
 #include "number_table.hpp"
 #include "thrift.hpp"
 
-#include <bit>
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -238,9 +239,10 @@ private:
             const std::uint64_t low = word(from, k * each), high = each == 8 ? word(from, k * each + 4) : 0,
                                 raw = high << 32 | low;
             if (c.type == of_double)
-                out.push_back(std::bit_cast<double>(raw));
+                out.push_back(quadrant::detail::bits_as<double>(raw));
             else if (c.type == of_float)
-                out.push_back(static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw))));
+                out.push_back(
+                    static_cast<double>(quadrant::detail::bits_as<float>(static_cast<std::uint32_t>(raw))));
             else if (c.unit_s > 0) {
                 if (!epoch_) epoch_ = static_cast<std::int64_t>(raw);
                 out.push_back(c.unit_s * static_cast<double>(static_cast<std::int64_t>(

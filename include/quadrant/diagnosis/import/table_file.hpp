@@ -7,7 +7,8 @@
 
 namespace quadrant::diagnosis {
 
-/// A log as another program wrote it, as text: a MAT-file, a Parquet or HDF5 file as its table, a text in UTF-8.
+/// A log as another program wrote it, as text: a MAT-file, a Parquet or HDF5 file as its table, a text in
+/// UTF-8.
 inline std::string text_of_table_file(std::string bytes, std::string_view file) {
     if (is_hdf5_file(bytes)) return table_of_hdf5_file(bytes, file); // MAT-files of level 7.3, too
     if (is_mat_file(bytes)) return table_of_mat_file(bytes, file);
