@@ -87,7 +87,9 @@ def test_apply_simulate_and_forecast_agree(found, data, columns):
     planned = {"t_s": holdout["t_s"], "x_ref_m": holdout["x_ref_m"]}
     assert abs(found.forecast(planned).shrink("x") - (1 - after / before)) < 0.1
     assert abs(found.forecast(quadrant.read_log(data / "holdout.csv")).shrink("x") - (1 - after / before)) < 0.1
-    assert "<worldbody>" in better.mjcf()[0]
+    assert "<worldbody>" in better.mjcf()[0] and "friction-static" in better.linuxcnc()[0]
+    assert "x,Coulomb friction," in better.drive_values()[0]
+    assert better.corrections(quadrant.read_log(data / "holdout.csv"))[1]
 
 
 def test_compensate_has_the_keys_of_the_controller(found):
@@ -169,6 +171,24 @@ def test_refusals_name_what_is_wrong(data, columns, tmp_path):
     with pytest.raises(Exception):
         quadrant.read_machine(data / "log.csv").save(tmp_path / "kept.json")
     assert (tmp_path / "kept.json").read_text() == "mine"
+
+
+def test_what_is_saved_is_whole_and_destroys_no_link(found, tmp_path):
+    (tmp_path / "real.json").write_text("old")
+    (tmp_path / "link.json").symlink_to(tmp_path / "real.json")
+    found.save(tmp_path / "link.json")
+    assert (tmp_path / "link.json").is_symlink() and json.loads((tmp_path / "real.json").read_text())["verdict"] == "explained"
+    with pytest.raises(quadrant.BadInput, match="no such folder"):
+        found.save_report(tmp_path / "nowhere" / "r.html")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["link.json", "real.json"]
+
+
+def test_parquet_and_hdf5_files_are_logs():
+    tables = SOURCE / "tests/diagnosis/tables"
+    for name in ("snappy.parquet", "packed.h5", "level73.mat"):
+        assert quadrant.read_log(tables / name).rows == 400
+    with pytest.raises(quadrant.BadInput, match="zstd"):
+        quadrant.read_log(tables / "zstd.parquet")
 
 
 def test_foreign_columns_by_an_import_map():

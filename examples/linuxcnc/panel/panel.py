@@ -193,7 +193,7 @@ class Panel(QtWidgets.QWidget):
             self.finished.emit(False)
             return
         self.text.setPlainText(self.work.words)
-        self.tell(self.work.words.strip().split("\n\n")[0].replace("\n", " "))
+        self.tell(" ".join(self.work.words.strip().split("\n\n")[0].splitlines()[1:]))  # the sentence, without the files
         if QWebEngineView:
             self.report.load(QtCore.QUrl.fromLocalFile(str(self.work.out["report"])))
         self.propose()

@@ -2,11 +2,9 @@
 """What goes in: logs and machines, however they are at hand."""
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any, Mapping, Optional, Union
 
@@ -21,24 +19,7 @@ MachineLike = Union["Machine", str, "os.PathLike[str]", Mapping[str, Any]]
 
 def write_whole(path: Union[str, "os.PathLike[str]"], text: str) -> None:
     """A reader sees the old file or the new one; a link stays a link, a device is written to."""
-    target = Path(os.path.realpath(path))
-    if target.exists() and not target.is_file():
-        target.write_text(text, encoding="utf-8")
-        return
-    handle, aside = tempfile.mkstemp(prefix=target.name + ".tmp-", dir=target.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(aside, os.stat(target).st_mode & 0o7777 if target.exists() else 0o666 & ~mask)
-        os.replace(aside, target)
-    except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(aside)
-        raise
+    _core.write(os.fspath(path), text)
 
 
 def columns_of(table: Any) -> list[tuple[str, "np.ndarray[Any, np.dtype[np.float64]]"]]:
@@ -158,6 +139,18 @@ class Machine:
     def mjcf(self) -> tuple[str, list[str]]:
         """The plant as a MuJoCo model, and what MuJoCo cannot hold."""
         return _core.mjcf(self.text, self.name)
+
+    def linuxcnc(self) -> tuple[str, list[str]]:
+        """Lines for the INI and the HAL file of LinuxCNC, and what they cannot hold."""
+        return _core.linuxcnc(self.text, self.name)
+
+    def drive_values(self) -> tuple[str, list[str]]:
+        """Values for the parameters of a drive (CSV)."""
+        return _core.drive_values(self.text, self.name)
+
+    def corrections(self, log: Optional[Log] = None) -> tuple[str, list[str]]:
+        """Corrections of command and position over the position (CSV), where the log went; else over one period."""
+        return _core.corrections(self.text, self.name, log._core if log is not None else None)
 
     def __repr__(self) -> str:
         return f"<quadrant.Machine {self.name}: axes {', '.join(self.axes)}>"

@@ -5,6 +5,7 @@
 #include "quadrant_gap/comparison_report.hpp"
 #include "quadrant_gap/make_match.hpp"
 #include "quadrant_gap/report.hpp"
+#include "quadrant_gap/settings.hpp"
 #include "quadrant_gap/simulation_report.hpp"
 #include "quadrant_gap/summary.hpp"
 #include "quadrant_gap/trial/files.hpp"
@@ -24,6 +25,7 @@
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
+#include <quadrant/diagnosis/text/output_file.hpp>
 #include <quadrant/diagnosis/write_comparison.hpp>
 #include <quadrant/diagnosis/write_compensation.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
@@ -209,6 +211,9 @@ void add_logs(py::module_& m) {
                 return out;
             },
             py::arg("axis"));
+    m.def(
+        "write", [](const std::string& path, const std::string& text) { write_aside(path, text); },
+        py::arg("path"), py::arg("text"), release());
     m.def("csv_of", &csv_of, py::arg("columns"));
     m.def("read_log", &log_of_text, py::arg("text"), py::arg("name"), release());
     m.def("map_log", &mapped_log, py::arg("map"), py::arg("map_name"), py::arg("files"), py::arg("resample"),
@@ -338,6 +343,29 @@ void add_calls(py::module_& m) {
         py::arg("machine"), py::arg("machine_name"), release());
 }
 
+void add_exports(py::module_& m) {
+    const auto pair = [](quadrant_gap::settings_text s) { return std::pair(s.text, s.notes); };
+    m.def(
+        "linuxcnc",
+        [pair](const std::string& text, const std::string& name) {
+            return pair(quadrant_gap::linuxcnc_lines(read_machine(text, name)));
+        },
+        py::arg("machine"), py::arg("machine_name"), release());
+    m.def(
+        "drive_values",
+        [pair](const std::string& text, const std::string& name) {
+            return pair(quadrant_gap::drive_values(read_machine(text, name)));
+        },
+        py::arg("machine"), py::arg("machine_name"), release());
+    m.def(
+        "corrections",
+        [pair](const std::string& text, const std::string& name, const machine_log* log) {
+            return pair(quadrant_gap::compensation_table(
+                read_machine(text, name), log ? quadrant_gap::travel_of(*log) : quadrant_gap::spans{}));
+        },
+        py::arg("machine"), py::arg("machine_name"), py::arg("log").none(true), release());
+}
+
 /// A machine of the trial: its files and its truth.
 void add_trial(py::module_& m) {
     namespace trial = quadrant_gap::trial;
@@ -394,6 +422,7 @@ void add_diagnosis(py::module_& m) {
     add_logs(m);
     add_results(m);
     add_calls(m);
+    add_exports(m);
     add_trial(m);
 }
 

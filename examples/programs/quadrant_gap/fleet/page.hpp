@@ -6,6 +6,7 @@
 #include "sisters.hpp"
 
 #include <array>
+#include <filesystem>
 
 /// The overview of a fleet as one HTML file that needs no network; each log links to its own page.
 namespace quadrant_gap::fleet {
@@ -89,6 +90,12 @@ inline std::string table_row(const row& r) {
            "</tr>\n";
 }
 
+/// The folder without the way to it.
+inline std::string last_of(const std::string& folder) {
+    const auto whole = std::filesystem::absolute(folder).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 /// Who differs from its sisters, and by what; nothing where no machine has two.
 inline std::string sisters(const std::vector<row>& rows) {
     std::map<std::string, std::size_t> family;
@@ -128,7 +135,7 @@ inline std::string page(const std::vector<row>& rows, const std::string& folder,
     return fill(joined(quadrant_fleet::files::fleet_template_html),
                 {{"css", joined(quadrant_fleet::files::report_css) + joined(quadrant_fleet::files::fleet_css)},
                  {"js", joined(quadrant_fleet::files::fleet_js)},
-                 {"title", escape("Fleet " + folder)},
+                 {"title", escape("Fleet " + detail::last_of(folder))},
                  {"sentence", sentence},
                  {"counts", detail::counts(rows)},
                  {"bars", detail::bars(rows)},
