@@ -10,7 +10,9 @@ In the INI file:  [APPLICATIONS] APP = panel.py -ini quadrant.ini
 python3-pyqt5.qtwebengine the report is shown in the panel, else in the browser.
 """
 import argparse
+import html
 import pathlib
+import re
 import subprocess
 import sys
 import threading
@@ -193,7 +195,8 @@ class Panel(QtWidgets.QWidget):
             self.finished.emit(False)
             return
         self.text.setPlainText(self.work.words)
-        self.tell(" ".join(self.work.words.strip().split("\n\n")[0].splitlines()[1:]))  # the sentence, without the files
+        head = re.search(r"<h1[^>]*>(.*?)</h1>", self.work.out["report"].read_text(), re.S)
+        self.tell(html.unescape(head.group(1)) if head else "Done.")
         if QWebEngineView:
             self.report.load(QtCore.QUrl.fromLocalFile(str(self.work.out["report"])))
         self.propose()
