@@ -36,8 +36,9 @@ class by_cmake(build_ext):
         out.parent.mkdir(parents=True, exist_ok=True)
         made = os.environ.get("QUADRANT_PYTHON_MODULE")
         if not made:
-            where = build / "python"  # as deep as build/release: what one compiled, ccache gives the other
-            subprocess.check_call(["cmake", "-S", root, "-B", where, "-DCMAKE_BUILD_TYPE=Release", "-DQUADRANT_PYTHON_ALONE=ON",
+            where = build / "python"
+            generator = ["-G", "Ninja"] if shutil.which("ninja") and not where.exists() else []
+            subprocess.check_call(["cmake", *generator, "-S", root, "-B", where, "-DCMAKE_BUILD_TYPE=Release", "-DQUADRANT_PYTHON_ALONE=ON",
                                    "-DQUADRANT_BUILD_TESTS=OFF", "-DQUADRANT_BUILD_BENCHMARKS=OFF",
                                    f"-DPython3_EXECUTABLE={sys.executable}"])
             subprocess.check_call(["cmake", "--build", where, "--target", "quadrant_python", "--parallel",
