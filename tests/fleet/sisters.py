@@ -93,6 +93,10 @@ expect(len(rows) == 2 and "press4" in rows[0], "the same in the overview")
 odd = dict(alike, press3=diagnosis([friction(103), cause("cogging", "cogging_N", 40, 1, 30, 10, probability=0.3)]))
 expect(run("a_suspect", odd)[0] == [], "a suspect is no difference")
 expect(run("inside", dict(alike, press1=diagnosis([friction(106)])))[0] == [], "a value inside their spread is no difference")
+expect(run("too_small", dict(alike, press1=diagnosis([cause("coulomb_friction", "coulomb_N", 160, 2, 4, 3.5)])))[0] == [],
+       "another value whose force drowns in the noise")
+wide = {f"press{k}": diagnosis([friction(v)]) for k, v in enumerate((100, 104, 112, 118))}
+expect(run("among_few", wide)[0] == [], "of few, no further off than they are from each other")
 expect(not run("two", dict(list(odd.items())[:2]))[2], "of two nobody is odd")
 other = dict(alike, press3=diagnosis([friction(300)], machine="b" * 64))
 expect(run("another_file", other)[0] == [], "a machine with a file of its own is nobody's sister")

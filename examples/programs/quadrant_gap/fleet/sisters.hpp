@@ -71,14 +71,18 @@ inline odd_one beside(const row& r, const std::string& axis, const std::string& 
         const double middle = median(values);
         for (const double v : values) apart.push_back(std::abs(v - middle));
         constexpr double sigma = 1.4826, far = 3; // of a normal spread over its median deviation; in sigmas
-        const double off = std::abs(own->value - middle),
-                     usual_spread = far * std::max(sigma * median(apart), median(widths) / 2);
+        constexpr std::size_t few = 6;            // of which the median deviation says little
+        const double off = std::abs(own->value - middle);
+        double usual_spread = far * std::max(sigma * median(apart), median(widths) / 2);
+        if (values.size() < few)
+            usual_spread = std::max(usual_spread, *std::max_element(apart.begin(), apart.end()));
         if ((own->low <= middle && middle <= own->high) || off <= usual_spread) return out;
         const auto [least, most] = std::minmax_element(values.begin(), values.end());
         out.own = value_of(*own, own->value);
         out.others = fmt::format("{} to {}", value_of(*own, *least), value_of(*own, *most));
         out.force = own->force * off / std::max(std::abs(own->value), std::abs(middle));
     }
+    if (out.force <= any.floor) out.force = 0; // no more than sensor and rounding leave
     out.over_floor = any.floor > 0 ? out.force / any.floor : out.force;
     return out;
 }
