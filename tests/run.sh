@@ -131,6 +131,10 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         { printf '\010t_s,angle_deg,radius_m,nominal_radius_m\n' &&
             awk 'BEGIN { for (k = 0; k < 130; ++k) printf "%.2f,%d,%.7f,.1\n", k / 100, 3 * k, .1 + 1e-6 * (k % 3) }'; } >"$found/radius"
         { printf '\011' && python3 tests/diagnosis/mat_file_test.py --write; } >"$found/mat"
+        { printf '\012' && cat tests/diagnosis/tables/snappy.parquet; } >"$found/parquet"
+        { printf '\012' && cat tests/diagnosis/tables/gzip.parquet; } >"$found/parquet_gzip"
+        { printf '\013' && cat tests/diagnosis/tables/packed.h5; } >"$found/hdf5"
+        { printf '\013' && cat tests/diagnosis/tables/level73.mat; } >"$found/mat73"
         if "$fuzzer" -max_total_time=$((fuzz_seconds / $#)) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
             -artifact_prefix="$found/" "$found" >"$logs/$name.txt" 2>&1; then
             printf '%s: %s\n' "$name" "$(grep number_of_executed_units "$logs/$name.txt")"
@@ -154,9 +158,10 @@ tidy() { # clang-tidy over every header
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
     libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
-    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace || exit 1
+    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace \
+    python3-dev python3-pybind11 python3-numpy python3-pandas python3-setuptools python3-wheel python3-venv python3-pytest python3-build || exit 1
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
-    libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev ||
+    libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev python3-pyqt5.qtwebengine xvfb ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
 [ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/diagnosis/check_physics.hpp>
-#include <quadrant/diagnosis/import/mat_file.hpp>
 #include <quadrant/diagnosis/import/own_header.hpp>
 #include <quadrant/diagnosis/import/read_map.hpp>
+#include <quadrant/diagnosis/import/table_file.hpp>
 #include <quadrant/diagnosis/import_log.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 #include "compensated.hpp"
 #include "dropped.hpp"
+#include "exported.hpp"
 #include "form.hpp"
 #include "what_if.hpp"
 
@@ -28,7 +29,7 @@ public:
     /// A file as it was dropped; `sha256` may be empty.
     void put(const std::string& name, std::string bytes, std::string sha256) {
         logs_.erase(name);
-        files_[name] = {detail::in_utf8(std::move(bytes)), std::move(sha256)};
+        files_[name] = {std::move(bytes), std::move(sha256)};
     }
 
     nlohmann::json ask(const nlohmann::json& request) {
@@ -42,6 +43,7 @@ public:
 private:
     struct file {
         std::string text, sha256;
+        bool is_table = false; ///< text is what the table is as text
     };
 
     nlohmann::json answer(const nlohmann::json& request) {
@@ -53,15 +55,17 @@ private:
         if (what == "compare") return compared(request);
         if (what == "what_if") return what_if(request);
         if (what == "compensate") return compensated(request);
+        if (what == "export") return exported_as_set(request);
         throw std::invalid_argument("no such request: " + what);
     }
 
     const std::string& text(const std::string& name) const { return files_.at(name).text; }
-    /// The same; of a MAT-file its table.
+    /// The same; of a MAT-file, a Parquet or HDF5 file its table, made once.
     const std::string& table_text(const std::string& name) {
-        std::string& bytes = files_.at(name).text;
-        if (is_mat_file(bytes)) bytes = table_of_mat_file(bytes, name);
-        return bytes;
+        file& f = files_.at(name);
+        if (!f.is_table) f.text = text_of_table_file(f.text, name);
+        f.is_table = true;
+        return f.text;
     }
 
     /// What a file is. A table with columns of other names is one that the page asks about.
@@ -83,8 +87,9 @@ private:
                 return {{"kind", "machine"}, {"axes", axes}, {"period_s", machine.sample_period_s}};
             }
             if (bytes.find('\0') != std::string::npos)
-                throw bad_input(name,
-                                "is neither text nor a MAT-file: save it as CSV, which every program can");
+                throw bad_input(
+                    name, "is neither text nor a MAT-file, Parquet or HDF5 file: save it as CSV, which every "
+                          "program can");
             return described(logs_[name] = read_dropped_log(bytes, name));
         } catch (const std::exception& fault) {
             logs_.erase(name);
@@ -185,6 +190,14 @@ private:
         const auto wanted = as_set(result_, request.at("causes"), request.at("calibrated").get<bool>());
         const auto corrected = apply(machine_text_, machine_file_, wanted, 0.5).machine;
         return drawn(compensate(machine_, wanted, log_), corrected, log_);
+    }
+
+    /// The machine as it is set, for another program.
+    nlohmann::json exported_as_set(const nlohmann::json& request) const {
+        const auto wanted = as_set(result_, request.at("causes"), request.at("calibrated").get<bool>());
+        const auto set = apply(machine_text_, machine_file_, wanted, 0.5);
+        return exported(read_machine(set.machine.dump(), machine_file_), log_,
+                        request.at("as").get<std::string>());
     }
 
     progress tell_;

@@ -159,6 +159,7 @@ function show_what_if(answer) {
     found = answer;
     shown = gains = null;
     the('compensated').checked = false;
+    the('saved').textContent = '';
     the('what-if').hidden = !answer.causes.length;
     if (!answer.causes.length) return;
     lay_out_knobs(answer);
@@ -175,6 +176,15 @@ function show_what_if(answer) {
 the('knobs').addEventListener('input', compute_what_if);
 the('as-found').addEventListener('click', () => { lay_out_knobs(found); compute_what_if(); });
 the('save-machine').addEventListener('click', () => save('machine.json', shown.machine_text, 'application/json'));
+for (const button of the('save-as').querySelectorAll('button'))
+    button.addEventListener('click', async () => {
+        const answer = await call({do: 'export', as: button.dataset.as, ...wanted()});
+        if (answer.cancelled) return;
+        the('what-if').querySelector('.fault').textContent = answer.error || '';
+        if (answer.error) return;
+        save(answer.name, answer.text, answer.type);
+        the('saved').textContent = [`${answer.name} is saved.`, ...answer.notes.map(note => `Note: ${note}.`)].join(' ');
+    });
 the('compensated').addEventListener('change', compute_compensation);
 the('save-compensation').addEventListener('click', () => save('compensation.json', gains.forecast, 'application/json'));
 the('save-compensated').addEventListener('click', () => save('machine.json', gains.machine_text, 'application/json'));

@@ -79,7 +79,8 @@ def check_links(page):
 compiled = re.compile(r"(examples|include|docs/generators)/\S+\.(cpp|hpp|c|h)")
 marker = re.compile(r"<!-- from (\S+) -->\n\s*\Z")
 given = re.compile(r"<!-- given\n((?:(?!-->).)*)-->\n\s*\Z", re.S)
-languages = {"", "cpp", "sh", "json"}
+run = re.compile(r"(examples|tests)/python/\S+\.py")  # by tests/python
+languages = {"", "cpp", "python", "sh", "json"}
 
 
 def lines_of(text):
@@ -96,17 +97,18 @@ def check_snippets(page):
             fault(page, line, f"```{language} is none of {', '.join(sorted(languages - {''}))}")
         if language == "" and re.search(r";[ \t]*(//.*)?$", match.group(3), re.M):
             fault(page, line, "this looks like C++: ```cpp, or write it as an equation")
-        if language != "cpp":
+        if language not in ("cpp", "python"):
             continue
         from_file = marker.search(text, 0, match.start())
         if not from_file:
             completed += bool(given.search(text, 0, match.start()))
             if tells_how:
-                fault(page, line, "this block needs <!-- from examples/NAME.cpp --> above it")
+                fault(page, line, "this block needs <!-- from FILE --> above it: a program that a test compiles or runs")
             continue
         marked += 1
         source = root / from_file.group(1)
-        if not compiled.fullmatch(from_file.group(1)) or not source.is_file():
+        known = compiled if language == "cpp" else run
+        if not known.fullmatch(from_file.group(1)) or not source.is_file():
             fault(page, line, f"{from_file.group(1)} is no source under examples/, docs/generators/ or include/")
             continue
         shown, there = lines_of(match.group(3)), lines_of(source.read_text())
@@ -114,7 +116,7 @@ def check_snippets(page):
             fault(page, line, f"this block does not stand like that in {from_file.group(1)}")
     for mark, used in (("from ", marked), ("given", completed)):
         if text.count(f"<!-- {mark}") != used:
-            fault(page, 1, f"{text.count(f'<!-- {mark}')} marks <!-- {mark.strip()}, {used} blocks of C++ right below one")
+            fault(page, 1, f"{text.count(f'<!-- {mark}')} marks <!-- {mark.strip()}, {used} blocks of code right below one")
 
 
 # --- 3. Commands have the options that they are shown with. ---

@@ -3,7 +3,7 @@
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/circle/read_radius.hpp"
-#include "quadrant/diagnosis/import/mat_file.hpp"
+#include "quadrant/diagnosis/import/table_file.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "quadrant/path/cl_reader.hpp"
 #include "quadrant/path/gcode_reader.hpp"
@@ -77,6 +77,15 @@ void check_mat_file(const std::string& text) {
     must_hold(table.find('\n') != std::string::npos);
 }
 
+/// A Parquet file, and an HDF5 file.
+void check_parquet_file(const std::string& text) {
+    if (is_parquet_file(text))
+        must_hold(table_of_parquet_file(text, "log.parquet").find('\n') != std::string::npos);
+}
+void check_hdf5_file(const std::string& text) {
+    if (is_hdf5_file(text)) must_hold(table_of_hdf5_file(text, "log.h5").find('\n') != std::string::npos);
+}
+
 /// Moves follow one another, each with a way to go and a feed.
 template <class Reader> void check_program(const std::string& text) {
     std::istringstream in(text);
@@ -132,7 +141,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                            check_program<quadrant::cl_reader>,
                                                            check_cnc,
                                                            check_radius,
-                                                           check_mat_file};
+                                                           check_mat_file,
+                                                           check_parquet_file,
+                                                           check_hdf5_file};
         readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);

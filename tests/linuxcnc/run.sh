@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: run.sh QUADRANT_GAP FOLDER [table|pid]     (as root; QUADRANT_TESTS=all; else, or without LinuxCNC, says so: 77)
+# usage: run.sh QUADRANT_GAP FOLDER [table|pid|panel]  (as root; QUADRANT_TESTS=all; else, or without LinuxCNC, says so: 77)
 # The components in LinuxCNC itself, without a screen. HAL alone: bad pins, changes while it runs, another period. Then
 # the machine of examples/linuxcnc/machine under LinuxCNC's planner, recorded, imported and diagnosed.
-# With `table`: the comparison of docs/linuxcnc.md instead. With `pid`: only what is done with the stock pid.
+# With `table`: the comparison of docs/linuxcnc.md instead. With `pid` or `panel`: only what is done with the stock pid,
+# or by the panel.
 set -eu
 skip() { echo "SKIPPED: LinuxCNC: $*"; exit 77; }
 [ "${QUADRANT_TESTS-}" = all ] || skip "only with QUADRANT_TESTS=all"
@@ -93,6 +94,7 @@ if [ "${3-}" = table ]; then
     exit 0
 fi
 
+if [ "${3-}" != panel ]; then
 # LinuxCNC's own pid without its feedforwards, and a file that knows neither the mass nor the friction well. What
 # compensate says is typed into the INI file, and the machine runs again: the following error falls as forecast.
 pid='s/= quadrant.hal/= pid.hal/; s/quadrant-axis\.\(.\)\.time/pid.\1.do-pid-calcs.time/'
@@ -125,4 +127,32 @@ claim "1 kHz, cogging and delay on the pins of quadrant_plant: both named, on th
 machine fast 's/^SERVO_PERIOD = .*/SERVO_PERIOD = 250000/'
 diagnose fast 0.25
 claim "4 kHz, nothing injected: no gap" said fast 'v in ("no_gap", "within_tolerance") and not named'
+fi
+
+# The panel: recorded, diagnosed, shown, the values saved; the next start has them.
+if ! /usr/bin/python3 -c 'import PyQt5.QtWebEngineWidgets' 2>/dev/null || ! command -v xvfb-run >/dev/null; then
+    echo "SKIPPED: LinuxCNC: the panel: no python3-pyqt5.qtwebengine or no xvfb"
+    exit $failed
+fi
+cp -r "$example/machine" "$work/panel"
+cp -r "$example/panel" "$work/panel/panel"
+cp "$here/panel_display.py" "$gap" "$work/panel"
+sed -i "s|^HALFILE = plant.hal|&\nHALFILE = inject.hal|
+    s|^DISPLAY = .*|DISPLAY = ./panel_display.py $work/panel/panel $work/panel/${gap##*/} circle.ngc diamond.ngc|" "$work/panel/quadrant.ini"
+chown -R $user "$work/panel"
+su $user -c "cd '$work/panel' && export QTWEBENGINE_CHROMIUM_FLAGS='--disable-gpu --no-sandbox' && timeout 600 xvfb-run -a -s '-screen 0 1280x1024x24' \
+    script -qfec 'linuxcnc quadrant.ini' run.log" </dev/null >/dev/null || { tail -20 "$work/panel/run.log"; failed=1; }
+sed 's/^/    /' "$work/panel/panel.txt" | head -n 40
+cp "$work/panel/diagnosed/diagnosis.json" "$work/panel/found.json"
+claim "panel: both effects named from its own record" said panel 'named == {"x.cogging", "x.time_delay"}'
+delay() { awk -F' *= *' -v s="$2" '/^\[/ { at = $0 } at == s && $1 == "DELAY" { print $2 }' "$1"; }
+claim "panel: the delay of x is saved for the next start" \
+    awk "BEGIN { d = $(delay "$work/panel/quadrant.ini" '[JOINT_0]') - 0.0012; exit !(d * d < 1e-8) }"
+claim "panel: the file as it was stands beside" [ "$(delay "$work/panel/quadrant.ini.before" '[JOINT_0]')" = 0.0004 ]
+claim "panel: y keeps its delay" awk "BEGIN { d = $(delay "$work/panel/quadrant.ini" '[JOINT_1]') - 0.0004; exit !(d * d < 1e-8) }"
+for shot in panel values; do claim "panel: screenshot $shot.png" [ -s "$work/panel/screen_$shot.png" ]; done
+# Started again with these values.
+sed -i 's|^DISPLAY = .*|DISPLAY = ./run_program.py circle.ngc|' "$work/panel/quadrant.ini"
+su $user -c "cd '$work/panel' && timeout 300 script -qfec 'linuxcnc quadrant.ini' again.log" </dev/null >/dev/null || failed=1
+claim "panel: the machine starts with the saved values and runs" [ -s "$work/panel/record.txt" ]
 exit $failed

@@ -131,6 +131,7 @@ def shipped_log(driver, page, program, data, shots, work):
     driver.switch_to.default_content()
     check(report.size["height"] > 1500, "the report is shown whole")
     what_if(driver, expected)
+    saved_for_others(driver, program, data, work)
     compensation(driver, program, data, work)
     shoot(driver, shots / "web_1200.png")
     went = [u for u in requests_of(driver) if not u.startswith(("data:", "blob:", "about:")) and u != page.resolve().as_uri()]
@@ -163,6 +164,26 @@ def what_if(driver, expected):
     saved = json.loads(driver.execute_script("return shown.machine_text"))
     value = expected["causes"][0]["parameters"]["static_N"]["value"]
     check(abs(saved["axes"]["x"]["plant"]["static_N"] / value - 1) < 1e-6, "the machine file holds the cause")
+
+
+def saved_for_others(driver, program, data, work):
+    """What is saved for other programs is what `quadrant-gap export` writes of the same machine file."""
+    driver.execute_script("window.files = []; save = (name, text) => files.push([name, text])")
+    machine, log = work / "as_set.json", data / "log.csv"
+    machine.write_text(driver.execute_script("return shown.machine_text"))
+    for button in driver.find_elements("css selector", "#save-as button"):
+        kind = button.get_attribute("data-as")
+        before = driver.execute_script("return files.length")
+        button.click()
+        wait(lambda: driver.execute_script("return files.length") > before, 10, f"a file for {kind}")
+        name, text = driver.execute_script("return files.at(-1)")
+        out = work / name
+        subprocess.run([program, "export", "--quiet", "--machine", str(machine), f"--{kind}", str(out)] +
+                       (["--log", str(log)] if kind == "compensation" else []), check=True)
+        mine, other = text.splitlines(), out.read_text().splitlines()
+        check(len(mine) == len(other) and sum(a != b for a, b in zip(mine, other)) <= 1, f"{kind}: {text} is not {out.read_text()}")
+    check("is saved" in element(driver, "#saved").text, "what was saved is told")
+    print("saved for other programs: as the program writes it")
 
 
 def compensation(driver, program, data, work):
@@ -330,7 +351,14 @@ def mat_files(driver, page, work):
         (work / name).write_bytes(contents)
         give(driver, work / name)
         wait(lambda: words in element(driver, "#dropped").text, 10, f"{name}: {words}")
-    print("MAT-files: read, and refused with their byte")
+    tables = pathlib.Path(__file__).parent.parent / "diagnosis/tables"
+    for name, words in (("snappy.parquet", "log: 400 rows, one every 1 ms, axis x"), ("gzip.parquet", "log: 400 rows, one every 1 ms, axis x"),
+                        ("packed.h5", "log: 400 rows, one every 1 ms, axis x"), ("level73.mat", "log: 400 rows, one every 1 ms, axis x"),
+                        ("zstd.parquet", "is compressed with zstd"), ("latest.h5", "libver='earliest'")):
+        open_page(driver, page)
+        give(driver, tables / name)
+        wait(lambda: words in element(driver, "#dropped").text, 10, f"{name}: {words}")
+    print("MAT-files, Parquet and HDF5: read, and refused with what to do")
 
 
 def other_columns(driver, page, root, shots):

@@ -81,19 +81,24 @@ def run(program):
     until(program, idle, 600)
 
 
-switched_on_and_homed()
-path, before = ini.find("RECORD", "FILE"), lost()
-recorder = subprocess.Popen(["halsampler", "-t"], stdout=subprocess.PIPE, text=True)
-threading.Thread(target=keep, args=(recorder.stdout, path)).start()
-try:
-    with open(path + ".programs", "w") as spans:
-        for each in programs:
-            time.sleep(0.5)  # halsampler hands on some 50 rows at once
-            first = rows
-            run(each)
-            time.sleep(0.5)
-            print(each, first, rows, file=spans, flush=True)
-            if lost() > before:  # halsampler's own count goes on as if nothing were missing
-                sys.exit(f"{each}: sampler lost {lost() - before} rows: give it more depth")
-finally:
-    recorder.terminate()
+def main():
+    switched_on_and_homed()
+    path, before = ini.find("RECORD", "FILE"), lost()
+    recorder = subprocess.Popen(["halsampler", "-t"], stdout=subprocess.PIPE, text=True)
+    threading.Thread(target=keep, args=(recorder.stdout, path)).start()
+    try:
+        with open(path + ".programs", "w") as spans:
+            for each in programs:
+                time.sleep(0.5)  # halsampler hands on some 50 rows at once
+                first = rows
+                run(each)
+                time.sleep(0.5)
+                print(each, first, rows, file=spans, flush=True)
+                if lost() > before:  # halsampler's own count goes on as if nothing were missing
+                    sys.exit(f"{each}: sampler lost {lost() - before} rows: give it more depth")
+    finally:
+        recorder.terminate()
+
+
+if __name__ == "__main__":
+    main()

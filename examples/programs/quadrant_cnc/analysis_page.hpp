@@ -199,7 +199,7 @@ inline std::string html_report(const machine_analysis& m) {
                                 : "<span class=\"badge no_gap\">stable, sensitivity up to 2</span>";
     return quadrant_gap::fill(
         joined(files::analysis_template_html),
-        {{"title", escape("Analysis of " + m.cnc_file)},
+        {{"title", escape("Analysis of " + quadrant_gap::file_name(m.cnc_file))},
          {"badge", badge},
          {"sentence", escape(sentence(m))},
          {"axes", sections},

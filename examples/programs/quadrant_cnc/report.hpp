@@ -116,7 +116,7 @@ inline std::string html_report(const run_outcome& r) {
                              r.signals.width());
     return quadrant_gap::fill(
         joined(files::cnc_template_html),
-        {{"title", escape(r.path_file + " on " + r.cnc_file)},
+        {{"title", escape(quadrant_gap::file_name(r.path_file) + " on " + quadrant_gap::file_name(r.cnc_file))},
          {"badge", limited == 0 ? "<span class=\"badge no_gap\">no limit touched</span>"
                                 : "<span class=\"badge partly_explained\">commands were limited</span>"},
          {"sentence", escape(sentence(r))},

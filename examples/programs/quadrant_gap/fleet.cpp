@@ -176,6 +176,14 @@ void lead(options o, crew& others) {
     if (!o.quiet) std::printf("%s: %s\n", listed(counts).c_str(), overview.c_str());
     for (const row& r : list.rows())
         if (!o.quiet && r.verdict == "failed") std::printf("  %s: %s\n", r.name.c_str(), r.error.c_str());
+    constexpr std::size_t most_told = 5;
+    const auto odd = odd_ones(list.rows());
+    if (!o.quiet && !odd.empty()) {
+        std::printf("Different from their sisters:\n");
+        for (std::size_t k = 0; k < std::min(odd.size(), most_told); ++k)
+            std::printf("  %s\n", sentence(odd[k]).c_str());
+        if (odd.size() > most_told) std::printf("  and %zu more in the overview\n", odd.size() - most_told);
+    }
     std::fflush(stdout);
     if (failed)
         throw bad_input(o.folder, fmt::format("{} of {} logs have no diagnosis", failed, list.rows().size()));

@@ -3,7 +3,7 @@
 #include "commands.hpp"
 
 #include <quadrant/diagnosis/check_physics.hpp>
-#include <quadrant/diagnosis/import/mat_file.hpp>
+#include <quadrant/diagnosis/import/table_file.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 
 #include <iostream>
@@ -50,8 +50,7 @@ void run(const import_options& o) {
     std::vector<foreign_file> files;
     for (std::size_t i = 0; i + 1 < o.files.size(); ++i) {
         std::string text = quadrant::diagnosis::detail::read_whole(std::filesystem::path(o.files[i]));
-        if (is_mat_file(text)) text = table_of_mat_file(text, o.files[i]);
-        files.push_back({std::move(text), o.files[i]});
+        files.push_back({text_of_table_file(std::move(text), o.files[i]), o.files[i]});
     }
     const std::string& out = o.files.back();
     import_map map;

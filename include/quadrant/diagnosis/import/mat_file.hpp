@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../text/bad_input.hpp"
+#include "inflated.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <boost/beast/zlib/inflate_stream.hpp>
 #include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
@@ -107,28 +107,13 @@ private:
         if (packed.size() < around || (byte(0) & 0x0f) != 8 || (byte(0) * 256 + byte(1)) % 31 != 0 ||
             byte(1) & 0x20)
             refuse(e.at, "no zlib stream begins here");
-        std::string contents;
-        boost::beast::zlib::inflate_stream stream;
-        boost::beast::zlib::z_params p;
-        boost::beast::error_code fault;
-        p.next_in = packed.data() + 2;
-        p.avail_in = packed.size() - 2; // the sum as well: the decoder looks ahead
-        constexpr std::size_t piece = 1 << 18;
-        while (!fault) {
-            contents.resize(p.total_out + piece);
-            p.next_out = contents.data() + p.total_out;
-            p.avail_out = piece;
-            const std::size_t before = p.total_out;
-            stream.write(p, boost::beast::zlib::Flush::none, fault);
-            if (!fault && p.total_out == before) break;
-            if (inflated_ + p.total_out > most_inflated)
-                refuse(e.at,
-                       fmt::format("its compressed variables hold more than {} MiB", most_inflated >> 20));
-        }
-        contents.resize(p.total_out);
-        inflated_ += p.total_out;
-        if (fault != boost::beast::zlib::error::end_of_stream)
-            refuse(e.at + 2 + p.total_in, "the zlib stream is broken");
+        const inflation out =
+            inflated(packed.substr(2), most_inflated - inflated_); // the sum as well: the decoder looks ahead
+        if (out.beyond)
+            refuse(e.at, fmt::format("its compressed variables hold more than {} MiB", most_inflated >> 20));
+        const std::string& contents = out.text;
+        inflated_ += contents.size();
+        if (!out.whole) refuse(e.at + 2 + out.read, "the zlib stream is broken");
         std::uint32_t sum = 0;
         for (std::size_t k = packed.size() - 4; k < packed.size(); ++k) sum = sum << 8 | byte(k);
         if (sum != adler32(contents))
