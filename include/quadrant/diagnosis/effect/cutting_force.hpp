@@ -74,7 +74,7 @@ inline constexpr effect cutting_force{
         for (double period :
              detail::comb_periods<4>(s.residual, time, longest, shortest, s.record.score.skip)) {
             if (detail::motion_repeats(s.record.position, period / s.record.period) ||
-                detail::strokes_repeat(s.record, period))
+                detail::strokes_repeat(s.record, period) || detail::bound_to_position(s, period, time))
                 continue;
             out.push_back(detail::repeating<detail::cutting_force_harmonics, 4>(
                 "process.fundamental_Hz", "process.force_N", period, duration, most));

@@ -128,6 +128,28 @@ inline bool strokes_repeat(const axis_record& r, double period) {
     return speed * period > std::sqrt(3 * square);
 }
 
+/// Whether an axis that goes one way shows more of a line of this period along its travel than in time: then it
+/// is bound to the position, at whatever speed. The wavelength is that of the mean speed, or a few lines of the
+/// spectrum beside it.
+inline bool bound_to_position(const screening& s, double period, std::span<const double> time) {
+    const auto& x = s.record.position;
+    double way = 0;
+    for (std::size_t k = 1; k < x.size(); ++k) way += std::abs(x[k] - x[k - 1]);
+    const double moved = x.back() - x.front();
+    constexpr double one_way = 0.9;
+    if (!(std::abs(moved) > one_way * way)) return false;
+    const auto skip = s.record.score.skip;
+    const auto power = [&](std::span<const double> z, double length) {
+        double sum = 0;
+        for (double p : comb<4>(std::span(s.residual).subspan(skip), z.subspan(skip), length)) sum += p;
+        return sum;
+    };
+    const double wave = period * std::abs(moved) / (time.back() - time.front()), line = wave / way;
+    double along = 0;
+    for (int j = -8; j <= 8; ++j) along = std::max(along, power(x, wave * (1 + line * j / 2)));
+    return along > power(time, period);
+}
+
 inline double travel(const screening& s) {
     const auto [low, high] = std::minmax_element(s.record.position.begin(), s.record.position.end());
     return *high - *low;

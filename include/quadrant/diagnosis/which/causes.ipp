@@ -67,19 +67,26 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
+/// Whether a model takes at least half as much off the residual force as the best model does beside `without`,
+/// in energy. Asked only where that is most of what is there.
+inline bool takes_the_gap_of(const axis_case& c, const candidate& without, const candidate& m) {
+    const double before = square(c.models.held_out_force(without)),
+                 after = square(c.models.held_out_force(c.best()));
+    return !(after < before / 2) || square(c.models.held_out_force(m)) < (before + after) / 2;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, own);
-    const candidate without = c.models.with(others);
+    const candidate without = c.models.without(c.best(), own);
     std::vector<rival> out{{.model = c.best(), .name = own}};
     for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
         for (const effect* e : model.effects)
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 out.push_back({.model = model, .name = e});
-                // The same model by another name is fitted as well as the first, whenever it was met.
-                if (!may_be_one(*e, *own) || c.models.over()) continue;
-                if (auto again = c.models.exchanged(c.best(), without, e); again.total > model.total)
+                // The same model by another name is fitted as well as the first, whenever it was met. So are
+                // everyday forces: at one speed, or in one direction, they are the same force.
+                if (!(may_be_one(*e, *own) || (e->everyday && own->everyday)) || c.models.over()) continue;
+                if (auto again = c.models.exchanged(c.best(), own, e); again.total > model.total)
                     out.back().model = std::move(again);
             }
     // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and
@@ -93,6 +100,12 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
                 !c.models.pays(c.models.with(models[i], own), models[i]))
                 out.push_back({.model = models[i], .name = forms[i]});
     }
+    // What takes most of the gap off is not replaced by a name that leaves it: the score alone is also raised by
+    // models that stand still, or that hide the motor's motion behind a play.
+    if (!c.settled && !c.record.closed())
+        std::erase_if(out, [&](const rival& r) {
+            return r.name != own && !r.unlisted() && !takes_the_gap_of(c, without, r.model);
+        });
     weigh(out, c);
 
     const double energy = square(c.models.held_out_force(c.best()));
@@ -136,10 +149,18 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
+        // Where a gap stays open, a simpler and commoner name that leaves no more is the likelier one, whatever
+        // the flexible one gains where the scores feel what neither explains.
+        const double commoner = r.name->prior.odds / own->prior.odds;
+        if (within && r.model.penalty < c.best().penalty && !(excess() > 0))
+            r.weight = std::max(r.weight, commoner * out.front().weight);
+        if (pays && unexplained > 0 && !c.record.closed() && !r.unlisted() && commoner < 1 &&
+            r.model.penalty > c.best().penalty && square(c.models.held_out_force(r.model)) >= energy)
+            r.weight = std::min(r.weight, commoner * out.front().weight);
         // Two names of one model whose difference is small beside what both leave: the commoner one is
         // likelier, whichever was found first.
         if (equivalent && within && c.record.replayed()) {
-            const double commoner = r.name->prior.odds / own->prior.odds, less = excess_of_own(r.model);
+            const double less = excess_of_own(r.model);
             r.weight = std::max(r.weight, commoner * std::exp(-more) * out.front().weight);
             if (&r != &out.front())
                 out.front().weight = std::max(out.front().weight, std::exp(-less) / commoner * r.weight);
@@ -171,6 +192,19 @@ QUADRANT_DIAGNOSIS_DECL double doubtful_beside(const axis_case& c, double explai
     return std::hypot(left, all > explained ? law_error * between(all, explained) : 0) / explained;
 }
 
+/// The same, with the segment set apart that holds most of what is left: what happens once speaks against no
+/// name that explains the rest of the record.
+inline double doubtful_beside_odd_segment(const axis_case& c, std::size_t which) {
+    const auto odd = c.models.odd_segment(c.best());
+    if (!odd) return std::numeric_limits<double>::infinity();
+    const auto force = [&](const candidate& m) { return c.models.held_out_force_beside(m, *odd); };
+    const double after = force(c.best()), explained = between(force(c.path[which]), after),
+                 all = between(force(c.path.front()), after);
+    return std::hypot(between(after, c.floor_force()),
+                      all > explained ? law_error * between(all, explained) : 0) /
+           explained;
+}
+
 QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_model& plant) {
     std::vector<double> e;
     predictor on_the_model = r.observer;
@@ -199,11 +233,20 @@ QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t whi
     return std::sqrt(left) / between(std::sqrt(before), std::sqrt(left));
 }
 
+QUADRANT_DIAGNOSIS_DECL std::size_t names_as_likely(const axis_case& c, const effect& e) {
+    double all = 0;
+    const auto suspects = c.models.suspects();
+    for (const effect* s : suspects) all += s->prior.odds;
+    return std::min(suspects.size(), static_cast<std::size_t>(std::ceil(all / e.prior.odds)));
+}
+
 QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
-    const std::size_t names = c.models.suspects().size();
-    if (!c.tested_apart())
-        return by_chance(names, c.record.closed() ? left_of_paths(c, which)
-                                                  : doubtful_beside(c, explained_by(c, which)));
+    const std::size_t names = names_as_likely(c, *c.best().effects[which]);
+    if (!c.tested_apart()) {
+        if (c.record.closed()) return by_chance(names, left_of_paths(c, which));
+        const double out = by_chance(names, doubtful_beside(c, explained_by(c, which)));
+        return std::min(out, by_chance(names, doubtful_beside_odd_segment(c, which)));
+    }
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
     const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
@@ -228,10 +271,17 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
     std::vector<const effect*> same;
     for (const rival& r : names)
         if (r.same || &r == &names.front()) same.push_back(r.name);
-    // Of a path that no further name improves enough, a model with more names says nothing.
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, names.front().name);
+    const candidate without = c.models.with(others);
+    const double own = c.worth(c.best());
     const auto worth = [&](const candidate& m) {
+        // Of a path that no further name improves enough, a model with more names says nothing.
         const bool longer = c.record.closed() && m.effects.size() > c.best().effects.size();
-        return longer ? -std::numeric_limits<double>::infinity() : c.worth(m);
+        if (longer) return -std::numeric_limits<double>::infinity();
+        const double out = c.worth(m);
+        const bool matters = !c.settled && !c.record.closed() && out > own - 5 * score_temperature;
+        return matters && !takes_the_gap_of(c, without, m) ? -std::numeric_limits<double>::infinity() : out;
     };
     return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(), worth) - c.worth(c.best())) /
                              score_temperature));
@@ -337,6 +387,16 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
+/// Whether the record leaves the frequency or the period of a cause open: its interval is ten times as wide as
+/// the value.
+inline bool is_undetermined(const std::vector<parameter_estimate>& values) {
+    constexpr double wide = 10;
+    return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
+        const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
+        return cycle && p.values[0].high - p.values[0].low > 2 * wide * p.values[0].value;
+    });
+}
+
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
     constexpr double guess = 0.4;
     for (cause& x : causes) {
@@ -396,8 +456,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         named.group_probability = std::max(named.probability, named.group_probability * known);
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
-        if ((of_laws && like_friction) || detail::may_be_inside_its_tolerance(c, named.parameters) ||
-            detail::drowns_in_the_rest(c, e))
+        if ((of_laws && like_friction) || detail::is_undetermined(named.parameters) ||
+            detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }

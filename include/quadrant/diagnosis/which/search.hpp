@@ -8,6 +8,7 @@
 #include "chance.hpp"
 
 #include <deque>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <set>
@@ -30,6 +31,12 @@ public:
     std::vector<double> held_out_residual(const candidate& c) const;
     /// Its rms [N].
     double held_out_force(const candidate& c) const;
+
+    /// The segment that holds more than half of what a model leaves, among four or more: something happened in
+    /// it that the rest of the record does not show. None: there is no such segment.
+    std::optional<std::size_t> odd_segment(const candidate& c) const;
+    /// held_out_force() of all segments but this one.
+    double held_out_force_beside(const candidate& c, std::size_t segment) const;
 
     /// Rms of the residual force of a model with the numbers of one of its effects back as described, all
     /// others kept [N].
@@ -58,9 +65,12 @@ public:
     /// the others comes after them; one that cannot be told at all adds nothing.
     candidate with(const std::vector<const effect*>& effects) const;
 
-    /// The best model with one of its effects exchanged for another name of the same force; the others keep
-    /// their numbers where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
-    candidate exchanged(const candidate& best, const candidate& without, const effect* added) const;
+    /// A model with one of its effects taken off. The fit begins at the numbers of the others; where the same
+    /// names were fitted before, the better of the two is kept.
+    candidate without(const candidate& whole, const effect* own) const;
+    /// A model with one of its effects exchanged for another name of the same force; the others keep their
+    /// numbers where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
+    candidate exchanged(const candidate& whole, const effect* own, const effect* added) const;
 
     /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is
     /// calibration.
@@ -230,6 +240,15 @@ private:
     /// The calibrated machine with two and more of the everyday effects: one alone may take what two of them
     /// make.
     std::vector<candidate> everyday() const;
+    static constexpr std::size_t least_segments = 4; ///< of which one may be set apart
+    /// Energy of the residual force on held-out motion in each segment [N^2, times rows].
+    std::vector<double> energy_by_segment(const candidate& c) const;
+    /// Whether the residual force falls in three of four segments. A transient that no name explains, such as a
+    /// start, may hold most of the residual and hide what the rest of the record shows.
+    bool shrinks_in_most_segments(const candidate& more, const candidate& less) const;
+    /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
+    /// effect had moved in the machine file is as described.
+    candidate taken_off(const candidate& whole, const effect* own) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);

@@ -79,6 +79,8 @@ QUADRANT_DIAGNOSIS_DECL plant_model search::plant_without(const candidate& whole
         if (!(p.spread > 0) &&
             std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; }))
             p.of(out) = p.of(described);
+    for (harmonics* h : {&out.ripple, &out.cogging, &out.cutting, &out.cyclic, &out.friction.along})
+        if (!(h->period > 0)) h->count = 0;
     return out;
 }
 
@@ -149,10 +151,41 @@ QUADRANT_DIAGNOSIS_DECL candidate search::with(const std::vector<const effect*>&
     return c;
 }
 
-QUADRANT_DIAGNOSIS_DECL candidate search::exchanged(const candidate& best, const candidate& without,
+QUADRANT_DIAGNOSIS_DECL candidate search::taken_off(const candidate& whole, const effect* own) const {
+    candidate out = whole;
+    std::erase(out.effects, own);
+    out.fit.plant = plant_without(whole, *own);
+    plant_model there = whole.fit.plant;
+    const auto values = own->read(there);
+    std::erase_if(out.fit.parameters, [&](const parameter& p) {
+        return !(p.spread > 0) &&
+               std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; });
+    });
+    for (const parameter& p : calibrated_.fit.parameters) // what the effect's own numbers had replaced
+        if (std::none_of(out.fit.parameters.begin(), out.fit.parameters.end(),
+                         [&](const parameter& q) { return &q.of(there) == &p.of(there); }))
+            out.fit.parameters.push_back(p);
+    out.fit.x.resize(static_cast<Eigen::Index>(out.fit.parameters.size()));
+    begin_at(out, out.fit.plant);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate search::without(const candidate& whole, const effect* own) const {
+    std::vector<const effect*> others = whole.effects;
+    std::erase(others, own);
+    candidate known = with(others);
+    if (others.empty() || over()) return known;
+    candidate again = taken_off(whole, own);
+    finish(record_, again);
+    if (!(again.total > known.total)) return known;
+    for (candidate& c : tried_)
+        if (same(c, again)) c = again;
+    return again;
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate search::exchanged(const candidate& whole, const effect* own,
                                                     const effect* added) const {
-    candidate from = without;
-    begin_at(from, best.fit.plant);
+    const candidate from = taken_off(whole, own);
     std::vector<candidate> out{joined(from, added)};
     sketch_each(from, {0}, out, when_late::go_on);
     if (std::isfinite(out.front().fit.objective)) finish(record_, out.front());
@@ -384,11 +417,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         const candidate& whole = path.back();
         candidate kept;
         kept.total = -std::numeric_limits<double>::infinity();
-        for (const effect* out : whole.effects) {
-            std::vector<const effect*> rest = whole.effects;
-            std::erase(rest, out);
-            if (auto c = with(rest); c.total > kept.total) kept = std::move(c);
-        }
+        for (const effect* out : whole.effects)
+            if (auto c = without(whole, out); c.total > kept.total) kept = std::move(c);
         if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
         path.push_back(std::move(kept));
     }
@@ -423,6 +453,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candid
     const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
     if (left(more) < fall * left(less)) return true;
     if (left(more) > left(less) / fall) return false;
+    if (shrinks_in_most_segments(more, less)) return true;
     const double sigma = noise(more);
     for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
         const double of_noise = record_.score.channels[i].of_noise(sigma);
@@ -430,6 +461,44 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candid
         if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
     }
     return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> search::energy_by_segment(const candidate& c) const {
+    std::vector<double> out(record_.segments, 0.0);
+    const auto left = held_out_residual(c);
+    for (std::size_t k = 0; k < left.size(); ++k) out[record_.segment[k]] += square(left[k]);
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool search::shrinks_in_most_segments(const candidate& more,
+                                                              const candidate& less) const {
+    if (record_.segments < least_segments) return false;
+    std::vector<double> floor(record_.segments, 0.0);
+    for (const std::size_t segment : record_.segment) floor[segment] += square(floor_force(more));
+    const auto before = energy_by_segment(less), after = energy_by_segment(more);
+    const auto above = [&](const std::vector<double>& energy, std::size_t i) {
+        return std::max(0.0, energy[i] - floor[i]);
+    };
+    std::size_t falls = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        falls += above(after, i) < square(1 - rules_.least_shrink) * above(before, i);
+    return 4 * falls >= 3 * record_.segments;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::optional<std::size_t> search::odd_segment(const candidate& c) const {
+    if (record_.closed() || record_.segments < least_segments) return {};
+    const auto energy = energy_by_segment(c);
+    const auto most = std::max_element(energy.begin(), energy.end());
+    const double all = std::accumulate(energy.begin(), energy.end(), 0.0);
+    if (!(*most > all / 2)) return {};
+    return static_cast<std::size_t>(most - energy.begin());
+}
+
+QUADRANT_DIAGNOSIS_DECL double search::held_out_force_beside(const candidate& c, std::size_t segment) const {
+    const auto energy = energy_by_segment(c);
+    const auto rows = std::count(record_.segment.begin(), record_.segment.end(), segment);
+    const double all = std::accumulate(energy.begin(), energy.end(), 0.0) - energy[segment];
+    return std::sqrt(all / static_cast<double>(record_.segment.size() - static_cast<std::size_t>(rows)));
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::differs_from_like_machines(const candidate& c) const {
