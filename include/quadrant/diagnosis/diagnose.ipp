@@ -457,7 +457,9 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                     "axis {}: judged by the forces along the measured motion: models corrected by the readings "
                     "predicted best by {}.",
                     axis.name,
-                    stands ? "standing where the axis moves" : "answering the measured command too little"));
+                    stands   ? "standing where the axis moves"
+                    : little ? "answering the measured command too little"
+                             : "leaving to the corrections what no name explains"));
             }
         }
         if (!both && detail::hides_what_the_other_shows(*found)) {

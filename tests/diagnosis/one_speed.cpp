@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSL-1.0
+// A motor that turns one way at one speed: Coulomb friction, viscous friction and a constant torque are one there, and
+// what repeats with the position repeats in time.
+#include "claims.hpp"
+
+#include <quadrant/diagnosis/effect/effects.hpp>
+#include <quadrant/diagnosis/effect/repeating.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+#include <quadrant/diagnosis/which/axis_case.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <set>
+#include <sstream>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+constexpr double pi = 3.14159265358979, period = 0.002, inertia = 2.5e-4, coulomb = 0.15, cogging = 0.1;
+
+/// 4 rad/s by a PI loop, from a ramp of 0.2 s, in fine steps; cogging of 7 and 14 a turn; torque measured.
+std::string turning() {
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> noise(0, 0.002);
+    std::string out = "t_s,q_pos_rad,q_cmd_Nm\n";
+    double q = 0, v = 0, integral = 0;
+    constexpr int fine = 100;
+    for (int k = 0; k < 4000; ++k) {
+        const double t = k * period, asked = 4 * std::min(1.0, t / 0.2), error = asked - v;
+        integral += 0.2 * error * period;
+        const double torque = 0.02 * error + integral;
+        const double read = std::round(q / 1e-4) * 1e-4;
+        for (int i = 0; i < fine; ++i) {
+            const double h = period / fine;
+            const double net = torque - coulomb * std::tanh(v / 0.005) - cogging * std::sin(7 * q + 0.6) -
+                               0.03 * std::sin(14 * q + 1.1);
+            v += h * net / inertia;
+            q += h * v;
+        }
+        char row[80];
+        std::snprintf(row, sizeof row, "%.6f,%.9f,%.6f\n", t, read, torque + noise(random));
+        out += row;
+    }
+    return out;
+}
+
+machine_description motor() {
+    return read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.002, "axes": {"q": {
+        "plant": {"inertia_kg_m2": 2.5e-4}, "tolerance": {"inertia": 0.3},
+        "encoder": {"resolution_rad": 1e-4}, "actuator": {"command_is": "measured"}}}})"),
+        "motor.json");
+}
+
+/// What effects see of a motion at `speed` whose residual is `residual(t, x)`.
+struct seen {
+    plant_description plant{};
+    tolerance_description tolerance{};
+    axis_record record{};
+    plant_model leader{};
+    std::vector<double> residual, innovation, time;
+
+    template <class Speed, class Residual> seen(Speed speed, Residual law) {
+        record.period = period;
+        double x = 0;
+        for (int k = 0; k < 4000; ++k) {
+            const double t = k * period;
+            time.push_back(t);
+            record.position.push_back(x);
+            record.velocity.push_back(speed(t));
+            residual.push_back(law(t, x));
+            x += period * speed(t);
+        }
+    }
+    bool bound(double repeats) const {
+        const screening s{plant, tolerance, record, leader, residual, innovation};
+        return quadrant::diagnosis::detail::bound_to_position(s, repeats, time);
+    }
+};
+
+} // namespace
+
+TEST_CASE("diagnose: friction of a motor at one speed is one group, beside the cogging that it turns over") {
+    std::istringstream file(turning());
+    const auto d = diagnose(motor(), read_log(file, "turning.csv"));
+    CAPTURE(workshop::said(d));
+    const std::set<std::string> one{"coulomb_friction", "viscous_friction", "constant_force"};
+    const auto friction =
+        std::find_if(d.causes.begin(), d.causes.end(), [&](const cause& c) { return one.contains(c.effect); });
+    REQUIRE(friction != d.causes.end());
+    CHECK(friction->group_probability > 0.5);
+    std::set<std::string> names(friction->confusable_with.begin(), friction->confusable_with.end());
+    names.insert(friction->effect);
+    CHECK(std::includes(names.begin(), names.end(), one.begin(), one.end()));
+    CHECK(std::count_if(d.causes.begin(), d.causes.end(), [&](const cause& c) {
+              return one.contains(c.effect) && c.probability >= 0.5;
+          }) <= 1); // no two of them that cancel
+    const auto torque = std::find_if(d.causes.begin(), d.causes.end(),
+                                     [](const cause& c) { return c.effect == "cogging"; });
+    REQUIRE(torque != d.causes.end());
+    CHECK(torque->group_probability > 0.5);
+    CHECK(workshop::near(workshop::value_of(*torque, "cogging_period_rad").value, 2 * pi / 7, 0.01));
+}
+
+TEST_CASE("process: what a motor shows at its positions is bound to them, what a spindle makes is not") {
+    const auto wanders = [](double t) { return 4 + 0.3 * std::sin(0.9 * t) + 0.2 * std::sin(2.3 * t); };
+    const double mean = 4;
+    const auto by_position = [](double, double x) { return std::sin(7 * x); };
+    const auto by_time = [&](double t, double) { return std::sin(7 * mean * t); };
+    CHECK(seen(wanders, by_position).bound(2 * pi / (7 * mean)));
+    CHECK_FALSE(seen(wanders, by_time).bound(2 * pi / (7 * mean)));
+    const auto there_and_back = [](double t) { return 4 * std::cos(3 * t); };
+    CHECK_FALSE(seen(there_and_back, by_position).bound(2 * pi / (7 * mean)));
+}
+
+TEST_CASE("search: a model without one of its effects has a force, and rivals begin at its other numbers") {
+    std::istringstream file(turning());
+    const auto machine = motor();
+    const auto log = read_log(file, "turning.csv");
+    const auto& axis = machine.axes.front();
+    const auto& l = log.axes.front();
+    std::size_t motions = 0;
+    const auto record = for_machine(
+        in_pieces(prepare(l, period, 1e-4, scales_of(axis.plant, l, period, 1e-4)), motions), axis, held_by::motion);
+    const search models(record, axis, {}, {}, [](const std::string&) {});
+    const auto both = models.with({&suspect::coulomb_friction, &suspect::cogging});
+    REQUIRE(both.effects.size() == 2);
+    CHECK(models.force_of(both, suspect::cogging) > 0.5 * cogging / std::sqrt(2.0)); // and finite
+    CHECK(models.plant_without(both, suspect::cogging).cogging.count == 0);
+    const auto rest = models.without(both, &suspect::coulomb_friction);
+    CHECK(rest.effects == std::vector<const effect*>{&suspect::cogging});
+    const auto other = models.exchanged(both, &suspect::coulomb_friction, &suspect::constant_force);
+    CHECK(other.total > rest.total + rules{}.margin);
+    CHECK(std::abs(other.total - both.total) < 0.1 * (both.total - rest.total)); // one torque under two names
+    CHECK(workshop::near(-other.fit.plant.constant_force, both.fit.plant.friction.coulomb, 0.1));
+}
