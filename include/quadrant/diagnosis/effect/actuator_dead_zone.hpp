@@ -31,15 +31,16 @@ inline constexpr effect actuator_dead_zone{
               .high = 1,
               .into = [](trial_machine& m) { m.set("actuator.dead_zone_V", m.amplitude); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double most = detail::largest_command(s), usual = rms(s.record.command);
+        const double usual = rms(s.record.command);
         if (!(usual > 0)) return {};
+        // One above the command's rms swallows more than it lets through: a model that stands still.
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.dead_zone; };
         return {
             {{.key = "actuator.dead_zone_V",
               .of = of,
               .start = detail::best_start(s, of, {0.01 * usual, 0.03 * usual, 0.1 * usual, 0.3 * usual, usual}),
               .low = 1e-4 * usual,
-              .high = 0.9 * most,
+              .high = usual,
               .logarithmic = true,
               .step = 1e-2}}};
     },

@@ -68,11 +68,15 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
 }
 
 /// Whether a model takes at least half as much off the residual force as the best model does beside `without`,
-/// in energy. Asked only where that is most of what is there.
+/// in energy, on this log and on the hold-out log. Asked only where that is most of what is there.
 inline bool takes_the_gap_of(const axis_case& c, const candidate& without, const candidate& m) {
-    const double before = square(c.models.held_out_force(without)),
-                 after = square(c.models.held_out_force(c.best()));
-    return !(after < before / 2) || square(c.models.held_out_force(m)) < (before + after) / 2;
+    const auto takes = [](double before, double after, double with) {
+        return !(after * after < before * before / 2) || with * with < (before * before + after * after) / 2;
+    };
+    const auto here = [&](const candidate& x) { return c.models.held_out_force(x); };
+    if (!takes(here(without), here(c.best()), here(m))) return false;
+    const auto there = [&](const candidate& x) { return c.second_log(x).force; };
+    return !c.tested_apart() || takes(there(without), there(c.best()), there(m));
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
