@@ -6,6 +6,9 @@
 #include <quadrant/diagnosis/controller/json.hpp>
 #include <quadrant/diagnosis/text/text.hpp>
 
+#include <algorithm>
+#include <initializer_list>
+
 namespace quadrant_cnc {
 
 /// One reading of a machine's file, box by box. Nothing in it is ignored; messages name the file and the path
@@ -171,10 +174,14 @@ private:
             if (given) c.mean = given->number(qd::rule::any_number);
             return given.has_value();
         };
-        const bool force = mean("mean_N") | numbers("cosine_N", c.cosine) | numbers("sine_N", c.sine);
+        // Every key is read, whichever was given before it.
+        const auto any = [](std::initializer_list<bool> given) {
+            return std::find(given.begin(), given.end(), true) != given.end();
+        };
+        const bool force = any({mean("mean_N"), numbers("cosine_N", c.cosine), numbers("sine_N", c.sine)});
         std::vector<double> cosine, sine;
         const double mean_N = c.mean;
-        c.torque = mean("mean_Nm") | numbers("cosine_Nm", cosine) | numbers("sine_Nm", sine);
+        c.torque = any({mean("mean_Nm"), numbers("cosine_Nm", cosine), numbers("sine_Nm", sine)});
         if (force == c.torque)
             node.refuse(
                 force ? "must be given in N or in N m, not in both"
