@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// A motor that turns one way at one speed: Coulomb friction, viscous friction and a constant torque are one there, and
-// what repeats with the position repeats in time.
+// A motor that turns one way at one speed: Coulomb friction, viscous friction and a constant torque are one
+// there, and what repeats with the position repeats in time.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/effect/effects.hpp>

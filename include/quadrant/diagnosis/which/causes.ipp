@@ -104,8 +104,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
                 !c.models.pays(c.models.with(models[i], own), models[i]))
                 out.push_back({.model = models[i], .name = forms[i]});
     }
-    // What takes most of the gap off is not replaced by a name that leaves it: the score alone is also raised by
-    // models that stand still, or that hide the motor's motion behind a play.
+    // What takes most of the gap off is not replaced by a name that leaves it: the score alone is also raised
+    // by models that stand still, or that hide the motor's motion behind a play.
     if (!c.settled && !c.record.closed())
         std::erase_if(out, [&](const rival& r) {
             return r.name != own && !r.unlisted() && !takes_the_gap_of(c, without, r.model);
