@@ -104,7 +104,7 @@ private:
         return p;
     }
     Real held(const Real& level) const noexcept {
-        const Real low(given_.lowest), high(given_.highest);
+        const Real low = static_cast<Real>(given_.lowest), high = static_cast<Real>(given_.highest);
         return level < low ? low : level > high ? high : level;
     }
 
