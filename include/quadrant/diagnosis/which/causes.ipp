@@ -67,17 +67,36 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
-/// Whether a model takes at least half as much off the residual force as the best model does beside `without`,
-/// in energy, on this log and on the hold-out log. Asked only where that is most of what is there.
-inline bool takes_the_gap_of(const axis_case& c, const candidate& without, const candidate& m) {
-    const auto takes = [](double before, double after, double with) {
-        return !(after * after < before * before / 2) || with * with < (before * before + after * after) / 2;
+/// What the best model takes off the residual force beside the model without one of its causes, on this log and
+/// on the hold-out log.
+class taken_gap {
+public:
+    taken_gap(const axis_case& c, const candidate& without) : case_(c), here_(of_log(without, c.best())) {
+        if (c.tested_apart()) there_ = of_holdout(without, c.best());
+    }
+    /// Whether a model takes at least half of it off, in energy. Asked only of a log on which it is most of
+    /// what is there.
+    bool is_taken_by(const candidate& m) const {
+        return here_.is_taken(case_.models.held_out_force(m)) &&
+               (!there_.asked() || there_.is_taken(case_.second_log(m).force));
+    }
+
+private:
+    struct on_a_log {
+        double before = 0, after = 0; // in energy
+        bool asked() const { return after < before / 2; }
+        bool is_taken(double force) const { return !asked() || force * force < (before + after) / 2; }
     };
-    const auto here = [&](const candidate& x) { return c.models.held_out_force(x); };
-    if (!takes(here(without), here(c.best()), here(m))) return false;
-    const auto there = [&](const candidate& x) { return c.second_log(x).force; };
-    return !c.tested_apart() || takes(there(without), there(c.best()), there(m));
-}
+    on_a_log of_log(const candidate& without, const candidate& best) const {
+        return {square(case_.models.held_out_force(without)), square(case_.models.held_out_force(best))};
+    }
+    on_a_log of_holdout(const candidate& without, const candidate& best) const {
+        return {square(case_.second_log(without).force), square(case_.second_log(best).force)};
+    }
+
+    const axis_case& case_;
+    on_a_log here_, there_{};
+};
 
 QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
@@ -106,10 +125,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     }
     // What takes most of the gap off is not replaced by a name that leaves it: the score alone is also raised
     // by models that stand still, or that hide the motor's motion behind a play.
-    if (!c.settled && !c.record.closed())
-        std::erase_if(out, [&](const rival& r) {
-            return r.name != own && !r.unlisted() && !takes_the_gap_of(c, without, r.model);
-        });
+    if (!c.settled && !c.record.closed()) {
+        const taken_gap gap(c, without);
+        std::erase_if(
+            out, [&](const rival& r) { return r.name != own && !r.unlisted() && !gap.is_taken_by(r.model); });
+    }
     weigh(out, c);
 
     const double energy = square(c.models.held_out_force(c.best()));
@@ -249,7 +269,10 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     if (!c.tested_apart()) {
         if (c.record.closed()) return by_chance(names, left_of_paths(c, which));
         const double out = by_chance(names, doubtful_beside(c, explained_by(c, which)));
-        return std::min(out, by_chance(names, doubtful_beside_odd_segment(c, which)));
+        // Nothing is below what chance does at the noise.
+        return out > by_chance(names, 0)
+                   ? std::min(out, by_chance(names, doubtful_beside_odd_segment(c, which)))
+                   : out;
     }
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, c.best().effects[which]);
@@ -277,15 +300,16 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
         if (r.same || &r == &names.front()) same.push_back(r.name);
     std::vector<const effect*> others = c.best().effects;
     std::erase(others, names.front().name);
-    const candidate without = c.models.with(others);
+    std::optional<taken_gap> gap;
+    if (!c.settled && !c.record.closed()) gap.emplace(c, c.models.with(others));
     const double own = c.worth(c.best());
     const auto worth = [&](const candidate& m) {
         // Of a path that no further name improves enough, a model with more names says nothing.
         const bool longer = c.record.closed() && m.effects.size() > c.best().effects.size();
         if (longer) return -std::numeric_limits<double>::infinity();
         const double out = c.worth(m);
-        const bool matters = !c.settled && !c.record.closed() && out > own - 5 * score_temperature;
-        return matters && !takes_the_gap_of(c, without, m) ? -std::numeric_limits<double>::infinity() : out;
+        const bool matters = gap && out > own - 5 * score_temperature;
+        return matters && !gap->is_taken_by(m) ? -std::numeric_limits<double>::infinity() : out;
     };
     return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(), worth) - c.worth(c.best())) /
                              score_temperature));

@@ -453,14 +453,13 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candid
     const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
     if (left(more) < fall * left(less)) return true;
     if (left(more) > left(less) / fall) return false;
-    if (shrinks_in_most_segments(more, less)) return true;
     const double sigma = noise(more);
     for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
         const double of_noise = record_.score.channels[i].of_noise(sigma);
         const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[i]) - of_noise); };
         if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
     }
-    return false;
+    return shrinks_in_most_segments(more, less); // dear: asked last
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> search::energy_by_segment(const candidate& c) const {
