@@ -108,6 +108,8 @@ RIGHT = [
     ("odrive", "cogging of 28 a turn is claimed", lambda d: has_harmonic(d, 28)),
     ("two_joints", "gravity is claimed on joint 1", lambda d: bool(claimed(d, "gravity", "q1"))),
     ("two_joints", "gravity is claimed on joint 2", lambda d: bool(claimed(d, "gravity", "q2"))),
+    ("two_joints", "Coulomb friction of 0.12 N m is claimed on joint 2",
+     lambda d: meets(claimed(d, "coulomb_friction", "q2"), "coulomb_Nm", 0.12, 0.12)),
     ("two_joints", "two axes do not explain it, and the rest of both is described",
      lambda d: d["verdict"] in ("partly_explained", "unexplained")
      and all(f"axis {q}:" in d["remaining"]["structure"] for q in TWO_JOINTS)),
@@ -122,8 +124,6 @@ NOT_YET = [
     ("two_joints", "coupling is claimed", lambda d: bool(claimed(d, "cross_coupling"))),
     ("two_joints", "Coulomb friction of 0.16 N m is claimed on joint 1",
      lambda d: meets(claimed(d, "coulomb_friction", "q1"), "coulomb_Nm", 0.16, 0.16)),
-    ("two_joints", "Coulomb friction of 0.12 N m is claimed on joint 2",
-     lambda d: meets(claimed(d, "coulomb_friction", "q2"), "coulomb_Nm", 0.12, 0.12)),
 ]
 
 

@@ -98,6 +98,8 @@ RIGHT = [
      lambda d: bool(claimed(d, "gravity", "q2")) and first_of(d, "q2") == claimed(d, "gravity", "q2")),
     ("tx40", "Coulomb friction of joint 2 is claimed and meets 8.26 N m",
      lambda d: meets(claimed(d, "coulomb_friction", "q2"), "coulomb_Nm", 8.26, 8.26)),
+    ("tx40", "Coulomb friction of joint 1 is claimed and meets 7.1 to 8.1 N m",
+     lambda d: meets(claimed(d, "coulomb_friction", "q1"), "coulomb_Nm", 7.1, 8.1)),
     ("tx40", "Coulomb friction of joint 4 is claimed and meets 2.48 N m",
      lambda d: meets(claimed(d, "coulomb_friction", "q4"), "coulomb_Nm", 2.48, 2.48)),
     ("tiago", "Coulomb friction of the torso is claimed and meets 0.67 A",
@@ -132,8 +134,6 @@ RIGHT = [
      for r in ("tx40", "tiago")]
 
 NOT_YET = [
-    ("tx40", "Coulomb friction of joint 1 is claimed and meets 7.1 to 8.1 N m",
-     lambda d: meets(claimed(d, "coulomb_friction", "q1"), "coulomb_Nm", 7.1, 8.1)),
     ("tiago", "Coulomb friction of arm 1, not Stribeck friction, is claimed and meets 0.14 A",
      lambda d: meets(claimed(d, "coulomb_friction", "arm1"), "coulomb_Nm", 0.14, 0.14)),
 ]

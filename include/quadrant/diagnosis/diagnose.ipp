@@ -433,9 +433,9 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         if (soft && other && !transmission)
             both = both_motions(axis, *detail::named(as_read.axes, axis.name),
                                 *detail::named(as_read_too->axes, axis.name), machine.sample_period_s);
-        const auto look = [&](held_by how) {
+        const auto look = [&](held_by how, const axis_case* before = nullptr) {
             return std::make_unique<axis_case>(rigid, both ? *both : coupled, other ? &*other : nullptr,
-                                               machine.sample_period_s, excluded, limits, tell, how);
+                                               machine.sample_period_s, excluded, limits, tell, how, before);
         };
         auto found = look(soft ? held_by::loop : held_by::readings);
         detail::need_blocks(*found, log.file);
@@ -448,7 +448,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         const bool little = detail::answers_too_little(*found), open = detail::open_by_measured_command(*found);
         if (stands || little || open) {
             tell("axis " + axis.name + ": again, along the measured motion");
-            auto led = look(held_by::motion);
+            auto led = look(held_by::motion, found.get());
             const double least =
                 (open ? 1 + r.least_shrink : 1 - r.least_shrink) * (stands ? 1 : found->left_along_motion());
             if (led->left_along_motion() < least) {

@@ -130,9 +130,15 @@ QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const pla
 QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described,
                                         const plant_model& nearest);
 
+/// Judges a record that models are led along beside what the best known one leaves: the floor of each channel is
+/// what half of its blocks stay below. Where forces act that no name explains, a quiet block is one that they
+/// happen to miss; without the floor it would count as much as a loud one, and a fit would polish it at the
+/// expense of the rest.
+QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest);
+
 /// The record with its observer stepping as finely as the described machine needs.
-/// `nearest`: to what the machine does, of the models that are known, for what is judged by its path; null: the
-/// described machine.
+/// `nearest`: to what the machine does, of the models that are known, for what is judged by its path or led
+/// along its motion; null: the described machine, and no floor but that of the reading.
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
                                                 held_by how = held_by::readings,
                                                 const plant_model* nearest = nullptr);

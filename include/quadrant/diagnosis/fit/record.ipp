@@ -244,6 +244,15 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
     s.channels = std::move(out);
 }
 
+QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest) {
+    std::vector<double> e;
+    r.observer.run(nearest, e);
+    for (channel& c : r.score.channels) {
+        auto left = detail::block_ms(e, c);
+        if (!left.empty()) c.floor = std::hypot(c.floor, std::sqrt(quantile(std::move(left), 0.5)));
+    }
+}
+
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how,
                                                 const plant_model* nearest) {
     const plant_model described(a, r.scale.give());
@@ -274,6 +283,7 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
             c.command_noise = command_noise_in(c, force, described.mass, r.period, r.observer.pole());
     }
     if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
+    if (how == held_by::motion && nearest) judge_beside_what_is_left(r, *nearest);
     return r;
 }
 

@@ -68,7 +68,7 @@ public:
                 const double force = rms(anew.held_out_residual(c));
                 return force * force;
             };
-            if (truth.equivalent(other) && energy(best) < (1 + detail::alike) * energy(own)) return 0;
+            if (truth.equivalent(other) && energy(best) < (1 + told_apart) * energy(own)) return 0;
         }
         return std::isfinite(own.total - best.total) ? own.total - best.total : 0;
     }

@@ -19,15 +19,17 @@ namespace quadrant::diagnosis {
 class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
-              const exclusions& excluded, const rules& r, const progress& tell,
-              held_by how = held_by::readings);
+              const exclusions& excluded, const rules& r, const progress& tell, held_by how = held_by::readings,
+              const axis_case* before = nullptr);
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
 
 private:
     /// The log made ready. How many independent readings a path holds, only a model near the machine tells: the
-    /// error of a wrong one is one long wave. So a first search looks for one.
-    axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how);
+    /// error of a wrong one is one long wave. So a first search looks for one. Along a motion it is the nearest
+    /// of the models that were found `before`, and of their causes fitted again along it.
+    axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
+                          const axis_case* before);
     std::optional<plant_model> nearest_; ///< of that search
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
     /// This model, the calibrated machine, and this model with stronger friction.
@@ -83,6 +85,8 @@ public:
     /// What the best model's forces leave along the measured motion, over what those of the calibrated machine
     /// leave there. The same measure for a model that was fitted to the readings and for one that was led.
     double left_along_motion() const;
+    /// What the forces of each of these plants leave there [N].
+    std::vector<double> left_along_motion(std::span<const plant_model> some) const;
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const;
     /// How a model predicts the hold-out log, which nothing was fitted to.

@@ -5,10 +5,11 @@ namespace quadrant::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period, const exclusions& excluded,
-                                             const rules& r, const progress& tell, held_by how)
+                                             const rules& r, const progress& tell, held_by how,
+                                             const axis_case* before)
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
-      record(record_of(period, excluded, tell, how)), models(record, a, excluded, r, tell) {
+      record(record_of(period, excluded, tell, how, before)), models(record, a, excluded, r, tell) {
     // A velocity drive's controller commands set-points; how far a difference there moves the axis no force
     // tells. What was measured behind an amplifier is not what the controller asked for.
     if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
@@ -31,13 +32,21 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const exclusions& excluded,
-                                                         const progress& tell, held_by how) {
+                                                         const progress& tell, held_by how,
+                                                         const axis_case* before) {
     const axis_record ready =
         in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);
     axis_record out = for_machine(ready, axis, how);
-    if (how != held_by::loop) return out;
-    nearest_ = search(out, axis, excluded, limits, tell).nearest();
-    return for_machine(ready, axis, how, &*nearest_);
+    if (how == held_by::motion && before) {
+        std::vector<plant_model> known{
+            search(out, axis, excluded, limits, tell).with(before->best().effects).fit.plant};
+        for (const candidate& m : before->path) known.push_back(m.fit.plant);
+        const auto left = before->left_along_motion(known);
+        nearest_ = known[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
+    } else if (how == held_by::loop) {
+        nearest_ = search(out, axis, excluded, limits, tell).nearest();
+    }
+    return nearest_ ? for_machine(ready, axis, how, &*nearest_) : out;
 }
 
 QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
@@ -107,12 +116,22 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
     return claims > 0 && models.settled(m) && models.near_its_laws(m);
 }
 
-QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
-    const std::array plants{best().fit.plant, path.front().fit.plant};
-    std::array<std::vector<double>, 2> left;
+QUADRANT_DIAGNOSIS_DECL std::vector<double>
+axis_case::left_along_motion(std::span<const plant_model> some) const {
+    std::vector<double> out;
     const auto by = motion_to_lead(record, plant_model(axis, record.scale.give()));
-    record.observer.forces_beside(*by, plants, record.command, left);
-    return rms(left[0]) / rms(left[1]);
+    for (; !some.empty(); some = some.subspan(std::min(some.size(), predictor::abreast))) {
+        const auto plants = some.first(std::min(some.size(), predictor::abreast));
+        std::array<std::vector<double>, predictor::abreast> left;
+        record.observer.forces_beside(*by, plants, record.command, std::span(left).first(plants.size()));
+        for (std::size_t i = 0; i < plants.size(); ++i) out.push_back(rms(left[i]));
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
+    const auto left = left_along_motion(std::array{best().fit.plant, path.front().fit.plant});
+    return left[0] / left[1];
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const candidate& from) const {

@@ -22,10 +22,6 @@ struct rival {
 
 inline double square(double x) { return x * x; }
 
-/// Two that are one model (docs/formats.md) stay one name while their predictions differ by less than this
-/// share of what is left, in energy; or by less than no law is right to.
-inline constexpr double alike = 0.2;
-
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments
 /// (pseudo-BMA with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A
 /// hold-out log counts as it stands.

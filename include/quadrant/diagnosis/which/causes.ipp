@@ -67,18 +67,33 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
+/// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides the
+/// motor's motion, an error of the reading is no force, and a drive's loops are replayed with the readings.
+inline bool shows_along_motion(const candidate& m) {
+    const auto reads = [](const effect* e) { return e->joins == joint::reading; };
+    return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
+}
+
 /// What the best model takes off the residual force beside the model without one of its causes, on this log and
-/// on the hold-out log.
+/// on the hold-out log, and off the forces along the measured motion: a model that stands still where the axis
+/// moves leaves little to its predictions and all of them.
 class taken_gap {
 public:
     taken_gap(const axis_case& c, const candidate& without) : case_(c), here_(of_log(without, c.best())) {
         if (c.tested_apart()) there_ = of_holdout(without, c.best());
+        if (!c.record.observer.led && !c.axis.drive.closes() && shows_along_motion(c.best()) &&
+            shows_along_motion(without)) {
+            const auto left = c.left_along_motion(std::array{without.fit.plant, c.best().fit.plant});
+            along_ = {square(left[0]), square(left[1])};
+        }
     }
     /// Whether a model takes at least half of it off, in energy. Asked only of a log on which it is most of
     /// what is there.
     bool is_taken_by(const candidate& m) const {
         return here_.is_taken(case_.models.held_out_force(m)) &&
-               (!there_.asked() || there_.is_taken(case_.second_log(m).force));
+               (!there_.asked() || there_.is_taken(case_.second_log(m).force)) &&
+               (!along_.asked() || !shows_along_motion(m) ||
+                along_.is_taken(case_.left_along_motion(std::span(&m.fit.plant, 1)).front()));
     }
 
 private:
@@ -95,7 +110,7 @@ private:
     }
 
     const axis_case& case_;
-    on_a_log here_, there_{};
+    on_a_log here_, there_{}, along_{};
 };
 
 QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::size_t which) {
@@ -169,7 +184,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
         const bool within = near && more < 1 && stands_in();
         const bool equivalent =
             may_be_one(*r.name, *own) && !c.record.closed() &&
-            excess() < std::max(alike * energy, square(law_error * explained_by(c, which))) && stands_in();
+            excess() < std::max(told_apart * energy, square(law_error * explained_by(c, which))) && stands_in();
         const double odds = std::min(1.0, r.name->prior.odds / own->prior.odds);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * out.front().weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * out.front().weight);
@@ -264,6 +279,22 @@ QUADRANT_DIAGNOSIS_DECL std::size_t names_as_likely(const axis_case& c, const ef
     return std::min(suspects.size(), static_cast<std::size_t>(std::ceil(all / e.prior.odds)));
 }
 
+/// The best model without one of its causes, to be judged on the hold-out log. Fitted again, its other causes may
+/// hold the axis fast where it moves: a model that leaves more of the forces along the motion than the others
+/// with the numbers that they have only predicts what it corrects.
+inline candidate without_standing(const axis_case& c, std::size_t which) {
+    const effect* own = c.best().effects[which];
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, own);
+    candidate again = c.models.with(others);
+    if (others.empty() || c.record.observer.led || c.axis.drive.closes() || !shows_along_motion(c.best()))
+        return again;
+    candidate kept = again;
+    kept.fit.plant = c.models.plant_without(c.best(), *own);
+    const auto left = c.left_along_motion(std::array{again.fit.plant, kept.fit.plant});
+    return left[0] > left[1] ? kept : again;
+}
+
 QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     const std::size_t names = names_as_likely(c, *c.best().effects[which]);
     if (!c.tested_apart()) {
@@ -274,9 +305,7 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
                    ? std::min(out, by_chance(names, doubtful_beside_odd_segment(c, which)))
                    : out;
     }
-    std::vector<const effect*> others = c.best().effects;
-    std::erase(others, c.best().effects[which]);
-    const auto before = c.second_log(c.models.with(others)), after = c.second_log(c.best());
+    const auto before = c.second_log(without_standing(c, which)), after = c.second_log(c.best());
     const double gain = std::clamp((after.score - before.score) / score_temperature, -50.0, 0.0);
     const auto with_gain = [&](double out) { return 1 / (1 + (1 - out) / out * std::exp(gain)); };
     // What predicts another motion worse than the machine file does is no cause of both.

@@ -249,6 +249,9 @@ private:
     /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
     /// effect had moved in the machine file is as described.
     candidate taken_off(const candidate& whole, const effect* own) const;
+    /// Whether a model with as many names, commoner ones, leaves no more than another does, beside all that both
+    /// leave open: then the scores feel what neither explains.
+    bool commoner_and_as_good(const candidate& c, const candidate& than) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);
@@ -273,6 +276,9 @@ private:
     /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
+    /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
+    /// lacks, from the part's numbers. `from`: where its own fit began.
+    void mend_from_parts(candidate& c, const candidate& from) const;
     const candidate* tried(const candidate& from, const effect* added) const;
     std::string describe(const candidate& c) const;
 

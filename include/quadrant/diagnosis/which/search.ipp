@@ -102,6 +102,7 @@ search::with_each(const candidate& from, const std::vector<const effect*>& among
             missed_.insert(out[i].effects.back());
             continue;
         }
+        if (std::isfinite(out[i].total)) mend_from_parts(out[i], from);
         tell_(describe(out[i]));
         tried_.push_back(out[i]);
     }
@@ -125,6 +126,7 @@ search::with_these(const candidate& from, const std::vector<const effect*>& adde
     sketch_each(from, fresh, out, when_late::go_on);
     finish_best(fresh, most, out, when_late::go_on);
     for (std::size_t i : fresh) {
+        if (std::isfinite(out[i].total)) mend_from_parts(out[i], from);
         tell_(describe(out[i]));
         tried_.push_back(out[i]);
     }
@@ -417,8 +419,14 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         const candidate& whole = path.back();
         candidate kept;
         kept.total = -std::numeric_limits<double>::infinity();
-        for (const effect* out : whole.effects)
-            if (auto c = without(whole, out); c.total > kept.total) kept = std::move(c);
+        std::vector<candidate> one_less;
+        for (const effect* out : whole.effects) one_less.push_back(without(whole, out));
+        for (const candidate& c : one_less)
+            if (c.total > kept.total) kept = c;
+        const candidate best_kept = kept;
+        for (const candidate& c : one_less)
+            if (detail::rarity(c.effects) < detail::rarity(kept.effects) && commoner_and_as_good(c, best_kept))
+                kept = c;
         if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
         path.push_back(std::move(kept));
     }
@@ -637,6 +645,13 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool search::commoner_and_as_good(const candidate& c, const candidate& than) const {
+    if (record_.closed() || c.effects.size() != than.effects.size() || !std::isfinite(c.total) ||
+        !(detail::rarity(c.effects) < detail::rarity(than.effects)) || settled(than))
+        return false;
+    return square(held_out_force(c)) < (1 + told_apart) * square(held_out_force(than));
+}
+
 QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& next,
                                                         const candidate& best) const {
     const auto worth = [&](const candidate& c) {
@@ -652,7 +667,13 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& 
             step->total - c.total <
                 std::max(rules_.margin, rules_.relative_margin * (c.total - calibrated_.total)))
             step = &c;
-    return step;
+    const candidate* commoner = step;
+    for (const candidate& c : next)
+        if (2 * (c.total - best.total) > step->total - best.total &&
+            detail::rarity(c.effects) < detail::rarity(commoner->effects) && commoner_and_as_good(c, *step) &&
+            pays(c, best))
+            commoner = &c;
+    return commoner;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::holds(const candidate& more, const candidate& less) {
@@ -746,6 +767,24 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_near(const std::vector<std::size_t>&
         for (const std::size_t i : some) each.push_back(&models[i]);
         finish(record_, each);
     });
+}
+
+QUADRANT_DIAGNOSIS_DECL void search::mend_from_parts(candidate& c, const candidate& from) const {
+    const candidate* part = nullptr;
+    for (const candidate& t : tried_)
+        if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
+            t.total > c.total + rules_.margin && (!part || t.total > part->total))
+            part = &t;
+    if (!part || over()) return;
+    const auto lacks =
+        std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(*part, e); });
+    std::vector<candidate> again{joined(*part, *lacks)};
+    sketch_each(*part, {0}, again, when_late::go_on);
+    if (!std::isfinite(again.front().fit.objective)) return;
+    finish(record_, again.front());
+    if (!(again.front().total > c.total)) return;
+    again.front().effects = c.effects; // what was added last stays last
+    c = std::move(again.front());
 }
 
 QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, const effect* added) const {
