@@ -279,8 +279,8 @@ inline rules for_one_of(rules r, std::ptrdiff_t axes) {
 }
 
 /// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
-inline axis_case& need_blocks(axis_case& c, const std::string& file) {
-    if (!c.record.score.channels.front().segment_of_block.empty()) return c;
+inline void need_blocks(const axis_case& c, const std::string& file) {
+    if (!c.record.score.channels.front().segment_of_block.empty()) return;
     std::size_t longest = 0, pieces = 0, row = 0;
     for (const unsigned char out : c.log.left_out) {
         row = out ? 0 : row + 1;
@@ -433,50 +433,56 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         if (soft && other && !transmission)
             both = both_motions(axis, *detail::named(as_read.axes, axis.name),
                                 *detail::named(as_read_too->axes, axis.name), machine.sample_period_s);
-        const auto look = [&](held_by how, const axis_case* before = nullptr) {
-            return std::make_unique<axis_case>(rigid, both ? *both : coupled, other ? &*other : nullptr,
-                                               machine.sample_period_s, excluded, limits, tell, how, before);
+        const auto look = [&](held_by how, const axis_case* before, bool exchanged) {
+            const axis_log& fitted = exchanged ? *other : both ? *both : coupled;
+            const axis_log* const judged = exchanged ? &coupled : other ? &*other : nullptr;
+            return std::make_unique<axis_case>(rigid, fitted, judged, machine.sample_period_s, excluded, limits,
+                                               tell, how, before);
         };
-        auto found = look(soft ? held_by::loop : held_by::readings);
+        // Looks at the forces along the measured motion where the predictions mislead. Returned is why it is
+        // judged by them, or nothing.
+        const auto along_motion = [&](std::unique_ptr<axis_case>& found, bool exchanged) {
+            const bool stands = detail::contradicts_motion(*found), little = detail::answers_too_little(*found),
+                       open = detail::open_by_measured_command(*found);
+            if (!stands && !little && !open) return "";
+            tell("axis " + axis.name + ": again, along the measured motion");
+            auto led = look(held_by::motion, found.get(), exchanged);
+            const double least =
+                (open ? 1 + r.least_shrink : 1 - r.least_shrink) * (stands ? 1 : found->left_along_motion());
+            if (!(led->left_along_motion() < least)) return "";
+            found = std::move(led);
+            return stands   ? "standing where the axis moves"
+                   : little ? "answering the measured command too little"
+                            : "leaving to the corrections what no name explains";
+        };
+        auto found = look(soft ? held_by::loop : held_by::readings, nullptr, false);
         detail::need_blocks(*found, log.file);
         if (both)
             out.notes.push_back(
                 fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
                             "holds says too little in one of them.",
                             axis.name));
-        const bool stands = detail::contradicts_motion(*found);
-        const bool little = detail::answers_too_little(*found), open = detail::open_by_measured_command(*found);
-        if (stands || little || open) {
-            tell("axis " + axis.name + ": again, along the measured motion");
-            auto led = look(held_by::motion, found.get());
-            const double least =
-                (open ? 1 + r.least_shrink : 1 - r.least_shrink) * (stands ? 1 : found->left_along_motion());
-            if (led->left_along_motion() < least) {
-                found = std::move(led);
-                out.notes.push_back(fmt::format(
-                    "axis {}: judged by the forces along the measured motion: models corrected by the readings "
-                    "predicted best by {}.",
-                    axis.name,
-                    stands   ? "standing where the axis moves"
-                    : little ? "answering the measured command too little"
-                             : "leaving to the corrections what no name explains"));
-            }
-        }
+        const char* why_along = along_motion(found, false);
         if (!both && detail::hides_what_the_other_shows(*found)) {
             tell("axis " + axis.name + ": again, fitted to the hold-out log");
-            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, machine.sample_period_s,
-                                                         excluded, limits, tell, held_by::readings);
+            auto exchanged = look(held_by::readings, nullptr, true);
             if (exchanged->at_floor() ||
                 detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
-                exchanged->controller = found->controller; // replayed from the log, as ever
-                exchanged->exchanged = true;
-                found = std::move(exchanged);
                 out.notes.push_back(fmt::format("axis {}: fitted to the hold-out log and judged on the log: "
                                                 "what is wrong shows in the motion of "
                                                 "the hold-out log only.",
                                                 axis.name));
+                why_along = along_motion(exchanged, true);
+                exchanged->controller = found->controller; // replayed from the log, as ever
+                exchanged->exchanged = true;
+                found = std::move(exchanged);
             }
         }
+        if (*why_along)
+            out.notes.push_back(fmt::format(
+                "axis {}: judged by the forces along the measured motion: models corrected by the readings "
+                "predicted best by {}.",
+                axis.name, why_along));
         detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);
     }
     return out;
