@@ -15,6 +15,7 @@ inline constexpr effect presliding_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "sinusoids of 15 and 450 um at 0.1 to 1 Hz, where friction gives way before it slips",
+    .of_described_friction = true,
     .shows = "hysteresis in the first ten micrometres after a reversal",
     .keys = {machine_key{.name = "presliding_length_m",
                          .rule = detail::rule::positive,

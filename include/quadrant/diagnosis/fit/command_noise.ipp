@@ -42,6 +42,29 @@ QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, 
     return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
 }
 
+QUADRANT_DIAGNOSIS_DECL double share_added_by_measurement(const std::vector<double>& innovation,
+                                                          std::span<const channel> channels, double sigma) {
+    double share = 1;
+    const auto holds = [&](double power, double assumed) {
+        if (assumed > 0) share = std::min(share, power / assumed);
+    };
+    std::vector<std::vector<double>> in_blocks;
+    for (const channel& c : channels) {
+        in_blocks.push_back(detail::block_ms(innovation, c));
+        if (!in_blocks.back().empty())
+            holds(quantile(in_blocks.back(), 0.5), c.command_noise * c.command_noise);
+    }
+    if (channels.size() < 2 || in_blocks[0].empty() || in_blocks[0].size() != in_blocks[1].size()) return share;
+    const auto between = [&](double channel::*size) {
+        return channels[0].*size * channels[0].*size - channels[1].*size * channels[1].*size;
+    };
+    for (std::size_t b = 0; b < in_blocks[0].size(); ++b) in_blocks[0][b] -= in_blocks[1][b];
+    const double inside = quantile(std::move(in_blocks[0]), 0.5);
+    holds(std::max(inside - sigma * sigma * between(&channel::noise_gain), inside / 10),
+          between(&channel::command_noise));
+    return share;
+}
+
 QUADRANT_DIAGNOSIS_DECL double white_noise_below(double bandwidth_Hz, double period) {
     std::vector<double> impulse(4001, 0.0);
     impulse[impulse.size() / 2] = 1;

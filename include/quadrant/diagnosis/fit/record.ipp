@@ -174,6 +174,13 @@ QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, 
     s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
         return lay_blocks(block, s.skip, gaps.settling, log.position.size());
     });
+    for (channel& c : s.channels)
+        for (const std::size_t first : c.first_of_block) {
+            const double creep = 2 * r.resolution / (static_cast<double>(c.mean) * period);
+            const auto v = std::span(r.velocity).subspan(first, c.block);
+            const auto rows = std::count_if(v.begin(), v.end(), [&](double x) { return std::abs(x) < creep; });
+            c.creeping.push_back(static_cast<double>(rows) / static_cast<double>(c.block));
+        }
     if (log.drive && log.drive->tapped())
         s.channels = detail::and_tap(std::move(s.channels), log.position.size());
     r.left_out = around(gaps.gap);
@@ -233,6 +240,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
                                          std::max<std::size_t>(1, (rows - s.skip) / 5));
     path.nu = score_temperature * static_cast<double>(path.block) / memory;
     path.noise_gain = path.rounding = 1;
+    path.creeping.clear();
     path.floor = std::hypot(0.4 * r.resolution, path_of_law_error(r, described));
     path.first_of_block = lay_blocks(path.block, s.skip, unjudged, rows);
     path.segment_of_block.clear();
@@ -281,6 +289,14 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
         r.command_noise = force * white_noise_below(r.bandwidth_Hz, r.period);
         for (channel& c : r.score.channels)
             c.command_noise = command_noise_in(c, force, described.mass, r.period, r.observer.pole());
+        predictor corrected = r.observer;
+        corrected.led = nullptr;
+        std::vector<double> e;
+        corrected.run(described, e);
+        const double share = std::sqrt(
+            share_added_by_measurement(e, r.score.channels, position_noise(e, r.score, r.resolution)));
+        r.command_noise *= share;
+        for (channel& c : r.score.channels) c.command_noise *= share;
     }
     if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
     if (how == held_by::motion && nearest) judge_beside_what_is_left(r, *nearest);

@@ -29,10 +29,18 @@ struct channel {
     double noise_gain = 1;             ///< rms of the means for white noise of the reading with rms 1
     double rounding =
         1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
-    double command_noise = 0;                    ///< rms of the means for the noise of a measured command [m]
+    double command_noise = 0; ///< rms of the means for the noise of a measured command [m]
+    /// Share of each block's rows in which the axis creeps: by less than two counts a mean, so that rounding is a
+    /// tone that the channel sees. Faster, rounding is noise. Empty: in all of them.
+    std::vector<double> creeping{};
     std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
 
+    /// Mean square of what rounding to counts of this size may leave in the means of a block as a tone.
+    double of_rounding(double count, std::size_t which) const {
+        const double tone = rounding * count / 2;
+        return tone * tone * (creeping.empty() ? 1.0 : creeping[which]);
+    }
     /// Mean square of what noise leaves in the means: that of the reading, of rms sigma, and of the command.
     double of_noise(double sigma) const {
         return noise_gain * sigma * (noise_gain * sigma) + command_noise * command_noise;

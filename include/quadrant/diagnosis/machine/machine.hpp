@@ -49,6 +49,8 @@ struct plant_description {
     /// Torque on a rotary axis: -gravity_torque_Nm sin(q - gravity_phase_rad).
     std::optional<double> gravity_torque_Nm, gravity_phase_rad;
     std::optional<double> load_friction; ///< growth of the Coulomb level with the transmitted force
+
+    bool describes_friction() const { return coulomb_N.value_or(0) > 0 || static_N.value_or(0) > 0; }
 };
 
 /// A load on an arm that a rotary axis turns: which part of the inertia and of the gravity torque it makes.

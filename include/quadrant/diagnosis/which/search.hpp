@@ -249,9 +249,6 @@ private:
     /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
     /// effect had moved in the machine file is as described.
     candidate taken_off(const candidate& whole, const effect* own) const;
-    /// Whether a model with as many names, commoner ones, leaves no more than another does, beside all that both
-    /// leave open: then the scores feel what neither explains.
-    bool commoner_and_as_good(const candidate& c, const candidate& than) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);

@@ -209,6 +209,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::possible(const effect& e) const {
     // What is logged behind the amplifier has passed everything that acts on the command.
     if (axis_.actuator.command_is == command_origin::measured && e.joins == joint::command) return false;
     if (e.rotary_only && axis_.kind == axis_kind::linear) return false;
+    if (e.of_described_friction && !axis_.plant.describes_friction()) return false;
     return axis_.drive.closes() ? beside_drive(e) : e.box != "drive";
 }
 
@@ -262,9 +263,11 @@ QUADRANT_DIAGNOSIS_DECL double search::noise(const candidate& c) const {
 
 QUADRANT_DIAGNOSIS_DECL double search::structure(const std::vector<double>& ms, const channel& c,
                                                  double sigma) const {
-    const double limit = 4 * (c.of_noise(sigma) + square(c.rounding * record_.resolution / 2));
     double sum = 0;
-    for (double block : ms) sum += 0.5 * c.nu * std::max(0.0, std::log(block / limit));
+    for (std::size_t b = 0; b < ms.size(); ++b) {
+        const double limit = 4 * (c.of_noise(sigma) + c.of_rounding(record_.resolution, b));
+        sum += 0.5 * c.nu * std::max(0.0, std::log(ms[b] / limit));
+    }
     return sum;
 }
 
@@ -419,14 +422,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         const candidate& whole = path.back();
         candidate kept;
         kept.total = -std::numeric_limits<double>::infinity();
-        std::vector<candidate> one_less;
-        for (const effect* out : whole.effects) one_less.push_back(without(whole, out));
-        for (const candidate& c : one_less)
-            if (c.total > kept.total) kept = c;
-        const candidate best_kept = kept;
-        for (const candidate& c : one_less)
-            if (detail::rarity(c.effects) < detail::rarity(kept.effects) && commoner_and_as_good(c, best_kept))
-                kept = c;
+        for (const effect* out : whole.effects)
+            if (auto c = without(whole, out); c.total > kept.total) kept = std::move(c);
         if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
         path.push_back(std::move(kept));
     }
@@ -645,13 +642,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool search::commoner_and_as_good(const candidate& c, const candidate& than) const {
-    if (record_.closed() || c.effects.size() != than.effects.size() || !std::isfinite(c.total) ||
-        !(detail::rarity(c.effects) < detail::rarity(than.effects)) || settled(than))
-        return false;
-    return square(held_out_force(c)) < (1 + told_apart) * square(held_out_force(than));
-}
-
 QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& next,
                                                         const candidate& best) const {
     const auto worth = [&](const candidate& c) {
@@ -667,13 +657,7 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::paying(std::vector<candidate>& 
             step->total - c.total <
                 std::max(rules_.margin, rules_.relative_margin * (c.total - calibrated_.total)))
             step = &c;
-    const candidate* commoner = step;
-    for (const candidate& c : next)
-        if (2 * (c.total - best.total) > step->total - best.total &&
-            detail::rarity(c.effects) < detail::rarity(commoner->effects) && commoner_and_as_good(c, *step) &&
-            pays(c, best))
-            commoner = &c;
-    return commoner;
+    return step;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::holds(const candidate& more, const candidate& less) {
