@@ -169,6 +169,10 @@ def differences(base, s, d):
         return out
     for which in claims(d):
         p, q = before[which], after[which]
+        # What the owner excludes still speaks against a name, and only a rotary axis has gravity: a spring is less
+        # sure there.
+        if s.rotary and which[1] == "position_spring" and q["probability"] < p["probability"]:
+            continue
         if abs(p["probability"] - q["probability"]) > 0.05:
             out.append(f"{which[1]} at {q['probability']:.3f}, was {p['probability']:.3f}")
         key, value = next(iter(p["parameters"].items()))
