@@ -44,7 +44,7 @@ axis_log<> sinusoid(const law::parameters& p, double amplitude, double count, do
     }
     return out;
 }
-bool holds(const estimate<quantity_of<signal::force>>& e, double truth) { return e.holds(truth * 1_N); }
+bool holds(const estimated<quantity_of<signal::force>>& e, double truth) { return e.holds(truth * 1_N); }
 } // namespace
 
 TEST_CASE(

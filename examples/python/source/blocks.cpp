@@ -206,7 +206,7 @@ private:
     }
     static either_loop made(const settings& s) {
         if (!s.notch_Hz) return make<plain_boxes>(s, {});
-        return make<notched_boxes>(s, {.centre = si_value<frequency>(*s.notch_Hz), .damping = s.notch_width});
+        return make<notched_boxes>(s, {.centre = si_value<frequency>(*s.notch_Hz), .width = s.notch_width});
     }
     either_loop loop_;
 };

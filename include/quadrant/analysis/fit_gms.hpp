@@ -27,7 +27,7 @@ template <std::size_t N> struct gms_fit {
 
     /// sum k_i min(way, knot_i), with its interval of 95 %: branches left out one at a time, and the curve's
     /// systematic part.
-    estimate<force> at(displacement way) const {
+    estimated<force> at(displacement way) const {
         const double x = way.value();
         double f = 0, mean = 0, squares = 0;
         for (std::size_t i = 0; i < N; ++i) f += stiffness[i].value() * std::min(x, knots[i].value());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../friction/lugre.hpp"
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "minimise.hpp"
 
 #include <algorithm>
@@ -59,9 +59,9 @@ inline lugre_passivity check_passivity(const lugre<>::parameters& p) {
 
 /// sigma0 and sigma1 of `lugre`, with intervals of 95 %.
 struct lugre_fit {
-    estimate<gain_rate_of<signal::force, signal::velocity>> stiffness; ///< sigma0
-    estimate<gain_of<signal::force, signal::velocity>> damping;        ///< sigma1
-    lugre<>::parameters friction;                                      ///< the curve given, with these
+    estimated<gain_rate_of<signal::force, signal::velocity>> stiffness; ///< sigma0
+    estimated<gain_of<signal::force, signal::velocity>> damping;        ///< sigma1
+    lugre<>::parameters friction;                                       ///< the curve given, with these
     double rms;                ///< of recorded minus simulated command, in its unit
     lugre_passivity passivity; ///< of `friction`
     bool converged;

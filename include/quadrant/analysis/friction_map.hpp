@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -36,7 +36,7 @@ private:
     };
     parts at(frequency f) const {
         return {std::polar(1.0, 2 * std::numbers::pi * f.value() * period.value()),
-                {plant.damping.value(), period.value()}};
+                {plant.viscous_rate.value(), period.value()}};
     }
 };
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 /// Blocks without exceptions: what a constructor refuses comes back as a value.
-///   auto resonance = make<notch<signal::force>>({.centre = 330_Hz, .damping = 0.4}, 500_us);
+///   auto resonance = make<notch<signal::force>>({.centre = 330_Hz, .width = 0.4}, 500_us);
 ///   if (!resonance) resonance.why().write(text, sizeof text);   // else *resonance, resonance->
 /// The rules are those of the constructor, with and without -fno-exceptions.
 namespace quadrant {

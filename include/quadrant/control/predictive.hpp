@@ -164,7 +164,7 @@ private:
         require_positive("predictive.period", period);
         require(detail::is_finite(plain(p.plant.gain)) && plain(p.plant.gain) > 0, "predictive.plant.gain",
                 p.plant.gain, "must be finite and above 0: the command has to control the axis");
-        require_not_negative("predictive.plant.damping", p.plant.damping);
+        require_not_negative("predictive.plant.viscous_rate", p.plant.viscous_rate);
         require(p.horizon >= 1 && p.horizon <= Preview, "predictive.horizon", double(p.horizon),
                 "must lie between 1 and the preview (" + detail::shortest(double(Preview)) + " periods)");
         const auto& w = p.weights.error;

@@ -221,7 +221,7 @@ requires requires(const Boxes& b) {
 auto model_of(const Boxes& b) {
     const auto drive = b.drive.model();
     return axis_model<signal::voltage, typename decltype(drive.gain)::value_type>{
-        drive.gain * b.amplifier.given().gain, drive.damping};
+        drive.gain * b.amplifier.given().gain, drive.viscous_rate};
 }
 
 } // namespace quadrant

@@ -40,7 +40,7 @@ public:
 
     velocity_pair(const parameters& p, duration period)
         : derivative_({twice(p.derivative.corner)}, period),
-          notch_({twice(p.notch.centre), twice(p.notch.damping)}, period) {}
+          notch_({twice(p.notch.centre), twice(p.notch.width)}, period) {}
 
     [[gnu::always_inline]] outcome operator()(const position& reference, const position& measured) noexcept {
         return apart(notch_(derivative_(

@@ -163,8 +163,7 @@ private:
         const filtered_derivative<signal::position, signal::velocity> speed(
             {.corner = in_si(v["velocity_filter_Hz"])}, T);
         typename boxes::velocity_notch::parameters notched;
-        if (v.has_box("notch"))
-            notched = {.centre = in_si(v["notch.frequency_Hz"]), .damping = v["notch.width"]};
+        if (v.has_box("notch")) notched = {.centre = in_si(v["notch.frequency_Hz"]), .width = v["notch.width"]};
         return {.position_loop = {{.gain = in_si(v["position_gain_per_s"])}, T},
                 .reference_velocity = speed,
                 .reference_notch = {notched, T},

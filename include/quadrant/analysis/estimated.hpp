@@ -13,7 +13,7 @@ namespace quadrant::analysis {
 using displacement = quantity_of<signal::position>;
 
 /// A number with its interval of 95 %.
-template <class Quantity> struct estimate {
+template <class Quantity> struct estimated {
     Quantity value, low, high;
     bool holds(Quantity truth) const { return low <= truth && truth <= high; }
 };
