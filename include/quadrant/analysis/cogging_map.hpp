@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One slow move in one direction: what the axis needed, and where. Samples need not be even in time or place.
 template <signal_tag Out, signal_tag In = signal::position> struct cogging_run {
@@ -188,4 +188,4 @@ cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<O
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

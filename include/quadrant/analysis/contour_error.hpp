@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A place in the plane of two axes.
 struct plane_position {
@@ -172,4 +172,4 @@ std::vector<displacement> contour_errors(Path path, const std::vector<displaceme
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

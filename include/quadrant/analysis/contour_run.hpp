@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Largest and root mean square of a signal.
 struct contour_extent {
@@ -115,4 +115,4 @@ contour_figures drive_contour(const std::vector<path::move>& moves, Axes&& axes,
     return y;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

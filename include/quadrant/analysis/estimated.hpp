@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A place or a way along an axis.
 using displacement = quantity_of<signal::position>;
@@ -70,4 +70,4 @@ inline steady_mean settle_mean(const std::vector<double>& x) {
             double(parts - 1), first, first < latest};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Fitted springs of a `maxwell_slip`, knots rising.
 template <std::size_t N> struct gms_fit {
@@ -164,4 +164,4 @@ template <std::size_t N> gms_fit<N> fit_gms(const virgin_curve& curve) {
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Whether LuGre friction can give energy away, and what to do about it.
 struct lugre_passivity {
@@ -163,4 +163,4 @@ lugre_fit fit_lugre(const std::vector<std::vector<quantity_of<Command>>>& record
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Which lines of an FRF, and how many modes.
 struct modes_fit_options {
@@ -122,4 +122,4 @@ modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& option
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Which lines of an FRF, and where to look.
 struct plant_fit_options {
@@ -136,4 +136,4 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
             fit.converged};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Fitted eq. (3.5) with intervals of 95 %.
 struct stribeck_fit {
@@ -131,4 +131,4 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

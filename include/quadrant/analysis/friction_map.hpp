@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What a run leaves: encoder and command of the same samples.
 template <signal_tag Command = signal::voltage> struct axis_log {
@@ -173,4 +173,4 @@ friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration p
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

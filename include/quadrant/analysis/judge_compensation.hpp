@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 enum class compensation_size { cannot_tell, wrong_sign, not_at_all, too_weak, right, too_strong };
 enum class compensation_time { cannot_tell, too_early, right, too_late };
@@ -229,4 +229,4 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder, tachometer and accelerometer
 /// see it at the samples: exact.
@@ -72,4 +72,4 @@ struct law_loop {
 };
 template <class Law> law_loop(Law, sampled_axis<typename Law::output>) -> law_loop<Law>;
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

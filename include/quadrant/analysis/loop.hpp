@@ -7,7 +7,7 @@
 #include <numbers>
 #include <type_traits>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Continuous-time responses of the thesis' parts, as callables. For the sampled blocks use their own
 /// response(): it has their zero-order hold not in it.
@@ -136,4 +136,4 @@ ideal_corners corners(const rigid_axis_model<Command>& plant, const pi_model<Com
     return {ws, std::sqrt(kv * ws), 0.5 * std::sqrt(ws / kv)};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

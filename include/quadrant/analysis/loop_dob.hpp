@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Q and Q/Gn of an observer in continuous time, the Q of `disturbance_observer`. For the sampled block take
 /// its q(f) and inverse(f) as two lambdas instead. [Jamaludin2008] (4.6), (4.7).
@@ -102,4 +102,4 @@ observer_limits limits(const p_pi_dob_loop<Loop, Q, Inverse>& loop, const band& 
     return {rises.empty() ? std::nullopt : std::optional(rises.front()), {1 / worst.value, worst.at}};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One structural or base mode beside the rigid axis, as its partial fraction (in time: block
 /// `flexible_modes`):
@@ -51,4 +51,4 @@ template <signal_tag Command = signal::voltage> struct flexible_axis_model {
 template <class C>
 flexible_axis_model(rigid_axis_model<C>, std::vector<flexible_mode>) -> flexible_axis_model<C>;
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

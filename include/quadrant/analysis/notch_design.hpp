@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Where to look for a peak, and what is wanted of its notch.
 struct notch_rule {
@@ -143,4 +143,4 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
         phase};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How a Q filter is judged against a measured axis.
 struct q_rule {
@@ -136,4 +136,4 @@ q_design<Observer> design_q(const measured_frf& frf, const decltype(Observer::pa
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

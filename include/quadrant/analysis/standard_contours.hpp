@@ -13,7 +13,7 @@
 
 /// The contours that feed drives are usually tried on, in the xy plane around its origin, as moves for an
 /// `interpolator`.
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Speed along a contour [m/s].
 using contour_feed = quantity<si::velocity>;
@@ -84,4 +84,4 @@ inline std::vector<path::move> butterfly_contour(quantity<si::length> size, cont
     return moves;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

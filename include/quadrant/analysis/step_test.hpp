@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How a loop answers a step.
 struct step_figures {
@@ -108,4 +108,4 @@ step_figures disturbance_step(const Law& law, const sampled_axis<typename Law::o
     return y;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -3,7 +3,7 @@
 #include "finite.hpp"
 #include "units.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A bare number, in SI, at the border to code without units; becomes whatever quantity stands on the other
 /// side:
@@ -25,4 +25,4 @@ template <class Box, class... Numbers> constexpr auto step_in_si(Box& box, Numbe
     return detail::bare(box(in_si(x)...));
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive as most drives have it: a position loop (P) asks a velocity loop (PI) for a
 /// speed.
@@ -195,4 +195,4 @@ auto place_p_pi(const axis_model<Command>& plant, const p_pi_loops& wanted, dura
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Where a `pid` takes the velocity error of its derivative part from.
 enum class derivative_from {
@@ -205,4 +205,4 @@ template <signal_tag Command> auto place_pid(const axis_model<Command>& plant, c
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive that knows what the trajectory will ask for: each sample it takes the first
 /// move of the best plan over the coming `horizon` periods, in changes of the command, so that it integrates.
@@ -194,4 +194,4 @@ private:
 };
 static_assert(retunable_law<predictive<>>);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <cstddef>
 
 /// The gains of `predictive`. Design only: runs once, may throw, does not allocate.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What an error and a change of the command cost, bare numbers in SI; only their ratios matter.
 ///   J = sum over i = 1 ... horizon of e_i' error e_i + increment du_{i-1}^2,   e = (position error, speed error)
@@ -102,4 +102,4 @@ predictive_gains<Preview, Number> design_predictive(const axis_model<Command, Nu
     return out;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive that keeps it on a sliding surface, S = 0, on which the error dies out with
 /// sliding: the inverse of the plant, a gain on S, and an estimate of the disturbance that adapts until the
@@ -178,4 +178,4 @@ auto design_sliding_mode(const axis_model<Command>& plant, const sliding_dynamic
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive on estimated states: position, velocity and disturbance from the encoder and
 /// the command that was applied (steady Kalman gain), the disturbance cancelled, the plant inverted for the
@@ -215,4 +215,4 @@ auto place_state_feedback(const axis_model<Command>& plant, const state_feedback
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

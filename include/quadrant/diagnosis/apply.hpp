@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One value of a machine file that a diagnosis changes, as JSON text.
 struct applied_change {
@@ -34,7 +34,7 @@ QUADRANT_DIAGNOSIS_DECL applied_diagnosis apply(std::string_view machine_text, s
 QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& machine, diagnosis_result d,
                                                   double at_least = 0.5);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "apply.ipp"

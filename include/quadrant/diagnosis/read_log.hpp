@@ -6,7 +6,7 @@
 #include "log/log_rows.hpp"
 #include "log/sensor_box.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -298,4 +298,4 @@ inline machine_log read_log(std::istream& in, std::string_view name) {
     return detail::log_reader(detail::read_whole(in, name), name).read();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The command that moves the nominal axis as the trajectory asks, before there is an error: mass and viscous
 /// friction.
@@ -79,4 +79,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

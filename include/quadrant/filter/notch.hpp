@@ -8,7 +8,7 @@
 
 #include <complex>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Takes one structural resonance out of a wire: zero gain at the centre, one far from it.
 ///   H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
@@ -108,4 +108,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

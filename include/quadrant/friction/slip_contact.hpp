@@ -11,7 +11,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved
 /// together with the mass that it brakes.
@@ -278,4 +278,4 @@ private:
     side forward_, backward_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

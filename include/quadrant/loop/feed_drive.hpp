@@ -17,7 +17,7 @@
 #include <limits>
 #include <tuple>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One box per part of a `feed_drive`. Write `static_assert(drive_boxes<my_drive>)` under your struct.
 template <class B>
@@ -224,4 +224,4 @@ auto model_of(const Boxes& b) {
         drive.gain * b.amplifier.given().gain, drive.viscous_rate};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 /// The blocks of two axes of one kind as one block in two lanes: the same template with another number type,
 /// and its parameters from those of both axes. An own block of a box becomes one by two overloads beside these,
 /// `in_lanes_of` and `both`.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The number type of two axes in the lanes of one register, x first.
 using xy_number = lanes_in_step<2>;
@@ -131,4 +131,4 @@ template <class Boxes> struct in_lanes {
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

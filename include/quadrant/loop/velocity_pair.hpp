@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The velocities of reference and measured position of a `milling_axis` in lanes, each by the same filtered
 /// derivative and notch: both in one number that is twice as wide.
@@ -74,4 +74,4 @@ private:
     resonance notch_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -3,7 +3,7 @@
 #include "../block/along.hpp"
 #include "table_axis.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// An xy-table: two axes of named boxes, each shaken by the acceleration of the other.
 ///   a_x = (forces of x)/M_x + into_x a_y,   a_y = (forces of y)/M_y + into_y a_x
@@ -88,4 +88,4 @@ private:
     quantity<si::mass, real> mass_x_, mass_y_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Cutting forces of known frequencies, from the position and the command applied, as a command: subtract their
 /// sum.
@@ -217,4 +217,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

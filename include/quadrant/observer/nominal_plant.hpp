@@ -9,7 +9,7 @@
 #include <numbers>
 
 /// The model that an observer compares the axis with.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Any rational plant without delay, bare numbers in SI by rising power of s (as in discretize.hpp); the
 /// highest of both not zero. Zeros is the degree of the numerator, Order - Zeros the relative degree.
@@ -42,4 +42,4 @@ template <signal_tag Command, class Number = double> struct axis_model {
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::path {
+namespace quadrant::inline v0::path {
 
 /// Reads a CL file (APT), one move at a time, three coordinates; memory does not grow with the file.
 /// Moves: FROM/ (before the first), GOTO/, GODLTA/; RAPID for the next move; FEDRAT/ with MMPM, IPM, PERMIN or
@@ -271,4 +271,4 @@ private:
     bool rapid_ = false, done_ = false;
 };
 
-} // namespace quadrant::path
+} // namespace quadrant::inline v0::path

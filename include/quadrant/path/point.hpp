@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant::path {
+namespace quadrant::inline v0::path {
 
 /// A place, a direction or a curvature in the coordinates of the machine: plain numbers in SI, because the
 /// mathematics of a path mixes its axes. Places are metres, unit tangents have no unit, curvatures are 1/m: the
@@ -34,4 +34,4 @@ inline double magnitude(point a) noexcept { return std::hypot(a.x, a.y, a.z); }
 inline double distance(point a, point b) noexcept { return magnitude(b - a); }
 constexpr bool finite(point a) noexcept { return quadrant::finite(a.x, a.y, a.z); }
 
-} // namespace quadrant::path
+} // namespace quadrant::inline v0::path

@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::path {
+namespace quadrant::inline v0::path {
 
 /// A program that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no
 /// single place is at fault. Line and column count from 1, the column in characters.
@@ -166,4 +166,4 @@ inline std::ifstream open_program(const std::string& path) {
     return in;
 }
 
-} // namespace quadrant::path
+} // namespace quadrant::inline v0::path

@@ -3,7 +3,7 @@
 #include "../block/absent.hpp"
 #include "../block/maps.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// A ripple box takes force and position, or, as `through` does, the force alone.
@@ -75,4 +75,4 @@ private:
     position deflection_{};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One mode of a machine beside its rigid axis; the same numbers as `analysis::flexible_mode`.
 template <class Number = double> struct machine_mode {
@@ -163,4 +163,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// What a stretch of path is to the speed along it: one segment, or several that follow smoothly.
 struct stretch {
@@ -146,4 +146,4 @@ private:
     std::array<part, 4> axis_{};
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// What a path asks of the three axes at one moment.
 struct path_reference {
@@ -191,4 +191,4 @@ private:
     path_reference now_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

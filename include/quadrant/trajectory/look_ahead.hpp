@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// The next moves of a path and how fast each joint may be passed, so that the speed can always come down in
 /// time: up to Window moves; beyond the last one known the path is taken to end. Moves that follow smoothly
@@ -200,4 +200,4 @@ private:
     std::optional<path::move> last_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <variant>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// d^3r/ds^3 of a piece of path [1/m^2]. Of a spline: the slope of its curvature vector, by a central
 /// difference over a thousandth of the piece.
@@ -125,4 +125,4 @@ inline bounds along_path(const path_shape& shape, double feed, const plain_limit
     return b;
 }
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -7,7 +7,7 @@
 
 #include <type_traits>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -132,4 +132,4 @@ auto with_cascade(const controller_description& c, const actuator_description& a
     return with_cascade(given_values(controllers::cascade_p_pi, c), a, period, f);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

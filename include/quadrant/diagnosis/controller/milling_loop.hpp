@@ -8,7 +8,7 @@
 
 #include <numeric>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A box that a machine file may have or not. Without it a notch passes on what comes in, another box gives
 /// nothing.
@@ -187,4 +187,4 @@ private:
     bool learns_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -434,4 +434,4 @@ inline std::string table_of_hdf5_file(std::string_view bytes, std::string_view f
     return detail::hdf5_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

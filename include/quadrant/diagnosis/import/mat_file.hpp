@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -257,4 +257,4 @@ inline std::string table_of_mat_file(std::string_view bytes, std::string_view fi
     return detail::mat_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -390,4 +390,4 @@ inline std::string table_of_parquet_file(std::string_view bytes, std::string_vie
     return detail::parquet_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 struct log_column {
     std::string name;
@@ -270,4 +270,4 @@ log_header read_header(std::string_view line, Refuse refuse, log_purpose purpose
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -76,4 +76,4 @@ template <class Loop> controller_description own_controller(Loop loop) {
     return own_controller({}, [loop = std::move(loop)](std::span<const double>) { return loop; });
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

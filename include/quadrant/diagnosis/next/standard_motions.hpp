@@ -3,7 +3,7 @@
 #include "../where/places.hpp"
 #include "motion_writer.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a machine has shown of itself in a log: the next motion asks for no more.
 struct shown_motion {
@@ -183,4 +183,4 @@ inline std::vector<planned_motion> standard_motions(const shown_motion& shown, d
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
