@@ -22,7 +22,8 @@ namespace quadrant::inline v0 {
 /// from one `axis_model`.
 /// `retune(next)`: another plant from the next step on; jump: |(1/B' - 1/B) a + (A'/B' - A/B) v|.
 /// NaN and infinities: holds the last output, raises faulted().
-/// Throws "inverse_model.gain = ...: must ...", "inverse_model.viscous_rate = ...: must ..." and for the period.
+/// Throws "inverse_model.gain = ...: must ...", "inverse_model.viscous_rate = ...: must ..." and for the
+/// period.
 /// Cost: 2 multiplications. One `proportional` on either derivative is the same in two boxes (`milling_axis`:
 /// inertia and drag). From positions alone: `sampled_inverse_model`.
 template <signal_tag Command, class Real = double> class inverse_model {
