@@ -21,7 +21,7 @@ template <std::size_t N> struct gms_fit {
     std::array<displacement, N> knots;
     std::array<gain_rate_of<signal::force, signal::velocity>, N> stiffness; ///< k_i
     double residual;                                                        ///< rms of curve minus fit [N]
-    std::string limits;                                ///< what cannot be told apart; empty: nothing
+    std::string limits;                                ///< what cannot be distinguished; empty: nothing
     std::vector<std::array<double, 2 * N>> without;    ///< knots [m], stiffness [N/m] without one branch each
     std::vector<std::pair<double, double>> systematic; ///< way [m], standard error [N]
 
@@ -143,7 +143,7 @@ template <std::size_t N> gms_fit<N> fit_gms(const virgin_curve& curve) {
         const double before = j > 0 ? out.knots[j - 1].value() : 0;
         if (j > 0 && knot - before < std::max(0.5 * curve.count.value(), 0.1 * knot))
             out.limits += "elements " + std::to_string(j) + " and " + std::to_string(j + 1) +
-                          " cannot be told apart: their knots lie within an encoder count or a tenth. ";
+                          " cannot be distinguished: their knots lie within an encoder count or a tenth. ";
     }
     const auto plain = residuals_of(force)(best.x);
     for (std::size_t i = 0; i < n; ++i) {

@@ -29,8 +29,8 @@ QUADRANT_DIAGNOSIS_DECL applied_diagnosis apply(std::string_view machine_text, s
                                                 const diagnosis_result& d, double at_least = 0.5);
 
 /// The same on a description that was read or made before, with its code: the numbers of a controller of your
-/// own are mended, and an effect of your own becomes a law of the axis. A controller of unknown kind is not in
-/// it, and so not in the result.
+/// own are corrected, and an effect of your own becomes a law of the axis. A controller of unknown kind is not
+/// in it, and so not in the result.
 QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& machine, diagnosis_result d,
                                                   double at_least = 0.5);
 

@@ -5,7 +5,7 @@
 
 namespace quadrant::inline v0 {
 
-/// An xy-table: two axes of named boxes, each shaken by the acceleration of the other.
+/// An xy-table: two axes of named boxes, each excited by the acceleration of the other.
 ///   a_x = (forces of x)/M_x + into_x a_y,   a_y = (forces of y)/M_y + into_y a_x
 /// Source: docs/formats.md (effect cross_coupling); [Jamaludin2008] chapter 2 for the table.
 /// Ports: a pair of commands [V] and a pair of external forces [N] in, the pair of readings [m] of the next

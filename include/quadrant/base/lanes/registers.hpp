@@ -16,8 +16,8 @@
 #ifdef XSIMD_HPP
 namespace quadrant::inline v0::detail {
 /// One of xsimd's sets with all extensions of the translation unit in its name: xsimd's own functions on it are
-/// then told apart by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also of
-/// exp and sin.
+/// then distinguished by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also
+/// of exp and sin.
 template <class Set, unsigned Extensions> struct lane_set : Set {};
 } // namespace quadrant::inline v0::detail
 

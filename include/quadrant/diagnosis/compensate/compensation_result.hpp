@@ -29,7 +29,7 @@ struct compensation {
     bool by_keys() const { return forces == compensated_forces{}; }
 };
 
-/// What to do about a cause that no feedforward mends.
+/// What to do about a cause that no feedforward corrects.
 struct advice {
     std::string effect, text;
 };

@@ -41,7 +41,7 @@ inline constexpr effect sample_loss{
     .prior = {0.03, "a healthy bus loses nothing; one with a bad plug or without real time does"},
     .remedy = "Repair the connection between controller and drive: plugs, shielding, real time of the host.",
     .advice = [](const plant_model&, double, std::string_view) -> std::string {
-        return "mend the transmission: which periods lose their command is not known beforehand";
+        return "repair the transmission: which periods lose their command is not known beforehand";
     },
     .trial = {.low = 0.001,
               .high = 0.2,
