@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "log/angle_wraps.hpp"
+#include "log/header_reader.hpp"
 #include "log/log.hpp"
-#include "log/log_header.hpp"
 #include "log/log_rows.hpp"
 #include "log/sensor_box.hpp"
 
