@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one binding after the other.
 // Blocks for Python: plants, friction, the cascade, frequency responses, margins. Units stand in the names.
 #include "parts.hpp"
 

@@ -63,7 +63,8 @@ template <std::size_t N> struct gms_fit {
 
 namespace detail {
 
-/// The curve as columns, each point weighed by its spread, and the model in ln(knot), ln(k knot / largest force).
+/// The curve as columns, each point weighed by its spread, and the model in ln(knot), ln(k knot / largest
+/// force).
 template <std::size_t N> struct gms_equations {
     static constexpr std::size_t places = 12; ///< that a knot may start from
     static_assert(N < places);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one overload for each comparison and each kind of number.
 #pragma once
 #include "units.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one keyword of the language after the other.
 #pragma once
 #include "cl_arc.hpp"
 #include "spline_moves.hpp"

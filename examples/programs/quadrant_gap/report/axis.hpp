@@ -42,8 +42,8 @@ inline std::string before_after(const axis_result& a, double before, double afte
     return fmt::format("{} rms before, {} after", quantity(before, unit), quantity(after, unit));
 }
 
-/// The charts of one axis, each with its words. Between two positions there is a difference where other axes have
-/// a force.
+/// The charts of one axis, each with its words. Between two positions there is a difference where other axes
+/// have a force.
 class axis_pictures {
 public:
     axis_pictures(chart_book& book, std::size_t index, const axis_result& a)

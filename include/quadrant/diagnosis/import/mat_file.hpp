@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one file format, read without its library: the structures of its specification one after the other.
 #pragma once
 #include "../text/bad_input.hpp"
 #include "inflated.hpp"
