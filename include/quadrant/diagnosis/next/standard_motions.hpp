@@ -203,9 +203,9 @@ private:
 } // namespace detail
 
 /// Motions that have distinguished effects on servo axes, each 3 to 7 units of time long
-/// (record_scales::unit()), inside the travel, velocity and acceleration that the log showed. No reversal is smaller than sixty counts.
-/// None when the log stands still. The multi-sines ask for frequencies that the log may not have had, and say
-/// which.
+/// (record_scales::unit()), inside the travel, velocity and acceleration that the log showed. No reversal is
+/// smaller than sixty counts. None when the log stands still. The multi-sines ask for frequencies that the log
+/// may not have had, and say which.
 inline std::vector<planned_motion> standard_motions(const shown_motion& shown, double period,
                                                     const record_scales& scale) {
     if (!detail::motion_planner::moves(shown, scale.unit())) return {};
