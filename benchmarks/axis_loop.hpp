@@ -38,7 +38,7 @@ inline const boxes::parameters tuning{.position_gain = 150.0 / 1_s,
                                       .acceleration_feedforward = 0.2345_V / 1_mps2,
                                       .viscous_feedforward = 0.586_V / 1_mps,
                                       .coulomb_feedforward = 0.05_V,
-                                      .notch = {.centre = 330_Hz, .damping = 0.06},
+                                      .notch = {.centre = 330_Hz, .width = 0.06},
                                       .limit = 10_V,
                                       .dac_step = 20_V / 65536.0};
 inline const machine::parameters table{.mass = 340_kg,

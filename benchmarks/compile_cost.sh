@@ -58,6 +58,8 @@ fi
 cat <<END
 # Cost of compiling
 
+For whoever waits for a compiler. You get what each header adds to a compilation.
+
 Processor seconds of one compilation, the fastest of $runs, and the lines that the compiler reads (comments and blank lines
 not counted). $(g++ --version | head -n 1), $(clang++ --version | head -n 1). Written by
 \`sh benchmarks/compile_cost.sh >docs/compile_cost.md\`; a test fails when quadrant.hpp reads a tenth more lines than here.

@@ -88,7 +88,7 @@ template <class... Boxes> auto axis() {
     p.velocity_gain = 60_V / 1_mps;
     p.velocity_integral = 450_V / 1_m;
     p.estimator_corner = 150_Hz;
-    p.notch = {.centre = 330_Hz, .damping = 0.06};
+    p.notch = {.centre = 330_Hz, .width = 0.06};
     p.plant_gain = 4.526_mps2 / 1_V;
     p.plant_pole = 28.57 / 1_s;
     p.limit = 10_V;

@@ -12,6 +12,7 @@ namespace {
 
 using namespace quadrant;
 using namespace quadrant::literals;
+using namespace quadrant::path;
 using namespace quadrant::trajectory;
 
 move at_feed(const segment& path, double feed) {

@@ -36,7 +36,7 @@ xy_parameters<int(Learning), int(Smoothing)> in_doubles(const thesis::axis& axis
     d.velocity_integral = p.velocity_integral.value();
     d.estimator_corner = p.estimator_corner.value();
     d.notch_centre = p.notch.centre.value();
-    d.notch_damping = p.notch.damping;
+    d.notch_damping = p.notch.width;
     d.plant_gain = p.plant_gain.value();
     d.plant_pole = p.plant_pole.value();
     d.limit = p.limit.value();

@@ -36,7 +36,7 @@ const boxes::parameters tuning{.position_gain = 150.0 / 1_s,
                                .acceleration_feedforward = 340_kg / (1450_N / 1_V),
                                .viscous_feedforward = 950_N / 1_mps / (1450_N / 1_V),
                                .coulomb_feedforward = 122_N / (1450_N / 1_V),
-                               .notch = {.centre = 330_Hz, .damping = 0.06},
+                               .notch = {.centre = 330_Hz, .width = 0.06},
                                .limit = 10_V,
                                .dac_step = 20_V / 65536.0};
 const stribeck<>::parameters friction{

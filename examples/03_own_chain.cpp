@@ -28,7 +28,7 @@ using voltage = quantity<si::electric_potential>;
 
 // Parameters as named constants: a wrong unit is reported on its own line.
 const filtered_derivative<signal::position, signal::velocity>::parameters corner{150_Hz}; // 942.5 rad/s
-const notch<signal::velocity>::parameters structure{.centre = 330_Hz, .damping = 0.06};
+const notch<signal::velocity>::parameters structure{.centre = 330_Hz, .width = 0.06};
 const proportional<signal::position, signal::velocity>::parameters kv{150.0 / 1_s};
 const proportional_integral<signal::velocity, signal::voltage>::parameters pi_x{
     .gain = 60_V / 1_mps, .integral_gain = 450_V / 1_m, .limit = 10_V};

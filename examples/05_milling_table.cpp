@@ -40,9 +40,9 @@ struct choice { // of the memory
 /// L inverts the closed loop of the model, observer and all; Q keeps it from frequencies that the model does
 /// not know.
 memory::parameters learned(const axis& a, const choice& c) {
-    const analysis::axis_model<> g{a.A_gms, a.B, a.delay}, nominal{a.A_gms, a.B, 0_s};
+    const analysis::rigid_axis_model<> g{a.A_gms, a.B, a.delay}, nominal{a.A_gms, a.B, 0_s};
     const analysis::q_model<> d{a.corner};
-    const analysis::p_pi_dob_loop loop{loop_around(g, a), d, analysis::inverse_model{d, nominal}};
+    const analysis::p_pi_dob_loop loop{loop_around(g, a), d, analysis::q_inverse_model{d, nominal}};
     const auto closed = [&](frequency f) { return loop.tracking(f); };
     const auto whole = analysis::up_to_nyquist(period);
     const auto q = analysis::smoothing_filter<61>(200_Hz, period);

@@ -22,7 +22,7 @@ boxes::parameters tuning(double notch_hz) {
             .acceleration_feedforward = in_si(0.2345),
             .viscous_feedforward = in_si(0.586),
             .coulomb_feedforward = in_si(0.084),
-            .notch = {.centre = in_si(notch_hz), .damping = 0.06},
+            .notch = {.centre = in_si(notch_hz), .width = 0.06},
             .limit = in_si(10)};
 }
 } // namespace

@@ -37,7 +37,7 @@ const boxes::parameters soft{.position_gain = 80.0 / 1_s,
                              .velocity_feedforward = 1,
                              .acceleration_feedforward = 340_kg / (1450_N / 1_V),
                              .viscous_feedforward = 950_N / 1_mps / (1450_N / 1_V),
-                             .notch = {.centre = 330_Hz, .damping = 0.06},
+                             .notch = {.centre = 330_Hz, .width = 0.06},
                              .limit = 10_V};
 boxes::parameters with(per_second kv, boxes::parameters p) {
     p.position_gain = kv;

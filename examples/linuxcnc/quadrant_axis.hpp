@@ -41,7 +41,7 @@ public:
             field<p>("velocity-integral", 0, [](p& s) { return &s.box.velocity_integral; }),
             field<p>("estimator-corner", 150, [](p& s) { return &s.box.estimator_corner; }),
             field<p>("notch-centre", 330, [](p& s) { return &s.box.notch.centre; }),
-            field<p>("notch-damping", 0.06, [](p& s) { return &s.box.notch.damping; }),
+            field<p>("notch-width", 0.06, [](p& s) { return &s.box.notch.width; }),
             field<p>("plant-gain", 1, [](p& s) { return &s.box.plant_gain; }),
             field<p>("plant-pole", 0, [](p& s) { return &s.box.plant_pole; }),
             field<p>("friction-coulomb", 0, [](p& s) { return &s.box.friction.coulomb; }),
@@ -162,15 +162,15 @@ private:
             box.memory.ahead = ahead;
             return p;
         }
-        const analysis::axis_model<> axis{box.plant_pole, box.plant_gain, p.delay + 0.5 * period},
+        const analysis::rigid_axis_model<> axis{box.plant_pole, box.plant_gain, p.delay + 0.5 * period},
             nominal{box.plant_pole, box.plant_gain, duration()};
         const analysis::p_pi_loop inner{
             axis, analysis::pi_model<>{box.velocity_gain, box.velocity_integral},
             analysis::in_series{analysis::derivative_model{box.estimator_corner},
-                                analysis::notch_model{box.notch.centre, box.notch.damping}},
+                                analysis::notch_model{box.notch.centre, box.notch.width}},
             box.position_gain};
         const analysis::q_model<> q{box.disturbance.corner};
-        const analysis::p_pi_dob_loop observed{inner, q, analysis::inverse_model{q, nominal}};
+        const analysis::p_pi_dob_loop observed{inner, q, analysis::q_inverse_model{q, nominal}};
         const auto closed = [&](quadrant::frequency f) {
             return box.disturbance.on != 0 ? observed.tracking(f) : inner.tracking(f);
         };

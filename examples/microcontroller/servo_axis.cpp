@@ -28,7 +28,7 @@ int servo_axis_init(int axis, const servo_tuning* t, double period_s) {
     p.velocity_gain = in_si(t->velocity_gain);
     p.velocity_integral = in_si(t->velocity_integral);
     p.estimator_corner = in_si(t->estimator_corner);
-    p.notch = {.centre = in_si(t->notch_centre), .damping = 0.06};
+    p.notch = {.centre = in_si(t->notch_centre), .width = 0.06};
     p.limit = in_si(t->limit);
     return axes[axis].make(p, in_si(period_s));
 }

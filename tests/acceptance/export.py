@@ -53,7 +53,7 @@ expect(joints == [("0", "x"), ("1", "y"), ("2", "c")], f"joints in the order of 
 ini, hal = text.split("# --- HAL file ---")
 entries = dict(re.findall(r"^([A-Z_]+) = (\S+)$", ini.split("[JOINT_1]")[0], re.M))
 pins = {k: float(v) for k, v in re.findall(r"quadrant-axis\.0\.(\S+)\s+(\S+)", hal)}
-truth = {"position-gain": kp, "velocity-gain": kv, "velocity-integral": ki, "notch-centre": 300, "notch-damping": 0.1, "plant-gain": kf / m,
+truth = {"position-gain": kp, "velocity-gain": kv, "velocity-integral": ki, "notch-centre": 300, "notch-width": 0.1, "plant-gain": kf / m,
          "plant-pole": b / m, "friction-coulomb": c / kf, "friction-static": s / kf, "friction-velocity": 0.003, "delay": 0.0005}
 expect(set(pins) == set(truth) and all(near(pins[k], v) for k, v in truth.items()), f"pins of quadrant_axis: {pins}")
 expect(all(near(float(entries[k.upper().replace("-", "_")]), v) for k, v in truth.items()), "the same in the INI file")

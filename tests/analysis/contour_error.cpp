@@ -11,11 +11,11 @@ using namespace quadrant::literals;
 using namespace quadrant::analysis;
 
 namespace {
-place at(double x_mm, double y_mm) { return {x_mm * 1e-3 * 1_m, y_mm * 1e-3 * 1_m}; }
+plane_position at(double x_mm, double y_mm) { return {x_mm * 1e-3 * 1_m, y_mm * 1e-3 * 1_m}; }
 double mm(displacement d) { return 1e3 * d.value(); }
 
-std::vector<place> sampled_circle(double radius_mm, std::size_t n) {
-    std::vector<place> out;
+std::vector<plane_position> sampled_circle(double radius_mm, std::size_t n) {
+    std::vector<plane_position> out;
     for (std::size_t i = 0; i <= n; ++i) {
         const double a = 2 * std::numbers::pi * double(i) / double(n);
         out.push_back(at(radius_mm * std::cos(a), radius_mm * std::sin(a)));
@@ -23,7 +23,7 @@ std::vector<place> sampled_circle(double radius_mm, std::size_t n) {
     return out;
 }
 /// A figure of eight, which crosses itself at zero, not where it starts.
-place eight(double t) { return at(30 * std::sin(t + 0.7), 15 * std::sin(2 * t + 1.4)); }
+plane_position eight(double t) { return at(30 * std::sin(t + 0.7), 15 * std::sin(2 * t + 1.4)); }
 } // namespace
 
 TEST_CASE("contour error: of a line, left of the motion positive") {
@@ -57,7 +57,7 @@ TEST_CASE("contour error: a sampled circle is off by no more than s^2/(8 R), wha
 }
 TEST_CASE("contour error: the same as the nearest of a hundred thousand places of a crossing path, and stays "
           "on its branch") {
-    std::vector<place> places, fine;
+    std::vector<plane_position> places, fine;
     for (int i = 0; i <= 4000; ++i) places.push_back(eight(2 * std::numbers::pi * i / 4000));
     for (int i = 0; i <= 100000; ++i) fine.push_back(eight(2 * std::numbers::pi * i / 100000));
     sampled_path path(places, 2_mm);
@@ -66,7 +66,7 @@ TEST_CASE("contour error: the same as the nearest of a hundred thousand places o
     double last = 0;
     for (int k = 0; k <= 600; ++k) {
         const double t = 2 * std::numbers::pi * k / 600;
-        const place here{eight(t).x + off(random) * 1e-3 * 1_m, eight(t).y + off(random) * 1e-3 * 1_m};
+        const plane_position here{eight(t).x + off(random) * 1e-3 * 1_m, eight(t).y + off(random) * 1e-3 * 1_m};
         const auto found = path(here);
         if (k > 0)
             CHECK(std::abs(std::remainder(mm(found.travelled) - last, mm(path.length()))) <
@@ -74,7 +74,8 @@ TEST_CASE("contour error: the same as the nearest of a hundred thousand places o
         last = mm(found.travelled);
         double nearest = HUGE_VAL; // of the branch
         for (int i = -2000; i <= 2000; ++i) {
-            const place& p = fine[std::size_t((100000 + int(std::lround(k * 100000 / 600.)) + i) % 100000)];
+            const plane_position& p =
+                fine[std::size_t((100000 + int(std::lround(k * 100000 / 600.)) + i) % 100000)];
             nearest = std::min(nearest, std::hypot(mm(p.x - here.x), mm(p.y - here.y)));
         }
         CHECK(std::abs(std::abs(mm(found.error)) - nearest) < 1.4e-3); // half the way between two of the many
@@ -82,7 +83,7 @@ TEST_CASE("contour error: the same as the nearest of a hundred thousand places o
 }
 TEST_CASE(
     "contour error: outside of a sharp corner the side is the outside, and beyond an end the distance to it") {
-    const std::vector<place> hook{at(0, 0), at(10, 0), at(0, 2)}; // turns left by 169 degrees
+    const std::vector<plane_position> hook{at(0, 0), at(10, 0), at(0, 2)}; // turns left by 169 degrees
     CHECK(mm(sampled_path(hook, 1_mm)(at(11, 0.05)).error) == doctest::Approx(-std::hypot(1, 0.05)));
     CHECK(mm(sampled_path(hook, 1_mm)(at(11, -0.05)).error) == doctest::Approx(-std::hypot(1, 0.05)));
     CHECK(mm(sampled_path(hook, 1_mm)(at(5, 0.1)).error) == doctest::Approx(0.1));
@@ -103,7 +104,7 @@ TEST_CASE(
         // reference at (R, 0), moving to +y (left turn) or -y; measured behind by lag along the circle, inside
         // by 4 um
         const double a = -way * lag / R, r = R - true_error;
-        const place reference = at(R, 0), measured = at(r * std::cos(a), r * std::sin(a));
+        const plane_position reference = at(R, 0), measured = at(r * std::cos(a), r * std::sin(a));
         const auto line = estimated_contour_error(reference, measured, 0_mps, way * 0.1 * 1_mps);
         const auto curved =
             estimated_contour_error(reference, measured, 0_mps, way * 0.1 * 1_mps, way * 30.0 * 1_mm);

@@ -14,7 +14,7 @@ namespace qa = quadrant::analysis;
 using qa::hertz;
 
 namespace {
-const qa::axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.4_ms};
+const qa::rigid_axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.4_ms};
 const qa::flexible_axis_model<> truth{rigid, {{47_Hz, 0.03, 0.15}, {312_Hz, 0.015, -0.08}}};
 
 /// The model with a relative error of `spread` on every line, 2 Hz apart.
@@ -68,7 +68,7 @@ TEST_CASE("fit_modes: intervals of 95 % hold the truth in 95 of 100 fits, and th
             qa::fit_modes<>(noisy(truth, 0.03, seed), {.from = 4_Hz, .to = 450_Hz, .most_modes = 3});
         if (fit.modes.size() != 2) continue;
         ++right;
-        hits += fit.pole.holds(rigid.pole) + fit.gain.holds(rigid.gain) + fit.delay.holds(rigid.delay);
+        hits += fit.pole.holds(rigid.viscous_rate) + fit.gain.holds(rigid.gain) + fit.delay.holds(rigid.delay);
         for (std::size_t i = 0; i < 2; ++i)
             hits += fit.modes[i].centre.holds(truth.modes[i].centre) +
                     fit.modes[i].damping.holds(truth.modes[i].damping) +

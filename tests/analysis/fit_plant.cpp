@@ -14,9 +14,9 @@ using namespace quadrant::literals;
 using namespace quadrant::analysis;
 
 namespace {
-const axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, y{20.0 / 1_s, 8.916_mps2 / 1_V, 0.65_ms};
+const rigid_axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, y{20.0 / 1_s, 8.916_mps2 / 1_V, 0.65_ms};
 /// The model with a relative error of `spread` on every line, 1 Hz apart.
-measured_frf noisy(const axis_model<>& g, double spread, unsigned seed, double sign = 1) {
+measured_frf noisy(const rigid_axis_model<>& g, double spread, unsigned seed, double sign = 1) {
     std::mt19937 random(seed);
     std::normal_distribution<double> gauss;
     measured_frf out{{}, 100};
@@ -34,7 +34,7 @@ TEST_CASE("fit_plant: gives back the thesis' axes from their own response") {
     for (const auto& g : {x, y}) {
         const auto fit = fit_plant<>(noisy(g, 0, 1), {.from = 2_Hz, .to = 250_Hz});
         CHECK(fit.converged);
-        CHECK(fit.pole.value.value() == doctest::Approx(g.pole.value()).epsilon(1e-6));
+        CHECK(fit.pole.value.value() == doctest::Approx(g.viscous_rate.value()).epsilon(1e-6));
         CHECK(fit.gain.value.value() == doctest::Approx(g.gain.value()).epsilon(1e-6));
         CHECK(fit.delay.value.value() == doctest::Approx(g.delay.value()).epsilon(1e-6).scale(0));
         CHECK(fit.residual < 1e-9);
@@ -46,14 +46,14 @@ TEST_CASE("fit_plant: the intervals of 95 % hold the truth in 95 of 100 fits") {
     for (unsigned seed = 1; seed <= 200; ++seed) {
         const auto fit = fit_plant<>(noisy(x, 0.02, seed), {.from = 2_Hz, .to = 250_Hz});
         CHECK(fit.converged);
-        a += holds(fit.pole, x.pole), b += holds(fit.gain, x.gain), t += holds(fit.delay, x.delay);
+        a += holds(fit.pole, x.viscous_rate), b += holds(fit.gain, x.gain), t += holds(fit.delay, x.delay);
         surprise += fit.surprise / 200;
     }
     for (const int hits : {a, b, t}) CHECK((hits >= 180 && hits <= 199)); // 190 +- 3 standard deviations of 3.1
     CHECK(surprise == doctest::Approx(1).epsilon(0.05));
 }
 TEST_CASE("fit_plant: long delays are found though the phase turns many times") {
-    const axis_model<> late{5.0 / 1_s, 4.526_mps2 / 1_V, 9.3_ms}; // 2.3 turns at 250 Hz
+    const rigid_axis_model<> late{5.0 / 1_s, 4.526_mps2 / 1_V, 9.3_ms}; // 2.3 turns at 250 Hz
     const auto fit = fit_plant<>(noisy(late, 0.02, 4), {.from = 2_Hz, .to = 250_Hz, .longest_delay = 12_ms});
     CHECK(fit.delay.value.value() == doctest::Approx(9.3e-3).epsilon(0.01).scale(0));
 }

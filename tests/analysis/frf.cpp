@@ -18,7 +18,7 @@ using namespace quadrant::analysis;
 namespace {
 const duration T = 500_us;
 using resonance = notch<signal::force>;
-const resonance::parameters dip{.centre = 330_Hz, .damping = 0.5};
+const resonance::parameters dip{.centre = 330_Hz, .width = 0.5};
 using force = signal::force;
 } // namespace
 

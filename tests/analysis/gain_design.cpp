@@ -91,7 +91,7 @@ TEST_CASE("design_gains: what comes back keeps the margins, and in time the loop
 }
 TEST_CASE(
     "design_gains: on the thesis' x model more gain than the thesis' comes out, at the margins asked for") {
-    const qa::axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
+    const qa::rigid_axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
     const auto feedback = [](quadrant::frequency f) { return qa::derivative_model{150_Hz}(f); };
     const auto d =
         qa::design_gains(x, feedback, {0.5_Hz, 900_Hz}, {.velocity = {12, 50, 0.6}, .position = {12, 60, 0.6}});
@@ -110,7 +110,7 @@ TEST_CASE("design_gains: margins that no gain keeps are refused by name, bad wis
     const auto feedback = [](quadrant::frequency f) { return qa::laplace(f); };
     const qa::band b{0.5_Hz, 400_Hz, 100};
     // 1/(s + 1) and 200 ms: at the band's begin 72 - 36 degrees behind, margin 72, and less above.
-    const qa::axis_model<> late{1_per_s, 1_mps2 / 1_V, 200_ms};
+    const qa::rigid_axis_model<> late{1_per_s, 1_mps2 / 1_V, 200_ms};
     try {
         qa::design_gains(late, feedback, {0.5_Hz, 20_Hz, 100}, {.velocity = {.phase = 80}});
         FAIL("was not refused");
@@ -119,7 +119,7 @@ TEST_CASE("design_gains: margins that no gain keeps are refused by name, bad wis
         CHECK(what.find("design_gains.velocity_gain = ") == 0);
         CHECK(what.find("no gain keeps all margins; the lowest tried still breaks: ") != std::string::npos);
     }
-    const qa::axis_model<> g{10_per_s, 1_mps2 / 1_V, 1_ms};
+    const qa::rigid_axis_model<> g{10_per_s, 1_mps2 / 1_V, 1_ms};
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.velocity = {.gain = 0}}), invalid_parameter);
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.position = {.phase = 180}}), invalid_parameter);
     CHECK_THROWS_AS(qa::design_gains(g, feedback, b, {.position = {.modulus = 1}}), invalid_parameter);

@@ -22,7 +22,7 @@ const an::sampled_axis<> axis{plant, 1_ms};
 template <class Law> struct running {
     Law law;
     double bend = 0;
-    viscous_step<> way{plant.damping.value(), 1e-3};
+    viscous_step<> way{plant.viscous_rate.value(), 1e-3};
     double x = 0, v = 0;
 
     void rest() {

@@ -23,7 +23,7 @@ namespace an = quadrant::analysis;
 namespace {
 const axis_model<signal::voltage> plant = vcnc::model(vcnc::x_axis);
 const an::sampled_axis<> axis{plant, 1_ms};
-an::sampled_axis<> stronger(double by) { return {{plant.gain * by, plant.damping}, 1_ms}; }
+an::sampled_axis<> stronger(double by) { return {{plant.gain * by, plant.viscous_rate}, 1_ms}; }
 an::contour_options limits() {
     const auto free = trajectory::motion_limits{};
     return {.limits = {{free, free, free}, {0.2_mps, 2_mps2, 50.0 * 1_mps2 / 1_s}}};
@@ -128,7 +128,7 @@ TEST_CASE("designed laws: margins and bandwidths as the docs have them") {
 }
 TEST_CASE(
     "standard contours: closed, of the length that they should have, and the butterfly lies on its equation") {
-    const auto length = [](const std::vector<move>& moves) {
+    const auto length = [](const std::vector<quadrant::path::move>& moves) {
         double sum = 0;
         for (std::size_t i = 0; i < moves.size(); ++i) {
             sum += moves[i].path.length();
@@ -142,8 +142,8 @@ TEST_CASE(
     const auto butterfly = an::butterfly_contour(10_mm, feed);
     CHECK(length(butterfly) > 0.3);
     double off = 0;
-    for (const move& m : butterfly) {
-        const point p = m.path.position(0.5 * m.path.length());
+    for (const quadrant::path::move& m : butterfly) {
+        const quadrant::path::point p = m.path.position(0.5 * m.path.length());
         const double t = std::atan2(p.x, p.y);
         double least = HUGE_VAL; // r may be below zero: the same ray from the other side
         for (const double angle : {t, t + std::numbers::pi})
@@ -163,7 +163,7 @@ TEST_CASE(
         const auto exact = an::drive_contour(
             moves,
             [](const auto& x, const auto& y) {
-                return an::place{x.position, y.position};
+                return an::plane_position{x.position, y.position};
             },
             how, 1_ms);
         const bool rounded = moves.front().tolerance > 0;
@@ -173,7 +173,7 @@ TEST_CASE(
         const auto shifted = an::drive_contour(
             moves,
             [](const auto& x, const auto& y) {
-                return an::place{x.position + 10_um, y.position};
+                return an::plane_position{x.position + 10_um, y.position};
             },
             how, 1_ms);
         CHECK(shifted.x.most.value() == doctest::Approx(10e-6).epsilon(1e-6).scale(0));
@@ -187,7 +187,7 @@ TEST_CASE("drive_contour: an axis that is late by n periods is inside the circle
           "over R; "
           "told of it as a preview it is not") {
     const auto late = [](std::size_t n, std::size_t lead) {
-        std::deque<an::place> past;
+        std::deque<an::plane_position> past;
         auto how = limits();
         how.lead = lead;
         return an::drive_contour(
@@ -227,7 +227,7 @@ TEST_CASE("drive_contour: the diamond of the virtual machine gives the errors of
     const auto f = an::drive_contour(
         an::diamond_contour(50_mm, feed),
         [&](const auto& rx, const auto& ry) {
-            const an::place now{x2.place() * 1_m, y2.place() * 1_m};
+            const an::plane_position now{x2.place() * 1_m, y2.place() * 1_m};
             x2.step(rx), y2.step(ry);
             return now;
         },

@@ -19,7 +19,7 @@ const axis x{28.57, 4.526, 60, 450, 4.3e6, 125.7, 60}, y{20, 8.916, 30, 250, 3.4
 
 auto loop_of(const axis& a) {
     const double w = std::sqrt(a.notch);
-    return qa::p_pi_loop{qa::axis_model<>{a.A / 1_s, a.B * 1_mps2 / 1_V, 0.65_ms},
+    return qa::p_pi_loop{qa::rigid_axis_model<>{a.A / 1_s, a.B * 1_mps2 / 1_V, 0.65_ms},
                          qa::pi_model<>{a.kp * 1_V / 1_mps, a.ki * 1_V / 1_m},
                          qa::in_series{qa::derivative_model{hertz(942.5 / (2 * std::numbers::pi))},
                                        qa::notch_model{hertz(w / (2 * std::numbers::pi)), a.width / w}},
@@ -27,8 +27,8 @@ auto loop_of(const axis& a) {
 }
 auto with_observer(const axis& a) {
     const qa::q_model<2, 0> q{hertz(a.corner)};
-    const qa::axis_model<> nominal{a.A / 1_s, a.B * 1_mps2 / 1_V, 0_s};
-    return qa::p_pi_dob_loop{loop_of(a), q, qa::inverse_model{q, nominal}};
+    const qa::rigid_axis_model<> nominal{a.A / 1_s, a.B * 1_mps2 / 1_V, 0_s};
+    return qa::p_pi_dob_loop{loop_of(a), q, qa::q_inverse_model{q, nominal}};
 }
 void near(double ours, double reference) {
     CAPTURE(reference);
@@ -82,9 +82,9 @@ TEST_CASE("loop with observer: an observer that does nothing changes nothing") {
     CHECK_FALSE(qa::limits(loop, servo).helps_up_to);
 }
 TEST_CASE("loop with observer: on an axis that is its own nominal plant a push leaves 1 - Q of itself") {
-    const qa::axis_model<> nominal{28.57 / 1_s, 4.526_mps2 / 1_V, 0_s};
+    const qa::rigid_axis_model<> nominal{28.57 / 1_s, 4.526_mps2 / 1_V, 0_s};
     const qa::q_model<3, 1> q{50_Hz};
-    const qa::observed_axis axis{nominal, q, qa::inverse_model{q, nominal}};
+    const qa::observed_axis axis{nominal, q, qa::q_inverse_model{q, nominal}};
     for (const double f : {1.0, 30.0, 333.0}) {
         CHECK(std::abs(axis.rejection(hertz(f)) - (1.0 - q(hertz(f)))) < 1e-12);
         CHECK(std::abs(axis(hertz(f)) / nominal(hertz(f)) - 1.0) < 1e-12);

@@ -16,7 +16,7 @@ public:
     modal_axis(const quadrant::analysis::flexible_axis_model<>& g, double period)
         : h_(period / parts), b_(g.rigid.gain.value()),
           late_(std::size_t(std::lround(g.rigid.delay.value() / h_)) + 1, 0.0) {
-        parts_.push_back(rigid(g.rigid.pole.value(), h_));
+        parts_.push_back(rigid(g.rigid.viscous_rate.value(), h_));
         for (const auto& m : g.modes) parts_.push_back(oscillator(m, h_));
     }
     /// One period with the command u [V]; returns the position [m] at its end.

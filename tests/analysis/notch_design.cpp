@@ -15,7 +15,7 @@ using velocity = quadrant::signal::velocity;
 
 namespace {
 const quadrant::duration T = 500_us;
-const qa::axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
+const qa::rigid_axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
 /// Lines 1 Hz apart, as a window of 2048 samples at 2 kHz gives.
 qa::measured_frf of(const qa::flexible_axis_model<>& g) {
     qa::measured_frf out{{}, 1};
@@ -82,7 +82,7 @@ TEST_CASE("design_notch: drift widens it") {
     auto wide = rule;
     wide.drift = 0.05;
     const auto d = qa::design_notch<velocity>(of(g), T, rule), e = qa::design_notch<velocity>(of(g), T, wide);
-    CHECK(e.parameters.damping > 2 * d.parameters.damping);
+    CHECK(e.parameters.width > 2 * d.parameters.width);
     CHECK(e.low.value() == doctest::Approx(0.95 * e.parameters.centre.value()));
 }
 TEST_CASE("design_notch: refuses what the response forbids, each by its rule") {

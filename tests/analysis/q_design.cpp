@@ -20,7 +20,7 @@ namespace {
 const quadrant::duration T = 500_us;
 using observer = quadrant::disturbance_observer<s::voltage>;
 const quadrant::axis_model<s::voltage> nominal{4.526_mps2 / 1_V, 28.57 / 1_s};
-const qa::axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
+const qa::rigid_axis_model<> rigid{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
 const qa::q_rule half{.margin = 0.5, .from = 1_Hz, .to = 900_Hz};
 
 qa::measured_frf of(const auto& g) { return qa::as_measured(g, {1_Hz, 900_Hz, 200}); }
@@ -61,7 +61,7 @@ TEST_CASE("design_q: over many axes the corner it gives keeps the rule and the o
         CAPTURE(i);
         const double gain = between(0.8, 1.25), delay = between(0.3, 1.5), base = between(30, 60),
                      heavy = between(0.02, 0.2), twist = between(-0.1, 0.1);
-        const qa::flexible_axis_model<> g{{rigid.pole, gain * rigid.gain, delay * 1_ms},
+        const qa::flexible_axis_model<> g{{rigid.viscous_rate, gain * rigid.gain, delay * 1_ms},
                                           {{hertz(base), 0.05, heavy}, {320_Hz, 0.02, twist}}};
         const qa::q_rule whole{.margin = 0.9, .from = 1_Hz, .to = 900_Hz};
         const auto d = qa::design_q<observer>(of(g), nominal, T, whole);
@@ -143,7 +143,7 @@ TEST_CASE("design_q: in time the observer that it gives is stable on the measure
         CAPTURE(i);
         const double gain = between(0.8, 1.25), delay = between(0.2, 0.9), base = between(30, 60),
                      heavy = between(0.05, 0.2), twist = between(-0.1, 0.1);
-        const qa::flexible_axis_model<> g{{rigid.pole, gain * rigid.gain, delay * 1_ms},
+        const qa::flexible_axis_model<> g{{rigid.viscous_rate, gain * rigid.gain, delay * 1_ms},
                                           {{hertz(base), 0.05, heavy}, {320_Hz, 0.02, twist}}};
         const auto d =
             qa::design_q<observer>(measured(g, T), nominal, T, {.margin = 0.9, .from = 2_Hz, .to = 955_Hz});

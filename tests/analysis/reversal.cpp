@@ -85,7 +85,7 @@ struct gms_friction {
 };
 /// Position per volt of the nominal loop, B off by so much.
 auto nominal(double off = 0.95) {
-    const analysis::axis_model<> plant{x.A_gms, off * x.B, x.delay};
+    const analysis::rigid_axis_model<> plant{x.A_gms, off * x.B, x.delay};
     return [loop = loop_around(plant, x)](frequency f) {
         return loop.compliance(f, gain_of<signal::force, signal::voltage>::from_value(1));
     };

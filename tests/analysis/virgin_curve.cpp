@@ -44,7 +44,7 @@ axis_log<> sinusoid(const law::parameters& p, double amplitude, double count, do
     }
     return out;
 }
-bool holds(const estimate<quantity_of<signal::force>>& e, double truth) { return e.holds(truth * 1_N); }
+bool holds(const estimated<quantity_of<signal::force>>& e, double truth) { return e.holds(truth * 1_N); }
 } // namespace
 
 TEST_CASE(
@@ -140,7 +140,7 @@ TEST_CASE("fit_gms: two knots within a tenth are said to be one") {
     }
     curve.branches.assign(3, branch);
     const auto fit = fit_gms<3>(curve);
-    CHECK(fit.limits.find("cannot be told apart") != std::string::npos);
+    CHECK(fit.limits.find("cannot be distinguished") != std::string::npos);
     CHECK(fit.at(6.15_um).value.value() == doctest::Approx(60 + 36 + 5 * 6.15).epsilon(0.01));
     const auto two = fit_gms<2>(curve); // and two springs do
     CHECK(two.limits.empty());

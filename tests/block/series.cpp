@@ -20,7 +20,7 @@ using other = lowpass<signal::force>;
 using amplifier = limiter<signal::force>;
 
 namespace {
-const one::parameters resonance{.centre = 330_Hz, .damping = 0.06};
+const one::parameters resonance{.centre = 330_Hz, .width = 0.06};
 const other::parameters noise{.corner = 200_Hz};
 const amplifier::parameters limit{.low = -50_N, .high = 50_N};
 } // namespace

@@ -11,9 +11,9 @@
 #include <random>
 
 using namespace quadrant_cnc;
-using quadrant::arc;
-using quadrant::line;
-using quadrant::spline;
+using quadrant::path::arc;
+using quadrant::path::line;
+using quadrant::path::spline;
 
 namespace {
 
@@ -167,7 +167,7 @@ TEST_CASE("gap machine: mass, force and friction of the x axis along the table")
     const auto& x = machine.axes[0].plant;
     const auto model = vcnc::model(vcnc::x_axis); // from the drive itself
     CHECK(x.force_constant_N_per_V / x.mass_kg == doctest::Approx(model.gain.value()));
-    CHECK(x.viscous_N_s_per_m / x.mass_kg == doctest::Approx(model.damping.value()));
+    CHECK(x.viscous_N_s_per_m / x.mass_kg == doctest::Approx(model.viscous_rate.value()));
     const double radius = 0.01 / (2 * pi); // a newton on the table is so many newton metres
     CHECK(*x.coulomb_N * (1 + *x.coulomb_asymmetry) * radius == doctest::Approx(2.1529));
     CHECK(*x.coulomb_N * (1 - *x.coulomb_asymmetry) * radius == doctest::Approx(1.4730));

@@ -12,7 +12,7 @@
 int main() {
     using namespace quadrant;
     using namespace quadrant::literals;
-    notch<signal::force> resonance({.centre = 330_Hz, .damping = 0.4}, 500_us);
+    notch<signal::force> resonance({.centre = 330_Hz, .width = 0.4}, 500_us);
     std::printf("gain at 330 Hz: %.3f, at 50 Hz: %.3f\n", std::abs(resonance.response(330_Hz)),
                 std::abs(resonance.response(50_Hz)));
 }

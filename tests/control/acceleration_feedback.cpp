@@ -56,7 +56,8 @@ template <class Law> struct running {
     }
     std::size_t lead() const { return 0; }
     analysis::loop_sample step(const axis_motion<>& r, double push) {
-        const double A = plant.damping.value(), B = plant.gain.value(), h = T.value(), kept = std::exp(-A * h);
+        const double A = plant.viscous_rate.value(), B = plant.gain.value(), h = T.value(),
+                     kept = std::exp(-A * h);
         const double place = x, u = control(r, {x * 1_m, v * 1_mps, a * 1_mps2}).value() + push;
         const double goal = B * u / A, next = goal + (v - goal) * kept;
         x += goal * h + (v - goal) * (1 - kept) / A;

@@ -133,7 +133,7 @@ TEST_CASE("feed laws: told what the amplifier applied they do not wind up, not t
 TEST_CASE("place_pid: the characteristic polynomial has the poles that were asked for") {
     const pid_poles wanted{.natural = 8_Hz, .damping = 0.8, .real = 1.5};
     const auto p = place_pid(plant, wanted);
-    const double w = 2 * std::numbers::pi * 8, B = plant.gain.value(), A = plant.damping.value();
+    const double w = 2 * std::numbers::pi * 8, B = plant.gain.value(), A = plant.viscous_rate.value();
     const cd pair = w * cd(-0.8, 0.6);
     for (const cd s : {pair, std::conj(pair), cd(-1.5 * w)}) {
         const cd rest = s * s * (s + A) +

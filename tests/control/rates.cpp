@@ -153,17 +153,18 @@ TEST_CASE(
             if (const auto p = if_possible([&] {
                     return place_state_feedback(plant, {.natural = f, .encoder_noise = noise}, 10_V, T);
                 }))
-                both(state_feedback<>(*p, T), state_feedback<float>({.plant = {p->plant.gain, p->plant.damping},
-                                                                     .position_gain = p->position_gain,
-                                                                     .velocity_gain = p->velocity_gain,
-                                                                     .encoder_noise = p->encoder_noise,
-                                                                     .drift = p->drift},
-                                                                    T));
+                both(state_feedback<>(*p, T),
+                     state_feedback<float>({.plant = {p->plant.gain, p->plant.viscous_rate},
+                                            .position_gain = p->position_gain,
+                                            .velocity_gain = p->velocity_gain,
+                                            .encoder_noise = p->encoder_noise,
+                                            .drift = p->drift},
+                                           T));
             if (ratio < 0.05) {
                 const auto w = 2 * std::numbers::pi * ratio / T;
                 const auto gain = w / plant.gain;
                 both(sliding_mode<>({plant, w, gain, w * gain}, T),
-                     sliding_mode<float>({{plant.gain, plant.damping}, w, gain, w * gain}, T));
+                     sliding_mode<float>({{plant.gain, plant.viscous_rate}, w, gain, w * gain}, T));
             }
         }
     CHECK(tried > 40);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSL-1.0
 """What the pages promise stands: links and anchors lead somewhere, C++ is text of a file that is
 compiled, or compiled by snippets.py, commands have the options that they are shown with, docs/README.md leads to every page, and the
-page of every block has its picture.
+page of every block has its picture, and every other page begins with who needs it.
 
     python3 tests/docs/check.py [root of the repository]
 """
@@ -238,7 +238,20 @@ def check_pictures():
         check_picture(page)
 
 
+# --- 6. The first two lines say who needs a page and what he gets. ---
+# Pages of one kind have their own beginning: a block says what it does, an effect and a derivation what they are about.
+own_beginning = re.compile(r"docs/(blocks|effects|derivations)/|docs/(CHANGELOG|benchmarks|reproduction)\.md|README\.md$")
+
+
+def check_beginning(page):
+    if not own_beginning.search(page.relative_to(root).as_posix()):
+        first = re.match(r"# [^\n]*\n\n([^\n]*)", page.read_text())
+        if not first or not re.match(r"For |You ", first[1]):
+            fault(page, 3, "begin with who needs the page and what he gets: 'For whoever ... You get ...'")
+
+
 for each in pages:
+    check_beginning(each)
     check_links(each)
     check_snippets(each)
     check_commands(each)

@@ -22,7 +22,7 @@ says() { # PAGE TEXT, as it stands in the comment
     sed 's/<[^>]*>//g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g; s/&amp;/\&/g' "$out/html/$1" | grep -qF -- "$2" || wrong "$1 does not say: $2"
 }
 says index.html 'it says why a machine does not do what its simulation says'
-says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear'
+says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear'
 says classquadrant_1_1notch.html "J = |b0' - b0| |x[k] - x[k-1]|"
 says classquadrant_1_1notch.html 'The state that belongs to these values, without a step'
 says structquadrant_1_1notch_1_1parameters.html 'deepest point; 0 < centre < half the sampling rate'

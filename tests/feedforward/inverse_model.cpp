@@ -69,7 +69,7 @@ TEST_CASE("inverse_model: x axis by hand: 2 m/s^2 at 0.1 m/s need (2 + 2.857) / 
 }
 TEST_CASE("inverse_model: times the plant it is one, at any frequency") {
     const inverse_model<signal::voltage> f{{B * 1_mps2 / 1_V, A / 1_s}, 500_us};
-    const analysis::axis_model<> plant{A / 1_s, B * 1_mps2 / 1_V, 0_s};
+    const analysis::rigid_axis_model<> plant{A / 1_s, B * 1_mps2 / 1_V, 0_s};
     for (const double at : {0.1, 5.0, 80.0, 900.0})
         CHECK(std::abs(f.response(at * 1_Hz) * plant(at * 1_Hz) - 1.0) < 1e-12);
 }
@@ -111,7 +111,7 @@ TEST_CASE(
     };
     const int samples = 24000; // 12 s: the slowest pole, 7.5 1/s, is long gone
     const std::size_t skip = 20000;
-    const analysis::p_pi_loop closed{analysis::axis_model<>{A / 1_s, B * 1_mps2 / 1_V, Td * 1_s},
+    const analysis::p_pi_loop closed{analysis::rigid_axis_model<>{A / 1_s, B * 1_mps2 / 1_V, Td * 1_s},
                                      analysis::pi_model<>{60_V / 1_mps, 450_V / 1_m},
                                      analysis::in_series{analysis::derivative_model{942.5 / (2 * pi) * 1_Hz},
                                                          analysis::notch_model{330_Hz, 0.0606}},
@@ -146,6 +146,6 @@ TEST_CASE("inverse_model: refuses a gain that is not positive and a negative pol
         return "";
     };
     CHECK(refusal(0, 1) == "inverse_model.gain = 0 m/(V s^2): must be finite and above 0");
-    CHECK(refusal(4, -1) == "inverse_model.damping = -1 per s: must be finite and not below 0");
+    CHECK(refusal(4, -1) == "inverse_model.viscous_rate = -1 per s: must be finite and not below 0");
     CHECK(refusal(4, 0) == "");
 }

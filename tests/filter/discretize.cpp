@@ -126,7 +126,7 @@ TEST_CASE("discretize, bilinear: with pre-warp exact at that frequency, and that
     CHECK(std::abs(at(bilinear(third, 10_ms, 10_Hz), 10, 10e-3) - at(third, 10)) < 1e-12);
     const double w = 2 * std::numbers::pi * 330;
     const auto d = bilinear(continuous<2>{{w * w, 0, 1}, {w * w, 0.1 * w, 1}}, 500_us, 330_Hz);
-    const notch<signal::force> block{{.centre = 330_Hz, .damping = 0.1}, 500_us};
+    const notch<signal::force> block{{.centre = 330_Hz, .width = 0.1}, 500_us};
     for (const double hz : {0.0, 100.0, 300.0, 335.0, 900.0})
         CHECK(std::abs(at(d, hz, 500e-6) - block.response(hz * 1_Hz)) < 1e-12);
 }

@@ -90,7 +90,7 @@ void check_hdf5_file(const std::string& text) {
 template <class Reader> void check_program(const std::string& text) {
     std::istringstream in(text);
     Reader reader(in, "part");
-    quadrant::point at{};
+    quadrant::path::point at{};
     bool first = true;
     while (const auto move = reader.next()) {
         const auto& path = move->path;
@@ -137,8 +137,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                            check_diagnosis,
                                                            check_map,
                                                            check_foreign_log,
-                                                           check_program<quadrant::gcode_reader>,
-                                                           check_program<quadrant::cl_reader>,
+                                                           check_program<quadrant::path::gcode_reader>,
+                                                           check_program<quadrant::path::cl_reader>,
                                                            check_cnc,
                                                            check_radius,
                                                            check_mat_file,
@@ -147,7 +147,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         readers[data[0] % std::size(readers)](text);
     } catch (const bad_input& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
-    } catch (const quadrant::bad_program& fault) {
+    } catch (const quadrant::path::bad_program& fault) {
         must_hold(std::string_view(fault.what()).find('\n') == std::string_view::npos);
     }
     return 0;

@@ -22,14 +22,14 @@ template <class Unit> quantity<Unit, four> each_of(quantity<Unit>, const std::ar
 } // namespace
 
 TEST_CASE("lanes: a constructor refuses the lane that breaks the rule, and names its value") {
-    const four damping(0.1);
-    CHECK_THROWS_WITH_AS((notch<signal::force, four>({each_of(1_Hz, {100, 200, 1200, 300}), damping}, 500_us)),
+    const four width(0.1);
+    CHECK_THROWS_WITH_AS((notch<signal::force, four>({each_of(1_Hz, {100, 200, 1200, 300}), width}, 500_us)),
                          "notch.centre = 1200 Hz: must lie between 0 and half the sampling rate (1000 Hz)",
                          invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (notch<signal::force, four>(
             {each_of(1_Hz, {100, 200, 500, 300}), four(std::array{0.1, -2.0, 0.1, 0.1})}, 500_us)),
-        "notch.damping = -2: must be finite and above 0", invalid_parameter);
+        "notch.width = -2: must be finite and above 0", invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (limiter<signal::force, four>({each_of(1_N, {0, 0, 0, 5}), each_of(1_N, {1, 1, 1, 4})}, 500_us)),
         "limiter.high = 4 N: must not lie below low (5 N)", invalid_parameter);

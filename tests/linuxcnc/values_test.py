@@ -22,7 +22,7 @@ assert values.with_changes(ini, []) == ini
 shipped = (source / "examples/linuxcnc/machine/quadrant.ini").read_text()
 assert values.with_changes(shipped, []) == shipped
 entries = {(s, k): v for _, s, k, v in values.sections(shipped)}
-assert entries["JOINT_1", "NOTCH_DAMPING"] == "0.17" and entries["TRAJ", "COORDINATES"] == "X Y"
+assert entries["JOINT_1", "NOTCH_WIDTH"] == "0.17" and entries["TRAJ", "COORDINATES"] == "X Y"
 with tempfile.TemporaryDirectory() as folder:
     real, link = pathlib.Path(folder) / "real.ini", pathlib.Path(folder) / "link.ini"
     real.write_text(ini, newline="")

@@ -282,7 +282,7 @@ TEST_CASE("cascade: with a dual, the command's derivative by a gain is that of a
         p.velocity_integral = decltype(p.velocity_integral)::from_value(Real(m.velocity_integral.value()));
         p.estimator.corner = decltype(p.estimator.corner)::from_value(Real(163.943));
         p.notch.centre = decltype(p.notch.centre)::from_value(Real(307.429));
-        p.notch.damping = Real(0.08);
+        p.notch.width = Real(0.08);
         p.limit = decltype(p.limit)::from_value(Real(8));
         return cascade<B>{.box = {p, Ts}};
     };

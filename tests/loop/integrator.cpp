@@ -36,7 +36,7 @@ boxes::parameters tuning() {
             .acceleration_feedforward = 340_kg / (1450_N / 1_V),
             .viscous_feedforward = 0.6_V / 1_mps,
             .coulomb_feedforward = 0.08_V,
-            .notch = {.centre = 330_Hz, .damping = 0.06},
+            .notch = {.centre = 330_Hz, .width = 0.06},
             .limit = 10_V};
 }
 linear_motor<> motor() {
@@ -99,7 +99,7 @@ TEST_CASE(
                            .velocity_gain = 60_V / 1_mps,
                            .velocity_integral = 450_V / 1_m,
                            .estimator_corner = 150_Hz,
-                           .notch = {.centre = 330_Hz, .damping = 0.06},
+                           .notch = {.centre = 330_Hz, .width = 0.06},
                            .plant_gain = B,
                            .limit = 10_V};
     p.disturbance = {20_Hz, axis_model<signal::voltage>{B, 0.0 / 1_s}};
@@ -190,7 +190,7 @@ TEST_CASE("another tuning in motion, handed over whole: the command jumps by mil
         p.acceleration_feedforward = about(p.acceleration_feedforward);
         p.viscous_feedforward = about(p.viscous_feedforward),
         p.coulomb_feedforward = about(p.coulomb_feedforward);
-        p.notch.centre = about(p.notch.centre), p.notch.damping = about(p.notch.damping);
+        p.notch.centre = about(p.notch.centre), p.notch.width = about(p.notch.width);
         swap.offer(boxes{p, T});
         cascade<boxes> twin = axis, naive = axis;
         naive.box = {p, T};
@@ -222,7 +222,7 @@ TEST_CASE("milling_axis: another tuning in motion, observer and friction too") {
                                .velocity_gain = about(60_V / 1_mps),
                                .velocity_integral = about(450_V / 1_m),
                                .estimator_corner = about(150_Hz),
-                               .notch = {.centre = about(330_Hz), .damping = 0.06},
+                               .notch = {.centre = about(330_Hz), .width = 0.06},
                                .plant_gain = about(4.26_mps2 / 1_V),
                                .plant_pole = 2.8 / 1_s,
                                .friction = {.curve = {about(0.08_V), 0.13_V, 2_mmps, about(0.2_V / 1_mps)},
@@ -291,7 +291,7 @@ TEST_CASE("homing: the frame of positions moves under a running axis, and no com
                            .velocity_gain = 60_V / 1_mps,
                            .velocity_integral = 450_V / 1_m,
                            .estimator_corner = 150_Hz,
-                           .notch = {.centre = 330_Hz, .damping = 0.06},
+                           .notch = {.centre = 330_Hz, .width = 0.06},
                            .plant_gain = 4.26_mps2 / 1_V,
                            .limit = 10_V};
     p.disturbance = {20_Hz, axis_model<signal::voltage>{4.26_mps2 / 1_V, 2.8 / 1_s}};

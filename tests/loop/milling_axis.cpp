@@ -114,7 +114,7 @@ using learning = milling_axis<boxes<quiet, absent<signal::position, signal::volt
 /// The x axis with a memory for a cycle of 85 periods, its filters made from the thesis' model.
 decltype(learning::box) with_memory() {
     auto p = x_axis<decltype(learning::box)>();
-    const analysis::p_pi_loop loop{analysis::axis_model<>{p.plant_pole, p.plant_gain, 0.65_ms},
+    const analysis::p_pi_loop loop{analysis::rigid_axis_model<>{p.plant_pole, p.plant_gain, 0.65_ms},
                                    analysis::pi_model<>{p.velocity_gain, p.velocity_integral},
                                    analysis::in_series{analysis::derivative_model{p.estimator_corner},
                                                        analysis::notch_model{330_Hz, 0.0606}},

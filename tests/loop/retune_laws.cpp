@@ -156,7 +156,7 @@ TEST_CASE("retune: sliding_mode starts from the command that it is given; the ne
         },
         [](const law& next, auto&&, auto&&, const sample& last, const sample& now, double) {
             const auto& p = next.given();
-            const double B = p.plant.gain.value(), A = p.plant.damping.value(), slide = p.sliding.value();
+            const double B = p.plant.gain.value(), A = p.plant.viscous_rate.value(), slide = p.sliding.value();
             const auto rest = [&](const sample& s) {
                 const double slower = (s.r.velocity - s.v).value();
                 return (slide * slower + s.r.acceleration.value() + A * s.v.value()) / B +
@@ -268,7 +268,7 @@ TEST_CASE("retune: state_feedback keeps its estimates and is off by the change o
             const auto& r = in[29].r;
             return std::array{p.position_gain.value() * (r.position - s.x).value(),
                               p.velocity_gain.value() * (r.velocity - s.v).value(), r.acceleration.value() / B,
-                              p.plant.damping.value() / B * r.velocity.value(), -s.disturbance.value()};
+                              p.plant.viscous_rate.value() / B * r.velocity.value(), -s.disturbance.value()};
         };
         // Gains and inverse of the plant on the twin's estimates, and what the estimates differ by.
         const auto a = parts(twin, twin.now()), b = parts(next, twin.now());

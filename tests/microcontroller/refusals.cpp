@@ -42,14 +42,14 @@ int main(int argc, char** argv) {
     if (argc > 1) std::printf("%s: for the other build\n", argv[1]);
 #endif
     print("nothing", made<force_notch>());
-    auto one = make<force_notch>({.centre = 330_Hz, .damping = 0.4}, 500_us);
+    auto one = make<force_notch>({.centre = 330_Hz, .width = 0.4}, 500_us);
     print("notch", one);
     std::printf("steps: %.17g\n", (*one)(1_N).value());
     print("a notch above half the sampling rate", make<force_notch>({.centre = 1200_Hz}, 500_us));
     print("a period that is none", make<force_notch>({.centre = 330_Hz}, 0_us));
-    one.make({.centre = 330_Hz, .damping = -1}, 500_us);
+    one.make({.centre = 330_Hz, .width = -1}, 500_us);
     print("in place of the good one", one);
-    one.make({.centre = 330_Hz, .damping = 0.4}, 500_us);
+    one.make({.centre = 330_Hz, .width = 0.4}, 500_us);
     print("and mended", one);
     print("rule with one number", make<delay_line<signal::force, 8>>({.length = 9}, 500_us));
     print("rule with two numbers", make<fractional_delay<signal::force, 8>>({.delay = 5_ms}, 500_us));

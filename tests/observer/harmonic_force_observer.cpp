@@ -202,7 +202,7 @@ TEST_CASE("harmonic_force_observer: refuses frequencies, poles and plants that l
                          invalid_parameter);
     CHECK_THROWS_WITH_AS(
         (observer<2>{{axis_model<s::voltage>{y.gain}, two, good}, T}),
-        "harmonic_force_observer.plant.damping = 0 per s: must be above 0 for placed poles (or "
+        "harmonic_force_observer.plant.viscous_rate = 0 per s: must be above 0 for placed poles (or "
         "use expected_noise)",
         invalid_parameter);
     CHECK_THROWS_AS((observer<2>{{axis_model<s::voltage>{}, two, good}, T}), invalid_parameter);

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 using namespace quadrant;
+using namespace quadrant::path;
 
 namespace {
 constexpr double pi_ = std::numbers::pi;

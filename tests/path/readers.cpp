@@ -7,6 +7,7 @@
 #include <sstream>
 
 using namespace quadrant;
+using namespace quadrant::path;
 
 namespace {
 constexpr double pi_ = std::numbers::pi;

@@ -11,7 +11,7 @@ using observer = quadrant::disturbance_observer<signal::voltage>;
 #ifdef MEND
 const observer::parameters p{
     .corner = 60_Hz,
-    .plant = quadrant::axis_model<signal::voltage>{.gain = 1.9_mps2 / 1_V, .damping = 4.6_per_s}};
+    .plant = quadrant::axis_model<signal::voltage>{.gain = 1.9_mps2 / 1_V, .viscous_rate = 4.6_per_s}};
 #else
 const observer::parameters p{.corner = 60_Hz, .plant = {1.9, 4.6}};
 #endif

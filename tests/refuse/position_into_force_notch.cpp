@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // A notch for forces on a wire that carries a position.
-// MUST SAY: notch<quadrant::signal::force
+// MUST SAY: notch<quadrant::v0::signal::force | notch<quadrant::signal::force
 // AT MOST: gcc 3700, clang 1000
 #include "quadrant/base/literals.hpp"
 #include "quadrant/filter/notch.hpp"

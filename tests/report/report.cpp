@@ -93,7 +93,7 @@ TEST_CASE("report: says the verdict, the causes with their intervals, the altern
     const std::string html = html_report(sample::explained());
     for (const char* part :
          {"Coulomb friction and constant force", ">explained</span>", "20.4 N (19.9 to 20.8)",
-          "cannot be told apart from friction that differs by direction", "coulomb asymmetry", "20.7 → 3.9 N",
+          "cannot be distinguished from friction that differs by direction", "coulomb asymmetry", "20.7 → 3.9 N",
           "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times", "odds of 66.7 to 1",
           "<p>Simulated beforehand.</p>", "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
         CHECK_MESSAGE((has(html, part) || has(html, escape(part))), part);

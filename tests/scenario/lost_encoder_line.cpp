@@ -30,7 +30,7 @@ const boxes::parameters tuning{.position_gain = 150.0 / 1_s,
                                .acceleration_feedforward = 0.2345_V / 1_mps2,
                                .viscous_feedforward = 0.586_V / 1_mps,
                                .coulomb_feedforward = 0_V, // the integral carries the friction
-                               .notch = {.centre = 330_Hz, .damping = 0.0606},
+                               .notch = {.centre = 330_Hz, .width = 0.0606},
                                .limit = 10_V,
                                .dac_step = 20_V / 65536.0};
 const auto no_reading = std::numeric_limits<double>::quiet_NaN() * 1_m;

@@ -48,7 +48,7 @@ boxes::parameters tuning(double coulomb_newtons) {
             .acceleration_feedforward = 330_kg / (1450_N / 1_V),
             .viscous_feedforward = 860_N / 1_mps / (1450_N / 1_V),
             .coulomb_feedforward = coulomb_newtons * 1_N / (1450_N / 1_V),
-            .notch = {.centre = 330_Hz, .damping = 0.0606},
+            .notch = {.centre = 330_Hz, .width = 0.0606},
             .limit = 10_V,
             .dac_step = 20_V / 65536.0};
 }

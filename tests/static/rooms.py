@@ -9,6 +9,9 @@ holds the parts of a call of the same name (compare.hpp, compare/).
 Numbered examples are for reading: no test includes one. A test includes from tests/, what it tests from examples/programs
 and examples/linuxcnc, and what writes the docs from docs/generators; no program and no generator includes a test.
 
+Every header opens its namespace inside the inline version namespace of this interface, so that two versions in one
+program are two sets of symbols.
+
 At the top stand these folders and no other; `build` and those of a tool, which begin with a dot, are not looked at.
 """
 import os
@@ -101,6 +104,10 @@ for folder, may, found_in in (
             target = next((p for p in places if p.is_file()), None)  # none: made by the build, or of the library
             if target and not target.is_relative_to(root / "include") and not any(target.is_relative_to(root / f) for f in may):
                 faults.append(f"{source.relative_to(root)}: includes {target.relative_to(root)}; a file of {folder} does not")
+
+for header in headers:
+    for found in re.findall(r"^(?:inline )?namespace quadrant(?!::inline v0\b)[^;={]*\{", header.read_text(), re.M):
+        faults.append(f"{header.relative_to(root)}: '{found.strip()}': write namespace quadrant::inline v0")
 
 TOP = {"include", "tests", "benchmarks", "examples", "docs", "packaging"}
 there = {p.name for p in root.iterdir() if p.is_dir() and p.name != "build" and not p.name.startswith(".")}

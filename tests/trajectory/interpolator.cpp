@@ -27,6 +27,7 @@ std::size_t allocations = 0;
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace quadrant;
+using namespace quadrant::path;
 using namespace quadrant::literals;
 using namespace quadrant::trajectory;
 
@@ -113,7 +114,7 @@ struct draw {
     point direction() {
         for (;;) {
             const point d{(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)};
-            if (const double l = quadrant::magnitude(d); l > 0.1 && l < 1) return d / l;
+            if (const double l = quadrant::path::magnitude(d); l > 0.1 && l < 1) return d / l;
         }
     }
     motion_limits limits() { return at_most((*this)(0.05, 0.5), (*this)(0.5, 5), (*this)(10, 200)); }
@@ -126,7 +127,7 @@ struct draw {
                 ahead = ahead + (*this)(0, 0.3) * direction();
             else if (turn < 0.7)
                 ahead = direction();
-            ahead = ahead / quadrant::magnitude(ahead);
+            ahead = ahead / quadrant::path::magnitude(ahead);
             if ((*this)(0, 1) < 0.6) {
                 moves.push_back(go(line(at, at + magnitude(-4, -2) * ahead), 0));
             } else {

@@ -17,15 +17,14 @@ namespace {
 const duration T = 500_us;
 
 picture draw_notch() {
-    const notch<s::force> narrow{{.centre = 330_Hz, .damping = 0.06}, T},
-        wide{{.centre = 330_Hz, .damping = 0.5}, T};
+    const notch<s::force> narrow{{.centre = 330_Hz, .width = 0.06}, T},
+        wide{{.centre = 330_Hz, .width = 0.5}, T};
     const auto at = frequencies_around(330, 50, 990);
-    return of("Gain and phase of a notch at 330 Hz with damping 0.06 and 0.5, at 2 kHz",
-              {between(gains({gain("damping 0.06", at, response_of(narrow)),
-                              gain("damping 0.5", at, response_of(wide))}),
-                       -60, 5),
-               phases({phase("damping 0.06", at, response_of(narrow)),
-                       phase("damping 0.5", at, response_of(wide))})});
+    return of(
+        "Gain and phase of a notch at 330 Hz with width 0.06 and 0.5, at 2 kHz",
+        {between(gains({gain("width 0.06", at, response_of(narrow)), gain("width 0.5", at, response_of(wide))}),
+                 -60, 5),
+         phases({phase("width 0.06", at, response_of(narrow)), phase("width 0.5", at, response_of(wide))})});
 }
 
 picture draw_lowpass() {

@@ -19,7 +19,7 @@ template <class Boxes = cascade_boxes<>> typename Boxes::parameters tuning() {
                                  .velocity_gain = 60_V / 1_mps,
                                  .velocity_integral = 450_V / 1_m,
                                  .estimator = {},
-                                 .notch = {.centre = 330_Hz, .damping = 0.06},
+                                 .notch = {.centre = 330_Hz, .width = 0.06},
                                  .limit = 10_V,
                                  .dac_step = {}};
     if constexpr (requires { p.estimator.corner; }) p.estimator.corner = 150_Hz;

@@ -77,9 +77,9 @@ template <class Memory> line milled(const char* name, const typename Memory::par
 picture draw_repetitive() {
     using memory = repetitive<s::position, 100>;
     const auto& a = thesis::x;
-    const analysis::axis_model<> g{a.A_gms, a.B, a.delay}, nominal{a.A_gms, a.B, 0_s};
+    const analysis::rigid_axis_model<> g{a.A_gms, a.B, a.delay}, nominal{a.A_gms, a.B, 0_s};
     const analysis::q_model<> d{a.corner};
-    const analysis::p_pi_dob_loop loop{thesis::loop_around(g, a), d, analysis::inverse_model{d, nominal}};
+    const analysis::p_pi_dob_loop loop{thesis::loop_around(g, a), d, analysis::q_inverse_model{d, nominal}};
     const auto closed = [&](frequency f) { return loop.tracking(f); };
     const auto whole = analysis::up_to_nyquist(T);
     const auto q = analysis::smoothing_filter<61>(200_Hz, T);

@@ -88,7 +88,7 @@ public:
             "class=\"{}\" d=\"M1 5H21\"/></svg> {}</span> ",
             style, escaped(words));
     }
-    /// `says`: what the picture shows, for who cannot see it.
+    /// `says`: what the picture shows, for whoever cannot see it.
     std::string figure(std::string_view says, std::string_view caption) const {
         return fmt::format(
             "<figure class=\"contour\"><p class=\"keys\">{}</p><svg class=\"plane graph\" viewBox=\"0 0 {} "

@@ -11,17 +11,17 @@
 /// arcs and splines, not to samples of it.
 namespace quadrant_cnc {
 
-using quadrant::point;
-using quadrant::segment;
+using quadrant::path::point;
+using quadrant::path::segment;
 
 /// The path length of the place on a piece that is nearest to `at`; of several, as on a circle driven twice,
 /// the one around `guess`.
 inline double nearest(const segment& path, point at, double guess) noexcept {
     const double length = path.length();
-    if (const auto* straight = std::get_if<quadrant::line>(&path.shape()))
+    if (const auto* straight = std::get_if<quadrant::path::line>(&path.shape()))
         return std::clamp(dot(at - straight->start(), straight->tangent(0)), 0.0, length);
     double s = std::clamp(guess, 0.0, length);
-    if (const auto* round = std::get_if<quadrant::arc>(&path.shape())) {
+    if (const auto* round = std::get_if<quadrant::path::arc>(&path.shape())) {
         const point c = round->centre(), from = path.position(s);
         const double ux = from.x - c.x, uy = from.y - c.y, vx = at.x - c.x, vy = at.y - c.y;
         const double turned = std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);

@@ -130,7 +130,7 @@ struct view {
     double low(int axis) const { return range_[std::size_t(axis)][0]; }
     double high(int axis) const { return range_[std::size_t(axis)][1]; }
     double size(int axis) const { return high(axis) - low(axis); }
-    std::array<double, 2> operator()(quadrant::point p) const { return {p[across], p[up]}; }
+    std::array<double, 2> operator()(quadrant::path::point p) const { return {p[across], p[up]}; }
     plane paper(double x0, double x1, double y0, double y1, double unit, std::string_view unit_name) const {
         return {x0, x1, y0, y1, unit, unit_name, char('x' + across), char('x' + up)};
     }
@@ -172,7 +172,7 @@ inline drawn_plot whole_path(const run_outcome& r, const std::vector<contour_sam
 /// Around the worst place, nothing enlarged.
 inline drawn_plot worst_place(const run_outcome& r, const view& seen) {
     const double around = std::max(12 * r.contour.most, 1e-7);
-    const quadrant::point o = r.worst_place;
+    const quadrant::path::point o = r.worst_place;
     std::vector<contour_sample> near;
     for (const contour_sample& s : r.worst)
         if (distance(s.foot, o) < 3 * around) near.push_back(s);

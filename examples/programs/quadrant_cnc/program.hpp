@@ -18,27 +18,27 @@ namespace quadrant_cnc {
 class program {
 public:
     program(const cnc_description& cnc, const std::string& file)
-        : cnc_(cnc), file_(file), in_(quadrant::open_program(file)), limits_(limits_of(cnc)) {
-        quadrant::program_start start{
+        : cnc_(cnc), file_(file), in_(quadrant::path::open_program(file)), limits_(limits_of(cnc)) {
+        quadrant::path::program_start start{
             .place = {cnc.trajectory.start_m[0], cnc.trajectory.start_m[1], cnc.trajectory.start_m[2]}};
         if (const auto tolerance = cnc.trajectory.corner_tolerance_m) {
-            start.ending = quadrant::path_ending::continuous;
+            start.ending = quadrant::path::path_ending::continuous;
             start.tolerance = *tolerance;
         }
         std::error_code none;
         size_ =
             std::filesystem::is_regular_file(file, none) ? double(std::filesystem::file_size(file, none)) : 0;
         std::string kind = std::filesystem::path(file).extension().string();
-        std::transform(kind.begin(), kind.end(), kind.begin(), quadrant::detail::upper);
+        std::transform(kind.begin(), kind.end(), kind.begin(), quadrant::path::detail::upper);
         if (kind == ".CL" || kind == ".CLS" || kind == ".APT")
-            reader_.emplace<quadrant::cl_reader>(in_, file, start);
+            reader_.emplace<quadrant::path::cl_reader>(in_, file, start);
         else
-            reader_.emplace<quadrant::gcode_reader>(in_, file, start);
+            reader_.emplace<quadrant::path::gcode_reader>(in_, file, start);
     }
 
-    std::optional<quadrant::move> next() {
+    std::optional<quadrant::path::move> next() {
         auto move = std::visit(
-            [](auto& reader) -> std::optional<quadrant::move> {
+            [](auto& reader) -> std::optional<quadrant::path::move> {
                 if constexpr (requires { reader.next(); })
                     return reader.next();
                 else
@@ -55,7 +55,7 @@ public:
         return size_ > 0 && at >= 0 ? std::min(1.0, double(at) / size_) : 0;
     }
     [[noreturn]] void refuse(std::size_t line, std::string_view message) const {
-        throw quadrant::bad_program(fmt::format("{}:{}: {}", file_, line, message));
+        throw quadrant::path::bad_program(fmt::format("{}:{}: {}", file_, line, message));
     }
 
     /// What the trajectory refuses: "line = 12: must ...".
@@ -64,8 +64,8 @@ public:
         const std::string_view text = fault.what();
         const std::size_t colon = text.find(": ");
         if (!text.starts_with(begin) || colon == text.npos)
-            throw quadrant::bad_program(fmt::format("{}: {}", file_, text));
-        throw quadrant::bad_program(fmt::format(
+            throw quadrant::path::bad_program(fmt::format("{}: {}", file_, text));
+        throw quadrant::path::bad_program(fmt::format(
             "{}:{}: {}", file_, text.substr(begin.size(), colon - begin.size()), text.substr(colon + 2)));
     }
 
@@ -89,22 +89,22 @@ private:
         double low, high;
     };
     /// How far a piece goes along an axis; exact for lines and arcs, from 64 places for a spline.
-    static range reach(const quadrant::segment& path, int axis) {
+    static range reach(const quadrant::path::segment& path, int axis) {
         const double a = path.start()[axis], b = path.end()[axis];
         range r{std::min(a, b), std::max(a, b)};
         const auto take = [&](double x) { r = {std::min(r.low, x), std::max(r.high, x)}; };
-        if (const auto* round = std::get_if<quadrant::arc>(&path.shape()); round && axis < 2) {
-            const quadrant::point c = round->centre(), from = round->start() - c;
+        if (const auto* round = std::get_if<quadrant::path::arc>(&path.shape()); round && axis < 2) {
+            const quadrant::path::point c = round->centre(), from = round->start() - c;
             const double start = std::atan2(from.y, from.x), end = start + round->sweep(),
                          quarter = std::numbers::pi / 2;
             for (double k = std::ceil(std::min(start, end) / quarter); k * quarter <= std::max(start, end); ++k)
                 take(c[axis] + round->radius() * (axis == 0 ? std::cos(k * quarter) : std::sin(k * quarter)));
-        } else if (std::holds_alternative<quadrant::spline>(path.shape())) {
+        } else if (std::holds_alternative<quadrant::path::spline>(path.shape())) {
             for (int i = 1; i < 64; ++i) take(path.position(path.length() * i / 64)[axis]);
         }
         return r;
     }
-    void check(const quadrant::move& m) {
+    void check(const quadrant::path::move& m) {
         constexpr double hair = 1e-9;
         for (int axis = 0; axis < 3; ++axis) {
             const range r = reach(m.path, axis);
@@ -122,11 +122,11 @@ private:
             }
         }
         if (cnc_.trajectory.reach_the_feed && !m.rapid) check_feed(m);
-        stopped_ = m.ending == quadrant::path_ending::exact_stop;
+        stopped_ = m.ending == quadrant::path::path_ending::exact_stop;
     }
     /// From rest to the feed, and from the feed to rest, where the block begins and ends with a stop.
-    void check_feed(const quadrant::move& m) const {
-        const int stops = stopped_ + (m.ending == quadrant::path_ending::exact_stop);
+    void check_feed(const quadrant::path::move& m) const {
+        const int stops = stopped_ + (m.ending == quadrant::path::path_ending::exact_stop);
         if (stops == 0) return;
         namespace t = quadrant::trajectory;
         using quadrant::in_si;
@@ -148,7 +148,7 @@ private:
     quadrant::trajectory::plain_limits limits_;
     double size_ = 0;
     bool stopped_ = true; ///< where the next move begins
-    std::variant<std::monostate, quadrant::gcode_reader, quadrant::cl_reader> reader_;
+    std::variant<std::monostate, quadrant::path::gcode_reader, quadrant::path::cl_reader> reader_;
 };
 
 } // namespace quadrant_cnc

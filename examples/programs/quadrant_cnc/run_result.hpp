@@ -34,7 +34,7 @@ struct axis_outcome {
 /// One place of the path and how far the table was from it, in the plane of x and y, unless magnified in true
 /// proportion.
 struct contour_sample {
-    quadrant::point path, foot,
+    quadrant::path::point path, foot,
         off; ///< where the reference is on the path; nearest place; from there to the table
 };
 
@@ -43,7 +43,7 @@ struct run_outcome {
     double period = 0, duration = 0, path_length = 0;
     std::size_t samples = 0, moves = 0, lines = 0;
     extreme contour; ///< distance to the path [m]
-    quadrant::point worst_place;
+    quadrant::path::point worst_place;
     std::vector<axis_outcome> axes;
     std::vector<std::string> notes;
     double wall_time = 0;

@@ -32,10 +32,10 @@ std::vector<axis_motion<>> references(const cnc_description& cnc, const axis_des
     const auto drive = std::make_unique<quadrant::trajectory::interpolator<8>>(
         quadrant::trajectory::interpolator<8>::parameters{program::limits_of(cnc), program::kind_of(cnc)},
         in_si(cnc.servo_period_s));
-    quadrant::point there{};
+    quadrant::path::point there{};
     there[int(a.axis)] = stroke.length_m;
-    drive->push({.path = quadrant::line({}, there), .feed = stroke.feed_m_per_s, .line = 1});
-    drive->push({.path = quadrant::line(there, {}), .feed = stroke.feed_m_per_s, .line = 2});
+    drive->push({.path = quadrant::path::line({}, there), .feed = stroke.feed_m_per_s, .line = 1});
+    drive->push({.path = quadrant::path::line(there, {}), .feed = stroke.feed_m_per_s, .line = 2});
     std::vector<axis_motion<>> out;
     while (!drive->done()) {
         const auto& m = (*drive)().axis[a.axis];

@@ -79,7 +79,7 @@ inline std::vector<line> of_quadrant_axis(const axis_description& a, const plant
                {"velocity-integral", c.number("velocity_integral_V_per_m")}};
         if (c.has("notch.frequency_Hz")) {
             out.emplace_back("notch-centre", c.number("notch.frequency_Hz"));
-            out.emplace_back("notch-damping", c.number("notch.width"));
+            out.emplace_back("notch-width", c.number("notch.width"));
         }
     }
     out.emplace_back("plant-gain", p.force_constant / p.moving_mass());

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the vocabulary of all pages and of the terminal, one table after the other.
 #pragma once
 #include <algorithm>
 #include <cmath>

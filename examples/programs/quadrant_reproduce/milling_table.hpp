@@ -50,10 +50,10 @@ struct cut {
 /// The complementary sensitivity that L has to invert: the cascade around a plant that its observer makes
 /// nominal.
 inline auto tracking_of(const axis& machine, const axis& believed) {
-    const analysis::axis_model<> g{machine.A_gms, machine.B, machine.delay},
+    const analysis::rigid_axis_model<> g{machine.A_gms, machine.B, machine.delay},
         nominal{believed.A_gms, believed.B, 0_s};
     const analysis::q_model<> q{believed.corner};
-    return [loop = analysis::p_pi_dob_loop{loop_around(g, believed), q, analysis::inverse_model{q, nominal}}](
+    return [loop = analysis::p_pi_dob_loop{loop_around(g, believed), q, analysis::q_inverse_model{q, nominal}}](
                frequency f) { return loop.tracking(f); };
 }
 /// Q of 61 taps; L of 90 taps, 30 ahead, made with 200 Hz: that takes longer than a run.

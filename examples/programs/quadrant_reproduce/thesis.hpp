@@ -88,14 +88,14 @@ inline notch<signal::velocity>::parameters notch_of(const axis& a) {
 }
 
 /// G(s) of eq. (2.2).
-inline analysis::axis_model<> model_of(const axis& a) { return {a.A, a.B, a.delay}; }
+inline analysis::rigid_axis_model<> model_of(const axis& a) { return {a.A, a.B, a.delay}; }
 
 /// The cascade of eqs. (2.22) to (2.34) around a plant: G, or a measured response.
 template <analysis::frequency_response Plant> auto loop_around(const Plant& plant, const axis& a) {
     const auto n = notch_of(a);
     return analysis::p_pi_loop{plant, analysis::pi_model<>{a.kp, a.ki},
                                analysis::in_series{analysis::derivative_model{estimator_corner},
-                                                   analysis::notch_model{n.centre, n.damping}},
+                                                   analysis::notch_model{n.centre, n.width}},
                                position_gain};
 }
 

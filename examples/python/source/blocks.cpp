@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one binding after the other.
 // Blocks for Python: plants, friction, the cascade, frequency responses, margins. Units stand in the names.
 #include "parts.hpp"
 
@@ -206,7 +207,7 @@ private:
     }
     static either_loop made(const settings& s) {
         if (!s.notch_Hz) return make<plain_boxes>(s, {});
-        return make<notched_boxes>(s, {.centre = si_value<frequency>(*s.notch_Hz), .damping = s.notch_width});
+        return make<notched_boxes>(s, {.centre = si_value<frequency>(*s.notch_Hz), .width = s.notch_width});
     }
     either_loop loop_;
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one binding after the other.
 // The diagnosis: logs, diagnose, apply, simulate, forecast, compensate, compare, and the trial's machines.
 #include "parts.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "least_squares.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 /// A run along a circle, its one whole turn, and the circles that lie best in it: what `circular_test` is made
 /// of.
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One run along a circle, both encoders sampled together at constant feed.
 struct circular_path {
@@ -116,4 +116,4 @@ inline full_turn one_turn(const circular_path& path, const circle& nominal) {
 }
 } // namespace detail
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

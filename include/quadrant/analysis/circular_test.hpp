@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What the axis that reverses leaves in the circle.
 struct reversal_spike {
@@ -146,4 +146,4 @@ inline displacement bidirectional_error(const circular_path& one, const circular
     return displacement::from_value(detail::least_range(both.x, both.y, best[0], best[1]));
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

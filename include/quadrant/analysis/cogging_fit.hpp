@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis::detail {
+namespace quadrant::inline v0::analysis::detail {
 
 /// One move, bare: places in pitches.
 struct cogging_record {
@@ -216,4 +216,4 @@ private:
     double residual_ = 0;
 };
 
-} // namespace quadrant::analysis::detail
+} // namespace quadrant::inline v0::analysis::detail

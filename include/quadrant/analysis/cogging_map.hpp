@@ -4,7 +4,7 @@
 #include "../feedforward/cogging_harmonics.hpp"
 #include "../feedforward/cogging_table.hpp"
 #include "cogging_fit.hpp"
-#include "estimate.hpp"
+#include "estimated.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One slow move in one direction: what the axis needed, and where. Samples need not be even in time or place.
 template <signal_tag Out, signal_tag In = signal::position> struct cogging_run {
@@ -37,9 +37,9 @@ template <signal_tag In = signal::position> struct cogging_options {
 /// One harmonic of the cogging that was found, with its interval, and what tells that it is friction instead.
 template <signal_tag Out> struct cogging_harmonic {
     unsigned order;
-    estimate<quantity_of<Out>> amplitude;
-    estimate<double> phase; ///< [rad] of the sine at position 0
-    bool above_noise;       ///< stands out by more than noise does once in 20 whole fits
+    estimated<quantity_of<Out>> amplitude;
+    estimated<double> phase; ///< [rad] of the sine at position 0
+    bool above_noise;        ///< stands out by more than noise does once in 20 whole fits
     quantity_of<Out>
         half_difference; ///< of the two directions in this order; far above its neighbours: a friction order
 };
@@ -49,11 +49,11 @@ template <signal_tag Out, signal_tag In = signal::position> struct cogging_ident
     quantity_of<In> pitch{};
     std::vector<cogging_harmonic<Out>> harmonics; ///< those kept, the strongest first
     std::vector<cogging_harmonic<Out>> left_out;  ///< the others up to `highest`, the strongest first
-    estimate<quantity_of<Out>>
+    estimated<quantity_of<Out>>
         coulomb{}; ///< half the difference of both directions, by the mean speed or at rest
-    estimate<quantity_of<Out>> offset{}; ///< constant force (gravity), not part of the map
-    estimate<double> viscous{};          ///< per SI velocity; 0 without velocities
-    quantity_of<Out> residual{};         ///< rms of what neither harmonics nor friction explain
+    estimated<quantity_of<Out>> offset{}; ///< constant force (gravity), not part of the map
+    estimated<double> viscous{};          ///< per SI velocity; 0 without velocities
+    quantity_of<Out> residual{};          ///< rms of what neither harmonics nor friction explain
 
     /// Half the difference of the directions by place: Coulomb level and friction orders, to be added forwards.
     struct wave {
@@ -146,8 +146,8 @@ cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<O
 
     using value = quantity_of<Out>;
     const auto around = [&](double x, double error) {
-        return estimate<value>{value::from_value(x), value::from_value(x - error),
-                               value::from_value(x + error)};
+        return estimated<value>{value::from_value(x), value::from_value(x - error),
+                                value::from_value(x + error)};
     };
     cogging_identification<Out, In> out;
     out.pitch = options.pitch;
@@ -188,4 +188,4 @@ cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<O
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

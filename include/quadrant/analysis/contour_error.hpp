@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A place in the plane of two axes.
-struct place {
+struct plane_position {
     displacement x{}, y{};
 };
 
@@ -26,8 +26,8 @@ struct contour_deviation {
 
 /// Straight path, no ends.
 struct line_path {
-    place from, to; ///< not the same
-    contour_deviation operator()(place at) const {
+    plane_position from, to; ///< not the same
+    contour_deviation operator()(plane_position at) const {
         const auto dx = to.x - from.x, dy = to.y - from.y;
         const auto length = displacement::from_value(std::hypot(dx.value(), dy.value()));
         require_positive("line_path.length", length);
@@ -40,7 +40,7 @@ struct line_path {
 struct circle_path {
     circle nominal; ///< radius > 0
     bool counterclockwise = true;
-    contour_deviation operator()(place at) const {
+    contour_deviation operator()(plane_position at) const {
         require_positive("circle_path.radius", nominal.radius);
         const double dx = (at.x - nominal.x).value(), dy = (at.y - nominal.y).value(),
                      way = counterclockwise ? 1 : -1;
@@ -60,7 +60,8 @@ struct circle_path {
 /// Throws for fewer than two places, two neighbours at the same place, what is not finite, window not above 0.
 class sampled_path {
 public:
-    sampled_path(std::vector<place> places, displacement window) : places_(std::move(places)), window_(window) {
+    sampled_path(std::vector<plane_position> places, displacement window)
+        : places_(std::move(places)), window_(window) {
         require(places_.size() >= 2, "sampled_path.places", double(places_.size()), "must be two or more");
         require_positive("sampled_path.window", window);
         travelled_.push_back({});
@@ -73,7 +74,7 @@ public:
         }
     }
 
-    contour_deviation operator()(place at) noexcept {
+    contour_deviation operator()(plane_position at) noexcept {
         std::size_t first = 0, last = places_.size() - 2; // segments
         if (known_) {
             const auto segment = [&](displacement where) {
@@ -102,7 +103,7 @@ private:
         double share = 0; ///< of the segment, 0 ... 1
         bool left = true;
     };
-    found search(place at, std::size_t first, std::size_t last) const noexcept {
+    found search(plane_position at, std::size_t first, std::size_t last) const noexcept {
         found best;
         for (std::size_t i = first; i <= last; ++i) {
             const double dx = (places_[i + 1].x - places_[i].x).value(),
@@ -126,7 +127,7 @@ private:
         return best;
     }
 
-    std::vector<place> places_;
+    std::vector<plane_position> places_;
     std::vector<displacement> travelled_;
     displacement window_;
     std::size_t nearest_ = 0;
@@ -141,7 +142,7 @@ private:
 /// Bound: with a tracking error t along the path the line is off by t^2/(2|R|), to third order in t/R; the
 /// circle by how much the radius changes along t. At rest there is no direction: none.
 /// Source: [Koren1980] for the line; the circle of curvature is the usual correction.
-inline std::optional<displacement> estimated_contour_error(place reference, place measured,
+inline std::optional<displacement> estimated_contour_error(plane_position reference, plane_position measured,
                                                            quantity_of<signal::velocity> vx,
                                                            quantity_of<signal::velocity> vy,
                                                            std::optional<displacement> radius = {}) noexcept {
@@ -166,9 +167,9 @@ std::vector<displacement> contour_errors(Path path, const std::vector<displaceme
     for (std::size_t i = 0; i < x.size(); ++i) {
         require(std::isfinite(x[i].value()) && std::isfinite(y[i].value()), "contour_errors.sample", double(i),
                 "must be finite");
-        out.push_back(path(place{x[i], y[i]}).error);
+        out.push_back(path(plane_position{x[i], y[i]}).error);
     }
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

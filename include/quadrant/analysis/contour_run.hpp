@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Largest and root mean square of a signal.
 struct contour_extent {
@@ -42,17 +42,19 @@ struct contour_options {
 
 /// Drives a contour and measures: the trajectory of the moves, sample by sample, to `axes`, which gives back
 /// where the table was before that sample's command acts. Until a tenth of a second after the end.
-///   place axes(const axis_motion<>& x, const axis_motion<>& y)
+///   plane_position axes(const axis_motion<>& x, const axis_motion<>& y)
 /// The path is judged as the moves are, not as the trajectory was: rounded corners count as contour error.
 /// Allocates. Throws what `interpolator` and `sampled_path` throw.
 template <class Axes>
-contour_figures drive_contour(const std::vector<move>& moves, Axes&& axes, const contour_options& how,
+contour_figures drive_contour(const std::vector<path::move>& moves, Axes&& axes, const contour_options& how,
                               duration period) {
     require(!moves.empty(), "drive_contour.moves", 0.0, "must be one or more");
     require_positive("drive_contour.spacing", how.spacing);
-    const auto at = [](point p) { return place{displacement::from_value(p.x), displacement::from_value(p.y)}; };
-    std::vector<place> places{at(moves.front().path.start())};
-    for (const move& m : moves) {
+    const auto at = [](path::point p) {
+        return plane_position{displacement::from_value(p.x), displacement::from_value(p.y)};
+    };
+    std::vector<plane_position> places{at(moves.front().path.start())};
+    for (const path::move& m : moves) {
         const double length = m.path.length();
         const auto pieces = static_cast<std::size_t>(std::ceil(length / how.spacing.value()));
         for (std::size_t i = 1; i <= pieces; ++i)
@@ -84,7 +86,7 @@ contour_figures drive_contour(const std::vector<move>& moves, Axes&& axes, const
         coming.push_back(now);
         const asked due = coming.front();
         coming.pop_front();
-        const place table = axes(now.x, now.y);
+        const plane_position table = axes(now.x, now.y);
         y.x_error.push_back(due.x.position - table.x), y.y_error.push_back(due.y.position - table.y);
         y.contour_error.push_back(path(table).error);
         if (const auto e = estimated_contour_error({due.x.position, due.y.position}, table, due.x.velocity,
@@ -113,4 +115,4 @@ contour_figures drive_contour(const std::vector<move>& moves, Axes&& axes, const
     return y;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -12,7 +12,7 @@
 
 /// Sources that are added to a wire to measure it: `wire.command = ... + excite();`, or by type, `injected`.
 /// Each call gives the coming sample; `now()` tells the last one again, for the FRF. No step allocates.
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A sine of rising (or falling) frequency, once; then zero.
 ///   logarithmic: f(t) = from (to/from)^(t/length), the same time for every octave; linear: the same for every hertz
@@ -168,4 +168,4 @@ private:
     Source source_;
 };
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

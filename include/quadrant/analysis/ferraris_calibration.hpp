@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What a record says of an acceleration sensor: acceleration = gain m + offset, m its voltage.
 struct ferraris_calibration {
@@ -93,4 +93,4 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
     return c;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

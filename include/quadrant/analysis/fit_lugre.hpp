@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../friction/lugre.hpp"
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "minimise.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Whether LuGre friction can give energy away, and what to do about it.
 struct lugre_passivity {
@@ -59,9 +59,9 @@ inline lugre_passivity check_passivity(const lugre<>::parameters& p) {
 
 /// sigma0 and sigma1 of `lugre`, with intervals of 95 %.
 struct lugre_fit {
-    estimate<gain_rate_of<signal::force, signal::velocity>> stiffness; ///< sigma0
-    estimate<gain_of<signal::force, signal::velocity>> damping;        ///< sigma1
-    lugre<>::parameters friction;                                      ///< the curve given, with these
+    estimated<gain_rate_of<signal::force, signal::velocity>> stiffness; ///< sigma0
+    estimated<gain_of<signal::force, signal::velocity>> damping;        ///< sigma1
+    lugre<>::parameters friction;                                       ///< the curve given, with these
     double rms;                ///< of recorded minus simulated command, in its unit
     lugre_passivity passivity; ///< of `friction`
     bool converged;
@@ -163,4 +163,4 @@ lugre_fit fit_lugre(const std::vector<std::vector<quantity_of<Command>>>& record
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "fit_plant.hpp"
 #include "modal_search.hpp"
 #include "modes.hpp"
@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Which lines of an FRF, and how many modes.
 struct modes_fit_options {
@@ -30,16 +30,16 @@ struct modes_fit_options {
 template <signal_tag Command = signal::voltage> struct modes_fit {
     /// One mode beside the rigid axis, as the fit found it.
     struct mode {
-        estimate<frequency> centre;
-        estimate<double> damping, share; ///< of `flexible_mode`
+        estimated<frequency> centre;
+        estimated<double> damping, share; ///< of `flexible_mode`
     };
-    estimate<per_second> pole;
-    estimate<gain_of<signal::acceleration, Command>> gain;
-    estimate<duration> delay; ///< Td, with half a period of hold
-    std::vector<mode> modes;  ///< in rising frequency
-    std::size_t lines;        ///< used
-    double residual;          ///< rms of |ln(model/measured)|
-    double surprise;          ///< as in `plant_fit`: far above 1, the model is still too small
+    estimated<per_second> pole;
+    estimated<gain_of<signal::acceleration, Command>> gain;
+    estimated<duration> delay; ///< Td, with half a period of hold
+    std::vector<mode> modes;   ///< in rising frequency
+    std::size_t lines;         ///< used
+    double residual;           ///< rms of |ln(model/measured)|
+    double surprise;           ///< as in `plant_fit`: far above 1, the model is still too small
     bool converged;
     std::vector<double>
         information; ///< Bayesian criterion with 0, 1, ... modes, as far as tried; the least is best
@@ -99,8 +99,8 @@ modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& option
         return std::array{unit * best.x[i], unit * (best.x[i] - spread(i)), unit * (best.x[i] + spread(i))};
     };
     const auto in = []<class Quantity>(const std::array<double, 3>& v, Quantity) {
-        return estimate<Quantity>{Quantity::from_value(v[0]), Quantity::from_value(v[1]),
-                                  Quantity::from_value(v[2])};
+        return estimated<Quantity>{Quantity::from_value(v[0]), Quantity::from_value(v[1]),
+                                   Quantity::from_value(v[2])};
     };
     modes_fit<In> out{in(linear(0, fastest), per_second()),
                       in(ratio(1, 1), gain_of<signal::acceleration, In>()),
@@ -122,4 +122,4 @@ modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& option
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "frf.hpp"
 #include "loop.hpp"
 #include "minimise.hpp"
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Which lines of an FRF, and where to look.
 struct plant_fit_options {
@@ -23,16 +23,16 @@ struct plant_fit_options {
 
 /// Fitted G(s) = B e^{-s Td}/(s (s + A)) with intervals of 95 %.
 template <signal_tag Command = signal::voltage> struct plant_fit {
-    estimate<per_second> pole;                             ///< A [1/s]
-    estimate<gain_of<signal::acceleration, Command>> gain; ///< B
-    estimate<duration> delay;                              ///< Td; of a sampled FRF with the hold's half period
-    std::size_t lines;                                     ///< used
-    double residual; ///< rms of |ln(model/measured)|, so about the relative error of a line
+    estimated<per_second> pole;                             ///< A [1/s]
+    estimated<gain_of<signal::acceleration, Command>> gain; ///< B
+    estimated<duration> delay; ///< Td; of a sampled FRF with the hold's half period
+    std::size_t lines;         ///< used
+    double residual;           ///< rms of |ln(model/measured)|, so about the relative error of a line
     double
         surprise; ///< sum of squares over what the lines' spread explains; far above 1: the model is too small
     bool converged;
 
-    axis_model<Command> model() const { return {pole.value, gain.value, delay.value}; }
+    rigid_axis_model<Command> model() const { return {pole.value, gain.value, delay.value}; }
 };
 
 /// Fit of [Jamaludin2008] eq. (2.2) by nonlinear least squares: ln of model over measurement, real part (gain)
@@ -136,4 +136,4 @@ plant_fit<In> fit_plant(const measured_frf& frf, const plant_fit_options& option
             fit.converged};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

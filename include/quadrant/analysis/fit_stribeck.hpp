@@ -11,15 +11,15 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Fitted eq. (3.5) with intervals of 95 %.
 struct stribeck_fit {
     using force = quantity_of<signal::force>;
-    estimate<force> coulomb;                     ///< Fc
-    std::optional<estimate<force>> static_level; ///< Fs; none: no speed was slow enough to see it
-    std::optional<estimate<quantity_of<signal::velocity>>> stribeck_velocity; ///< Vs; with Fs only
-    estimate<gain_of<signal::force, signal::velocity>> viscous; ///< all of it: sigma and the plant's own
+    estimated<force> coulomb;                     ///< Fc
+    std::optional<estimated<force>> static_level; ///< Fs; none: no speed was slow enough to see it
+    std::optional<estimated<quantity_of<signal::velocity>>> stribeck_velocity; ///< Vs; with Fs only
+    estimated<gain_of<signal::force, signal::velocity>> viscous; ///< all of it: sigma and the plant's own
     double surprise; ///< sum of squares over what the points' errors explain; far above 1: another curve
     bool converged;
     double shape = 1;   ///< delta, as given
@@ -83,8 +83,8 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     };
     const auto about = [](auto unit, double value, double reach) {
         using quantity = decltype(unit);
-        return estimate<quantity>{quantity::from_value(value), quantity::from_value(value - reach),
-                                  quantity::from_value(value + reach)};
+        return estimated<quantity>{quantity::from_value(value), quantity::from_value(value - reach),
+                                   quantity::from_value(value + reach)};
     };
     using viscosity = gain_of<signal::force, signal::velocity>;
     using speed = quantity_of<signal::velocity>;
@@ -131,4 +131,4 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Radix-2 FFT in place, sum x[n] e^{-j 2 pi n k / size}; the size must be a power of two.
 inline void fft(std::vector<complex>& x) {
@@ -204,4 +204,4 @@ inline measured_frf ratio(const measured_frf& over, const measured_frf& under) {
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What a run leaves: encoder and command of the same samples.
 template <signal_tag Command = signal::voltage> struct axis_log {
@@ -173,4 +173,4 @@ friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration p
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

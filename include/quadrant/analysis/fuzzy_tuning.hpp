@@ -12,7 +12,7 @@
 /// Tuning of a `sliding_mode` law by fuzzy rules on how a trial went: its gain Ks and adaptation rho, step by
 /// step; sliding stays.
 /// Source: [Yeung2006] section 3; max-min composition and centroid [Mamdani1975].
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How a trial went.
 struct tuning_trial {
@@ -191,4 +191,4 @@ inline double oscillation_index(const std::vector<double>& command, duration per
     return scale * high.peak() / low.peak();
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

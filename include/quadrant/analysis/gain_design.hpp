@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What an open loop has to keep from -1.
 struct wanted_margins {
@@ -181,4 +181,4 @@ gain_design<Command> design_gains(const Plant& plant, const Feedback& feedback, 
             {margins(open_position, b), outer.next.what, outer.next.at}};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

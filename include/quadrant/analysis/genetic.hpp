@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Where a gain may lie; over decades in its logarithm.
 struct gene {
@@ -234,4 +234,4 @@ inline genetic_state read_genetic(const std::string& text) {
     return s;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

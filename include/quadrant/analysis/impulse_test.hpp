@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What an axis in closed loop did in one period.
 struct loop_sample {
@@ -122,4 +122,4 @@ private:
     answer pushed_{}, led_{};
 };
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

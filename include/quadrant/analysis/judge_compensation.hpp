@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "estimate.hpp"
+#include "estimated.hpp"
 #include "frf.hpp"
 #include "quadrant_glitch.hpp"
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 enum class compensation_size { cannot_tell, wrong_sign, not_at_all, too_weak, right, too_strong };
 enum class compensation_time { cannot_tell, too_early, right, too_late };
@@ -20,10 +20,10 @@ enum class compensation_time { cannot_tell, too_early, right, too_late };
 /// What a friction compensation does at reversals, beside what was needed. In units of the wire that it is
 /// added to.
 template <signal_tag Command> struct compensation_verdict {
-    estimate<quantity_of<Command>> needed;   ///< half the step of the friction at a reversal
-    estimate<quantity_of<Command>> supplied; ///< half the step of the compensation
-    estimate<double> scale;                  ///< supplied over needed, 1 is right; interval of 95 %
-    estimate<duration> late;                 ///< of the compensation behind what was needed; below 0: early
+    estimated<quantity_of<Command>> needed;   ///< half the step of the friction at a reversal
+    estimated<quantity_of<Command>> supplied; ///< half the step of the compensation
+    estimated<double> scale;                  ///< supplied over needed, 1 is right; interval of 95 %
+    estimated<duration> late;                 ///< of the compensation behind what was needed; below 0: early
     double explained;      ///< share of the error at reversals that steps of friction explain, 0 ... 1
     std::size_t reversals; ///< that count
     compensation_size size;
@@ -111,7 +111,7 @@ inline step_found find_step(std::vector<double> signal, const std::vector<double
     return best;
 }
 /// Mean of independent values with its interval.
-inline estimate<double> mean_of(const std::vector<double>& x) {
+inline estimated<double> mean_of(const std::vector<double>& x) {
     double mean = 0, squares = 0;
     const double n = double(x.size());
     for (const double each : x) mean += each / n;
@@ -189,9 +189,9 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
         out.why = "fewer than 4 reversals with a whole window";
         return out;
     }
-    const auto typed = [](auto unit_of, const estimate<double>& x) {
+    const auto typed = [](auto unit_of, const estimated<double>& x) {
         using to = decltype(unit_of);
-        return estimate<to>{to::from_value(x.value), to::from_value(x.low), to::from_value(x.high)};
+        return estimated<to>{to::from_value(x.value), to::from_value(x.low), to::from_value(x.high)};
     };
     const auto size = detail::mean_of(sizes);
     out.needed = typed(quantity(), size);
@@ -229,4 +229,4 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// What is usually asked of one axis under a control law.
 struct law_figures {
@@ -67,4 +67,4 @@ law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
     return y;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

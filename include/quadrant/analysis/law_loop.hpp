@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// An axis x/u = B / (s (s + A)) behind the hold of its D/A converter, as encoder, tachometer and accelerometer
 /// see it at the samples: exact.
@@ -36,7 +36,7 @@ private:
     };
     parts at(frequency f) const {
         return {std::polar(1.0, 2 * std::numbers::pi * f.value() * period.value()),
-                {plant.damping.value(), period.value()}};
+                {plant.viscous_rate.value(), period.value()}};
     }
 };
 
@@ -72,4 +72,4 @@ struct law_loop {
 };
 template <class Law> law_loop(Law, sampled_axis<typename Law::output>) -> law_loop<Law>;
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Equations sum over j of a[j] x[j] = b, one `add` each, solved in the least-squares sense by Householder QR
 /// (so the condition of the matrix is not squared); bare numbers. Small problems: up to some hundred unknowns.
@@ -77,4 +77,4 @@ private:
     std::vector<std::vector<double>> rows_;
 };
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -7,20 +7,20 @@
 #include <numbers>
 #include <type_traits>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Continuous-time responses of the thesis' parts, as callables. For the sampled blocks use their own
 /// response(): it has their zero-order hold not in it.
 
 /// A linear axis from command to position: G(s) = B e^{-s Td} / (s (s + A)), [Jamaludin2008] eq. (2.2).
-template <signal_tag Command = signal::voltage> struct axis_model {
-    per_second pole;                             ///< A: viscous force over mass; >= 0
+template <signal_tag Command = signal::voltage> struct rigid_axis_model {
+    per_second viscous_rate;                     ///< A: viscous friction over mass; >= 0
     gain_of<signal::acceleration, Command> gain; ///< B, acceleration per command
     duration delay;                              ///< Td
 
     complex operator()(frequency f) const {
         const complex s = laplace(f);
-        return gain.value() * std::exp(-s * delay.value()) / (s * (s + pole.value()));
+        return gain.value() * std::exp(-s * delay.value()) / (s * (s + viscous_rate.value()));
     }
 };
 
@@ -43,15 +43,15 @@ struct derivative_model {
     }
 };
 
-/// (s^2 + w^2) / (s^2 + damping w s + w^2), w = 2 pi centre: the parameters of the block `notch`.
+/// (s^2 + w^2) / (s^2 + width w s + w^2), w = 2 pi centre: the parameters of the block `notch`.
 struct notch_model {
     frequency centre;
-    double damping;
+    double width;
 
     complex operator()(frequency f) const {
         const complex s = laplace(f);
         const double w = 2 * std::numbers::pi * centre.value();
-        return (s * s + w * w) / (s * s + damping * w * s + w * w);
+        return (s * s + w * w) / (s * s + width * w * s + w * w);
     }
 };
 
@@ -129,11 +129,11 @@ struct ideal_corners {
     double damping;  ///< zeta = 0.5 sqrt(w_s / kv)
 };
 template <signal_tag Command>
-ideal_corners corners(const axis_model<Command>& plant, const pi_model<Command>& velocity,
+ideal_corners corners(const rigid_axis_model<Command>& plant, const pi_model<Command>& velocity,
                       per_second position_gain) {
     require_positive("corners.position_gain", position_gain);
     const double ws = std::abs(velocity.gain.value() * plant.gain.value()), kv = position_gain.value();
     return {ws, std::sqrt(kv * ws), 0.5 * std::sqrt(ws / kv)};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

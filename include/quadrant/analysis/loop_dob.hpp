@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Q and Q/Gn of an observer in continuous time, the Q of `disturbance_observer`. For the sampled block take
 /// its q(f) and inverse(f) as two lambdas instead. [Jamaludin2008] (4.6), (4.7).
@@ -21,13 +21,13 @@ template <std::size_t Order = 2, std::size_t NumeratorOrder = 0> struct q_model 
                quadrant::detail::polynomial(q.denominator, laplace(f));
     }
 };
-/// Q/Gn; Nominal any response, an `axis_model` without delay.
-template <frequency_response Q, frequency_response Nominal> struct inverse_model {
+/// Q/Gn; Nominal any response, a `rigid_axis_model` without delay.
+template <frequency_response Q, frequency_response Nominal> struct q_inverse_model {
     Q q;
     Nominal nominal;
     complex operator()(frequency f) const { return complex(q(f)) / complex(nominal(f)); }
 };
-template <class Q, class N> inverse_model(Q, N) -> inverse_model<Q, N>;
+template <class Q, class N> q_inverse_model(Q, N) -> q_inverse_model<Q, N>;
 
 /// An axis G with its disturbance observer, from what the controller wants to position: G / (1 - Q + G Q/Gn).
 /// It is Gn where Q = 1 and G where Q = 0.
@@ -102,4 +102,4 @@ observer_limits limits(const p_pi_dob_loop<Loop, Q, Inverse>& loop, const band& 
     return {rises.empty() ? std::nullopt : std::optional(rises.front()), {1 / worst.value, worst.at}};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One crossing of the open loop, and what is left there.
 struct margin {
@@ -203,4 +203,4 @@ template <frequency_response R> margin least(const R& r, const band& b) {
     return {std::abs(complex(r(f))), f};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

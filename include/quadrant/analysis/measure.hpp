@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One call of a loop, never inlined: what `measure` times, and what callgrind finds by its name
 /// (benchmarks/bound.sh).
@@ -71,4 +71,4 @@ call_times measure(Loop& loop, const std::vector<Input>& inputs, std::size_t cal
     return result;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

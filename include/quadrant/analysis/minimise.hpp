@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Where the sum of squares of residuals(x) is least, seen from a start.
 struct minimum {
@@ -84,4 +84,4 @@ template <class Residuals> minimum minimise(const Residuals& residuals, std::vec
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

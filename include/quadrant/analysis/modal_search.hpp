@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis::detail {
+namespace quadrant::inline v0::analysis::detail {
 
 /// The fit of one number of modes: x = A/fastest, ln B, Td fastest, then ln w, ln zeta, share for each mode.
 class modal_search {
@@ -187,4 +187,4 @@ private:
     double slowest_, fastest_; ///< [rad/s]
 };
 
-} // namespace quadrant::analysis::detail
+} // namespace quadrant::inline v0::analysis::detail

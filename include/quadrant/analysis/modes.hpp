@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// One structural or base mode beside the rigid axis, as its partial fraction (in time: block
 /// `flexible_modes`):
@@ -18,7 +18,7 @@ namespace quadrant::analysis {
 /// A base of mass Mb on its bolts under a slide of mass M, the encoder between them: share = M/Mb.
 struct flexible_mode {
     frequency centre; ///< undamped natural frequency, > 0
-    double damping;   ///< ratio zeta, > 0; half of what a notch calls damping
+    double damping;   ///< ratio zeta, > 0; half the width of a notch
     double share;     ///< residue over that of the rigid axis
 
     complex operator()(frequency f) const {
@@ -36,18 +36,19 @@ struct flexible_mode {
 /// A linear axis with modes, from command to position:
 ///   G(s) = B e^{-s Td} (1/(s (s + A)) + sum share_i/(s^2 + 2 damping_i w_i s + w_i^2))
 /// Modal superposition in parallel form: any number of modes, none needs to know the others. Without modes
-/// `axis_model`.
+/// `rigid_axis_model`.
 template <signal_tag Command = signal::voltage> struct flexible_axis_model {
-    axis_model<Command> rigid;
+    rigid_axis_model<Command> rigid;
     std::vector<flexible_mode> modes;
 
     complex operator()(frequency f) const {
         const complex s = laplace(f);
-        complex sum = 1.0 / (s * (s + rigid.pole.value()));
+        complex sum = 1.0 / (s * (s + rigid.viscous_rate.value()));
         for (const flexible_mode& mode : modes) sum += mode(f);
         return rigid.gain.value() * std::exp(-s * rigid.delay.value()) * sum;
     }
 };
-template <class C> flexible_axis_model(axis_model<C>, std::vector<flexible_mode>) -> flexible_axis_model<C>;
+template <class C>
+flexible_axis_model(rigid_axis_model<C>, std::vector<flexible_mode>) -> flexible_axis_model<C>;
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Fitness of a move as a cost, after [LowKeck2003] eq. (9): weighted mean squares of the tracking error until
 /// the move should have ended, of the error after that, and of the command. Its weights are not published.
@@ -41,4 +41,4 @@ private:
     double during_ = 0, later_ = 0, pushed_ = 0, samples_ = 0, late_samples_ = 0;
 };
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Where to look for a peak, and what is wanted of its notch.
 struct notch_rule {
@@ -116,12 +116,12 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
                 quadrant::detail::shortest(quadrant::detail::in_unit(nyquist, " Hz")) + ")");
     const auto warped = [&](frequency at) { return std::tan(std::numbers::pi * at.value() * period.value()); };
     const double gain = std::pow(10.0, -rule.attenuation_db / 20);
-    double damping = 0;
+    double width = 0;
     for (const frequency& end : {low, high}) {
         const double r = warped(end) / warped(peak->at);
-        damping = std::max(damping, std::abs(1 - r * r) / r * std::sqrt(1 / (gain * gain) - 1));
+        width = std::max(width, std::abs(1 - r * r) / r * std::sqrt(1 / (gain * gain) - 1));
     }
-    const double half_width = 0.5 * damping * peak->at.value();
+    const double half_width = 0.5 * width * peak->at.value();
     require(peak->at.value() + half_width < nyquist, "design_notch: centre plus half its width",
             quadrant::detail::in_unit(peak->at.value() + half_width, " Hz"),
             "must lie below half the sampling rate (" +
@@ -131,7 +131,7 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
             quadrant::detail::in_unit(peak->at.value() - half_width, " Hz"),
             "must lie above the crossover (" + quadrant::detail::shortest(rule.crossover) +
                 "): the peak lies in the band of the loop; lower the gain instead");
-    const typename notch<Signal>::parameters parameters{peak->at, damping};
+    const typename notch<Signal>::parameters parameters{peak->at, width};
     const double phase =
         -std::arg(notch<Signal>(parameters, period).response(rule.crossover)) * 180 / std::numbers::pi;
     require(phase <= rule.most_phase, "design_notch: phase at the crossover",
@@ -143,4 +143,4 @@ notch_design<Signal> design_notch(const measured_frf& frf, duration period, cons
         phase};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -6,7 +6,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How many poles of the loop closed over L lie right of the axis (outside the circle, for a sampled L): 0 is
 /// stable.
@@ -51,4 +51,4 @@ template <frequency_response Loop> int unstable_poles(const Loop& loop, const ba
     return count;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How a Q filter is judged against a measured axis.
 struct q_rule {
@@ -93,7 +93,7 @@ q_verdict check_q(const Observer& observer, const measured_frf& frf, const q_rul
     require(out.worst <= rule.margin, "check_q: largest |Q Delta|", out.worst,
             "must not be above q_rule.margin (" + quadrant::detail::shortest(rule.margin) + "), is at " +
                 quadrant::detail::shortest(out.at.value()) +
-                " Hz: lower disturbance_observer.corner or mend the nominal plant");
+                " Hz: lower disturbance_observer.corner or correct the nominal plant");
     return out;
 }
 
@@ -136,4 +136,4 @@ q_design<Observer> design_q(const measured_frf& frf, const decltype(Observer::pa
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// The tracking error that follows one reversal of an axis.
 struct glitch {
@@ -75,4 +75,4 @@ inline quantity_of<signal::position> largest_glitch(const std::vector<glitch>& a
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

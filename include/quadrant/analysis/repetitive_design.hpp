@@ -19,7 +19,7 @@
 /// control.
 ///   added to the error: L W Q / (1 - W Q), W = sum w[i] z^{-i N}
 ///   error with over error without:  M = (1 - W Q) / (1 - W Q (1 - L T));   stable when |Q W (1 - L T)| < 1
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A FIR filter that looks `ahead` samples ahead: taps[i] weighs the sample ahead - i from now.
 template <std::size_t Taps> struct fir {
@@ -250,4 +250,4 @@ typename Block::parameters repetitive_parameters(const Loop& t, const std::array
     return {.cycle = cycle, .weights = weights, .learning = l.taps, .ahead = l.ahead, .smoothing = q.taps};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

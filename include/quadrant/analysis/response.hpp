@@ -13,7 +13,7 @@
 #include <vector>
 
 /// Frequency responses: what `margins.hpp`, `loop.hpp` and the designs take.
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A value of a frequency response, in SI units of output per input.
 using complex = std::complex<double>;
@@ -100,4 +100,4 @@ private:
     std::vector<complex> values_;
 };
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// The spike that a reversal leaves in the tracking error of one axis; as `reversal_spike` of the circular test
 /// does for the circle.
@@ -54,4 +54,4 @@ inline std::vector<axis_spike> reversal_spikes(const std::vector<quantity_of<sig
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

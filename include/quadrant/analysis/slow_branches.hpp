@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::analysis::detail {
+namespace quadrant::inline v0::analysis::detail {
 
 /// Friction over the way from reversal to reversal: what `find_virgin_curve` is made of.
 struct slow_branches {
@@ -104,4 +104,4 @@ slow_branches cut_at_reversals(const axis_log<Command>& run, double period, doub
     return out;
 }
 
-} // namespace quadrant::analysis::detail
+} // namespace quadrant::inline v0::analysis::detail

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// How a loop answers a step.
 struct step_figures {
@@ -40,7 +40,7 @@ step_figures stepped(Law law, const sampled_axis<typename Law::output>& axis, qu
     require_positive("step_test.lasts", with.lasts);
     require(with.limit > command(), "step_test.limit", with.limit, "must be above 0 (infinite: none)");
     const double T = axis.period.value(), B = axis.plant.gain.value();
-    const viscous_step<> step(axis.plant.damping.value(), T);
+    const viscous_step<> step(axis.plant.viscous_rate.value(), T);
     const auto samples = static_cast<long>(std::lround(with.lasts.value() / T));
     require(samples >= 10, "step_test.lasts", with.lasts, "must be ten periods or more");
     long lead = 0;
@@ -108,4 +108,4 @@ step_figures disturbance_step(const Law& law, const sampled_axis<typename Law::o
     return y;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

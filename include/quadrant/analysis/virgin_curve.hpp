@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// Friction over the way from rest, springs relaxed.
 struct virgin_curve {
@@ -163,4 +163,4 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
     return out;
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 /// A number as text, for messages.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 #ifdef __cpp_exceptions
 /// The shortest text that reads back as the same number.
@@ -63,4 +63,4 @@ template <class Isa = isa::here> number_text digits(double x) {
 }
 #endif
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

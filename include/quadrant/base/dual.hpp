@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A number that carries its derivatives by N parameters: run a whole loop with it and read how every wire
 /// moves with them. Eager (no expression templates), so that it fits into a quantity. Comparisons look at the
@@ -85,4 +85,4 @@ template <std::size_t N, std::floating_point Real = double> struct dual {
     friend dual round(const dual& x) noexcept { return x.chain(std::round(x.value), 1); }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -21,7 +21,7 @@
 /// Parameters that no machine could have. With exceptions a constructor throws invalid_parameter. Without them
 /// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does
 /// neither. What is no template by itself carries the instruction set, see lanes/instruction_set.hpp.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// Words and numbers into a buffer that is never overrun; `used` counts what there was to write.
@@ -245,4 +245,4 @@ void require_below_nyquist(const detail::field_name& field, const Value& value, 
     }
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

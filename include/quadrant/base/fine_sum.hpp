@@ -5,7 +5,7 @@
 #include <concepts>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// x, rounded: what follows may not be worked out together with what made x. Only -ffast-math would.
@@ -69,4 +69,4 @@ template <class Value> struct fine_sum<Value, false> {
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

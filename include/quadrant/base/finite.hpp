@@ -8,7 +8,7 @@
 
 /// One policy for NaN and infinities in every block: hold the last output, keep the state, raise a flag that
 /// only `reset` or `settle` clears.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <carries_partials Dual> constexpr bool is_finite(const Dual& x) noexcept {
@@ -108,4 +108,4 @@ private:
     mask fault_{};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

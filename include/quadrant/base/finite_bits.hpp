@@ -6,7 +6,7 @@
 
 /// What a number is, by its bits and not by std::isfinite or x != x: stays true to its word under -ffast-math,
 /// by which a compiler may take it that there are no NaNs and no infinities.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// A number with its derivatives beside it (`dual`, or one of the user's own).
 template <class T>
@@ -27,4 +27,4 @@ constexpr bool is_nan(double x) noexcept {
     return (bits_as<std::uint64_t>(x) & 0x7fff'ffff'ffff'ffff) > 0x7ff0'0000'0000'0000;
 }
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

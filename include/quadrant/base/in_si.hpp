@@ -3,12 +3,12 @@
 #include "finite.hpp"
 #include "units.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A bare number, in SI, at the border to code without units; becomes whatever quantity stands on the other
 /// side:
 ///   const double u = step_in_si(axis, r, y);                                             // one line per axis
-///   notch<signal::force> resonance({.centre = in_si(330), .damping = 0.4}, in_si(500e-6));
+///   notch<signal::force> resonance({.centre = in_si(330), .width = 0.4}, in_si(500e-6));
 /// Nothing checks its unit: write it as far outside as you can, and quantities within.
 template <class Number> struct in_si {
     Number value;
@@ -25,4 +25,4 @@ template <class Box, class... Numbers> constexpr auto step_in_si(Box& box, Numbe
     return detail::bare(box(in_si(x)...));
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -4,13 +4,13 @@
 
 /// Literals for parameters: `125_us`, `330_Hz`, `12_kg`. A rate is written `60_per_s` or `60.0 / 1_s`
 /// (integers do not divide by a quantity), and is not a frequency: see units.hpp.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 template <class Unit> constexpr quantity<Unit> of(long double value) {
     return quantity<Unit>::from_value(static_cast<double>(value));
 }
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail
 
-namespace quadrant::literals {
+namespace quadrant::inline v0::literals {
 
 constexpr auto operator""_m(long double v) { return detail::of<si::length>(v); }
 constexpr auto operator""_mm(long double v) { return detail::of<si::length>(v * 1e-3L); }
@@ -56,4 +56,4 @@ constexpr auto operator""_kgm2(unsigned long long v) { return operator""_kgm2(st
 constexpr auto operator""_V(unsigned long long v) { return operator""_V(static_cast<long double>(v)); }
 constexpr auto operator""_A(unsigned long long v) { return operator""_A(static_cast<long double>(v)); }
 
-} // namespace quadrant::literals
+} // namespace quadrant::inline v0::literals

@@ -6,10 +6,10 @@
 #include <type_traits>
 
 /// Blocks without exceptions: what a constructor refuses comes back as a value.
-///   auto resonance = make<notch<signal::force>>({.centre = 330_Hz, .damping = 0.4}, 500_us);
+///   auto resonance = make<notch<signal::force>>({.centre = 330_Hz, .width = 0.4}, 500_us);
 ///   if (!resonance) resonance.why().write(text, sizeof text);   // else *resonance, resonance->
 /// The rules are those of the constructor, with and without -fno-exceptions.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <class Block> struct parameters_of {
@@ -85,4 +85,4 @@ template <class Block> made<Block> make(const typename detail::parameters_of<Blo
     return out;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

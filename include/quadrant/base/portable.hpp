@@ -17,7 +17,7 @@
 
 /// What a C++20 library may lack (libc++ 13, as emscripten 3.1.6 has it), in one place. Each function does what
 /// the standard one does; where that exists, it is used, and tests compare the two.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// Whether threads can be started: not in WebAssembly, unless it was built for threads.
 #if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
@@ -113,4 +113,4 @@ std::from_chars_result number_from_chars(const char* first, const char* last, do
 }
 #endif
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one overload for each comparison and each kind of number.
 #pragma once
 #include "units.hpp"
 
@@ -11,7 +12,7 @@
 /// Comparison and choice for every number type. `a < b` has one answer; a number of lanes (lanes.hpp) has one
 /// answer per lane, a mask. A block that is to run in lanes writes `select(less(x, low), low, x)` where a block
 /// in double may write `x < low ? low : x`. For double, float and dual both compile to the same code.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// How many instances a number holds: 1, or W for lanes<W>.
 template <class Number> inline constexpr std::size_t lane_count = 1;
@@ -273,4 +274,4 @@ constexpr void set_lane(quantity<Unit, Real>& x, std::size_t i, const quantity<U
     x = quantity<Unit, Real>::from_value(lanes);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

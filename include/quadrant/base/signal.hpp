@@ -5,7 +5,7 @@
 #include <concepts>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What a wire carries. Blocks are templates over these tags, not over quantity types, so that the compiler
 /// prints `block<signal::velocity, signal::force>` and a log header knows the unit.
@@ -99,4 +99,4 @@ template <class Out, class In>
 concept rate_of = signal_tag<Out> && signal_tag<In> &&
     std::same_as<typename Out::unit, unit_quotient<typename In::unit, si::time>>;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 /// An axis that stands still must cost no more than one that moves, and what has died out must be zero. A
 /// recursive filter alone halves its state for ever; below 1e-308 (float: 1e-38) the processor then computes
 /// with subnormal numbers, slowly.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// The part of a number's bits that is zero below 2^-895 (float: 2^-63). Nothing is left of a signal in SI
@@ -68,4 +68,4 @@ template <class Value> constexpr Value unless_died_out(const Value& x) noexcept 
     return detail::without_tiny(x);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 /// The unit of a quantity as text, for messages: " Hz", " N/V", " V s/m". Found from the type when a program is
 /// compiled, so that a message costs no more than the letters. A unit that is a product of others has several
 /// names; the text takes the shortest, with volts before newtons, since gains of a servo loop carry volts.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// Powers of the SI's base units, of the radian and of the hertz.
 struct unit_powers {
@@ -119,4 +119,4 @@ template <class Dimension, class System, class Real>
 inline constexpr unit_letters unit_text<boost::units::quantity<boost::units::unit<Dimension, System>, Real>> =
     letters_of(powers_of(Dimension{}));
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

@@ -24,7 +24,7 @@
 /// Physical quantities, SI throughout. A frequency [Hz] counts periods; a rate [1/s] is what a gain between a
 /// position and a velocity is. 25 Hz are a rate of 2 pi 25 1/s, so the two are different types, and neither
 /// converts to the other but by name: `rate_of_corner(25_Hz)`.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace si = boost::units::si;
 /// A number with its unit, checked when it is compiled and free when it runs.
@@ -69,4 +69,4 @@ template <class A, class B> using unit_quotient = typename boost::units::divide_
 /// The unit of A times B.
 template <class A, class B> using unit_product = typename boost::units::multiply_typeof_helper<A, B>::type;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

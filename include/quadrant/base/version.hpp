@@ -15,10 +15,10 @@
 #    define QUADRANT_DIAGNOSIS_DECL inline
 #endif
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 inline constexpr struct {
     int major, minor, patch;
 } version{QUADRANT_VERSION_MAJOR, QUADRANT_VERSION_MINOR, QUADRANT_VERSION_PATCH};
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <complex>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// An empty box: switches an addition off at compile time (no friction feedforward, no observer).
 ///   y = 0
@@ -79,4 +79,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

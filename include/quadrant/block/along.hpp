@@ -4,7 +4,7 @@
 
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Names of the axes, for the compiler.
 namespace axis {
@@ -44,4 +44,4 @@ template <class Quantity> struct xy {
     along<axis::y, Quantity> y;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -4,7 +4,7 @@
 
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What a trajectory asks of one axis at one moment.
 template <class Real = double> struct axis_motion {
@@ -25,4 +25,4 @@ concept motion_sample = std::default_initializable<M> && requires(const M& m) {
                           quantity_of<signal::acceleration, typename decltype(M::position)::value_type>>;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

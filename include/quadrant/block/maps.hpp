@@ -5,7 +5,7 @@
 #include <concepts>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <class Block> struct real_of_block { using type = double; };
@@ -71,4 +71,4 @@ template <class Block> constexpr bool is_faulted(const Block& block) noexcept {
 }
 } // namespace detail
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

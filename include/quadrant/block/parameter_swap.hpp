@@ -4,7 +4,7 @@
 #include <atomic>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Hands a whole set from the thread that tunes to the thread that controls, between two samples: all of it or
 /// nothing.
@@ -51,4 +51,4 @@ private:
     std::atomic<unsigned> between_{2};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Several blocks of one signal behind one another, in the order of the list: two notches, a notch and a
 /// low-pass.
@@ -101,4 +101,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 /// Named wires to record: a list of taps beside a struct of wires, so that a log has names and units without a
 /// macro.
 ///   static constexpr auto taps() { return std::array{tap<signal::position, &wires::error>("error"), ...}; }
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One wire of `Wires`: its name, the text of its unit, and how to read it in SI.
 template <class Wires, class Real> struct tap_of {
@@ -63,4 +63,4 @@ constexpr bool every_wire_has_a_tap(const std::array<tap_of<Wires, Real>, N>& ta
     return bytes == sizeof(Wires);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

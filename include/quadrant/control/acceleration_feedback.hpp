@@ -7,7 +7,7 @@
 
 #include <complex>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// A law whose reference is that of now: its acceleration can be compared with the measured one.
@@ -110,4 +110,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -7,7 +7,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What an axis is doing. Its drive has power while `on` and while `stopping`.
 enum class power_state : unsigned char { off, on, stopping, tripped };
@@ -157,4 +157,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -32,7 +32,7 @@
 ///                               arguments are those of the last sample, u is what the law shall have given there: what
 ///                               holds the axis takes up what the other gains change of it.
 /// Source: [Yeung2006] eq. (19).
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Eq. (19) of a linear law at a frequency, SI: u = to . (x_ref, v_ref, a_ref) - from . (x, v, a). The lead is
 /// not in it: `to` takes the reference as it is given.
@@ -70,4 +70,4 @@ concept retunable_law = axis_law<L> && requires(L law, const L& next, const axis
     law.retune(next, reference, measured, velocity, u);
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -3,7 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// What x has beyond a dead band of this half width. The one place of this law; `dead_band` and `servo_axis`
@@ -66,4 +66,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -13,7 +13,7 @@
 
 /// Polynomials in z^-1, by rising power, for the design of `rst` laws. Design only: runs once, may throw, no
 /// allocation.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// p[0] + p[1] z^-1 + ... + p[Degree] z^-Degree.
 template <std::size_t Degree, class Number = double> using z_polynomial = std::array<Number, Degree + 1>;
@@ -145,4 +145,4 @@ inline double real_pole(frequency at, duration period) {
     return std::exp(-2 * std::numbers::pi * at.value() * period.value());
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

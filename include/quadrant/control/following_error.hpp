@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Watches how far the axis is from where it shall be, and trips when that is too far for too long.
 ///   y = |e| / (window + per_speed |v|);   y > warning: warns;   y > 1 for longer than patience: trips
@@ -92,4 +92,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A gain that depends on something else: on the load, on where the axis stands, on its speed.
 ///   y = g(s) x,   g: straight between the nodes (at[i], gain[i]), held beyond the first and the last
@@ -89,4 +89,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

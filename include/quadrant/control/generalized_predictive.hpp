@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What a `generalized_predictive` law weighs.
 template <signal_tag Command = signal::voltage> struct predictive_costs {
@@ -90,4 +90,4 @@ auto generalized_predictive(const axis_model<Command, Number>& plant, const pred
 template <std::size_t Horizon = 20, class Real = double, signal_tag Command = signal::voltage>
 using generalized_predictive_law = rst<2, 2, Horizon - 1, Horizon, Real, Command>;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

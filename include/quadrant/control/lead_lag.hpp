@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What a lead-lag compensator shall make of the open loop.
 struct lead_lag_loop {
@@ -66,4 +66,4 @@ auto design_lead_lag(const axis_model<Command>& plant, const lead_lag_loop& want
 template <class Real = double, signal_tag Command = signal::voltage>
 using lead_lag = rst<2, 2, 2, 0, Real, Command>;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

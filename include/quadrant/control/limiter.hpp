@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Clips a wire to what the amplifier can do.
 ///   y = low if x < low, high if x > high, else x
@@ -93,4 +93,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The stock component `pid` of LinuxCNC as a control law: a machine that runs under it is simulated and
 /// replayed with the same command, bit for bit in double.
@@ -201,4 +201,4 @@ private:
 };
 static_assert(retunable_law<linuxcnc_pid<>>);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive as most drives have it: a position loop (P) asks a velocity loop (PI) for a
 /// speed.
@@ -169,13 +169,13 @@ struct p_pi_loops {
 template <signal_tag Command>
 auto place_p_pi(const axis_model<Command>& plant, const p_pi_loops& wanted, duration period) {
     require_positive("place_p_pi.plant.gain", plant.gain);
-    require_not_negative("place_p_pi.plant.damping", plant.damping);
+    require_not_negative("place_p_pi.plant.viscous_rate", plant.viscous_rate);
     require_positive("place_p_pi.natural", wanted.natural);
     require_positive("place_p_pi.damping", wanted.damping);
     require_positive("place_p_pi.position", wanted.position);
     require_positive("place_p_pi.period", period);
     const double w = 2 * std::numbers::pi * wanted.natural.value(), B = plant.gain.value(),
-                 A = plant.damping.value(), T = period.value();
+                 A = plant.viscous_rate.value(), T = period.value();
     typename p_pi<double, Command>::parameters p;
     p.position_gain = decltype(p.position_gain)::from_value(wanted.position * w);
     p.gain = decltype(p.gain)::from_value((2 * wanted.damping * w - A) / B);
@@ -195,4 +195,4 @@ auto place_p_pi(const axis_model<Command>& plant, const p_pi_loops& wanted, dura
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

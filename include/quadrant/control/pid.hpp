@@ -12,7 +12,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Where a `pid` takes the velocity error of its derivative part from.
 enum class derivative_from {
@@ -192,7 +192,7 @@ struct pid_poles {
 /// are refused by the block.
 template <signal_tag Command> auto place_pid(const axis_model<Command>& plant, const pid_poles& poles) {
     require_positive("place_pid.plant.gain", plant.gain);
-    require_not_negative("place_pid.plant.damping", plant.damping);
+    require_not_negative("place_pid.plant.viscous_rate", plant.viscous_rate);
     require_positive("place_pid.natural", poles.natural);
     require_positive("place_pid.damping", poles.damping);
     require_positive("place_pid.real", poles.real);
@@ -201,8 +201,8 @@ template <signal_tag Command> auto place_pid(const axis_model<Command>& plant, c
     p.gain = decltype(p.gain)::from_value(w * w * (1 + 2 * poles.damping * poles.real) / B);
     p.integral_gain = decltype(p.integral_gain)::from_value(poles.real * w * w * w / B);
     p.derivative_gain = decltype(p.derivative_gain)::from_value(
-        ((poles.real + 2 * poles.damping) * w - plant.damping.value()) / B);
+        ((poles.real + 2 * poles.damping) * w - plant.viscous_rate.value()) / B);
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Where the poles of an `rst` loop shall lie.
 struct rst_poles {
@@ -80,4 +80,4 @@ auto place_rst(const axis_model<Command, Number>& plant, const rst_poles& poles,
 template <class Real = double, signal_tag Command = signal::voltage>
 using pole_placement = rst<2, 2, 2, 0, Real, Command>;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

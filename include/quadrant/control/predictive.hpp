@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive that knows what the trajectory will ask for: each sample it takes the first
 /// move of the best plan over the coming `horizon` periods, in changes of the command, so that it integrates.
@@ -164,7 +164,7 @@ private:
         require_positive("predictive.period", period);
         require(detail::is_finite(plain(p.plant.gain)) && plain(p.plant.gain) > 0, "predictive.plant.gain",
                 p.plant.gain, "must be finite and above 0: the command has to control the axis");
-        require_not_negative("predictive.plant.damping", p.plant.damping);
+        require_not_negative("predictive.plant.viscous_rate", p.plant.viscous_rate);
         require(p.horizon >= 1 && p.horizon <= Preview, "predictive.horizon", double(p.horizon),
                 "must lie between 1 and the preview (" + detail::shortest(double(Preview)) + " periods)");
         const auto& w = p.weights.error;
@@ -194,4 +194,4 @@ private:
 };
 static_assert(retunable_law<predictive<>>);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

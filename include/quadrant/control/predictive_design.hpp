@@ -8,7 +8,7 @@
 #include <cstddef>
 
 /// The gains of `predictive`. Design only: runs once, may throw, does not allocate.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What an error and a change of the command cost, bare numbers in SI; only their ratios matter.
 ///   J = sum over i = 1 ... horizon of e_i' error e_i + increment du_{i-1}^2,   e = (position error, speed error)
@@ -45,7 +45,7 @@ predictive_gains<Preview, Number> design_predictive(const axis_model<Command, Nu
     using namespace detail;
     const Number T(period.value()), way = plant.gain.value() * T * T;
     const auto axis =
-        sampled(matrix<2, 2, Number>{{{Number(0), Number(1)}, {Number(0), -plant.damping.value() * T}}},
+        sampled(matrix<2, 2, Number>{{{Number(0), Number(1)}, {Number(0), -plant.viscous_rate.value() * T}}},
                 column<2, Number>{Number(0), Number(1)}, matrix<2, 2, Number>{}, 1.0);
     const Number a = axis.step[0][1], c = axis.step[1][1], b1 = axis.from_input[0], b2 = axis.from_input[1],
                  none(0), one(1);
@@ -102,4 +102,4 @@ predictive_gains<Preview, Number> design_predictive(const axis_model<Command, Nu
     return out;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

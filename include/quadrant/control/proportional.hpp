@@ -5,7 +5,7 @@
 
 #include <complex>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Multiplies a wire by a gain: position loop, velocity and acceleration feedforward.
 ///   u = gain x
@@ -63,4 +63,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

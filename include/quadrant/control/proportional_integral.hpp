@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The integral alone is clamped to +-limit.
 struct integral_clamp {};
@@ -213,4 +213,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Rounds a wire to the steps of a DAC or an encoder.
 ///   y = round(x / step) step, halves away from zero; step = 0: y = x
@@ -79,4 +79,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

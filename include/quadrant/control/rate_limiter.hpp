@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Bounds how fast a wire may change: a demand that must not jump.
 ///   y[k] = x[k], but at most rate T away from y[k-1]
@@ -80,4 +80,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// lead() and most_lead of a law that previews Lead periods; nothing of one that does not.
@@ -237,4 +237,4 @@ double loop_radius(const sampled_plant<A, B, Number>& plant,
     return detail::largest_root_about_one(c);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

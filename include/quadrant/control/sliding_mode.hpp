@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive that keeps it on a sliding surface, S = 0, on which the error dies out with
 /// sliding: the inverse of the plant, a gain on S, and an estimate of the disturbance that adapts until the
@@ -68,7 +68,7 @@ public:
           adaptation_({p.adaptation, p.sliding * p.adaptation, p.limit, p.anti_windup}, period),
           sliding_(in_real<Real>(p.sliding)), gain_(in_real<Real>(p.gain)) {
         inertia_ = in_real<Real>(gain_of<Command, signal::acceleration, number>(number(1) / p.plant.gain));
-        drag_ = in_real<Real>(gain_of<Command, signal::velocity, number>(p.plant.damping / p.plant.gain));
+        drag_ = in_real<Real>(gain_of<Command, signal::velocity, number>(p.plant.viscous_rate / p.plant.gain));
     }
 
     value operator()(const axis_motion<Real>& reference, position measured, velocity tachometer) noexcept {
@@ -131,7 +131,7 @@ private:
     static const parameters& checked(const parameters& p, duration period) {
         require_positive("sliding_mode.period", period);
         require_positive("sliding_mode.plant.gain", p.plant.gain);
-        require_not_negative("sliding_mode.plant.damping", p.plant.damping);
+        require_not_negative("sliding_mode.plant.viscous_rate", p.plant.viscous_rate);
         require_positive("sliding_mode.sliding", p.sliding);
         require_not_negative("sliding_mode.gain", p.gain);
         require_not_negative("sliding_mode.adaptation", p.adaptation);
@@ -178,4 +178,4 @@ auto design_sliding_mode(const axis_model<Command>& plant, const sliding_dynamic
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A control law of a feed drive on estimated states: position, velocity and disturbance from the encoder and
 /// the command that was applied (steady Kalman gain), the disturbance cancelled, the plant inverted for the
@@ -62,7 +62,7 @@ public:
     state_feedback(const parameters& p, duration period)
         : given_(checked(p, period)), period_(period), position_gain_(in_real<Real>(p.position_gain)),
           velocity_gain_(in_real<Real>(p.velocity_gain)) {
-        const number A = p.plant.damping.value(), B = p.plant.gain.value(), T(period.value());
+        const number A = p.plant.viscous_rate.value(), B = p.plant.gain.value(), T(period.value());
         const viscous_step<number> step(A, T);
         kept_ = Real(step.kept);
         gained_ = in_real<Real>(quantity<si::time, number>::from_value(step.gained));
@@ -160,7 +160,7 @@ private:
     static const parameters& checked(const parameters& p, duration period) {
         require_positive("state_feedback.period", period);
         require_positive("state_feedback.plant.gain", p.plant.gain);
-        require_not_negative("state_feedback.plant.damping", p.plant.damping);
+        require_not_negative("state_feedback.plant.viscous_rate", p.plant.viscous_rate);
         require_finite("state_feedback.position_gain", p.position_gain);
         require_finite("state_feedback.velocity_gain", p.velocity_gain);
         require_positive("state_feedback.encoder_noise", p.encoder_noise);
@@ -196,11 +196,11 @@ template <signal_tag Command>
 auto place_state_feedback(const axis_model<Command>& plant, const state_feedback_poles& wanted,
                           quantity_of<Command> drift, duration period) {
     require_positive("place_state_feedback.plant.gain", plant.gain);
-    require_not_negative("place_state_feedback.plant.damping", plant.damping);
+    require_not_negative("place_state_feedback.plant.viscous_rate", plant.viscous_rate);
     require_below_nyquist("place_state_feedback.natural", wanted.natural, period);
     require_positive("place_state_feedback.damping", wanted.damping);
     // Trace and determinant of step - from_command k, linear in k as from_command k has rank one.
-    const viscous_step<> step(plant.damping.value(), period.value());
+    const viscous_step<> step(plant.viscous_rate.value(), period.value());
     const double B = plant.gain.value();
     const auto pole = pole_pair(wanted.natural, wanted.damping, period);
     const matrix<2> m{{{B * step.way, B * step.gained},
@@ -215,4 +215,4 @@ auto place_state_feedback(const axis_model<Command>& plant, const state_feedback
     return p;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Zero phase error tracking: the same feedback, and a reference polynomial that cancels all poles of the loop
 /// and the phase of its zeros, from the reference B periods ahead. No zero is cancelled.
@@ -32,4 +32,4 @@ auto zero_phase_rst(const axis_model<Command, Number>& plant, const rst_poles& p
 template <class Real = double, signal_tag Command = signal::voltage>
 using zero_phase_tracking = rst<2, 2, 5, 2, Real, Command>;
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

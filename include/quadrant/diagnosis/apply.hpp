@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One value of a machine file that a diagnosis changes, as JSON text.
 struct applied_change {
@@ -29,12 +29,12 @@ QUADRANT_DIAGNOSIS_DECL applied_diagnosis apply(std::string_view machine_text, s
                                                 const diagnosis_result& d, double at_least = 0.5);
 
 /// The same on a description that was read or made before, with its code: the numbers of a controller of your
-/// own are mended, and an effect of your own becomes a law of the axis. A controller of unknown kind is not in
-/// it, and so not in the result.
+/// own are corrected, and an effect of your own becomes a law of the axis. A controller of unknown kind is not
+/// in it, and so not in the result.
 QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& machine, diagnosis_result d,
                                                   double at_least = 0.5);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "apply.ipp"

@@ -4,7 +4,7 @@
 #include "read_machine.hpp"
 #include "write_machine.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -240,4 +240,4 @@ QUADRANT_DIAGNOSIS_DECL machine_description apply(const machine_description& mac
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 #include "import_log.hpp"
 #include "machine/machine.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What the owner knows of an axis, to check its units by: mass [kg] (or inertia [kg m^2]) and force constant
 /// [N per unit of the command] (or torque constant). 0: not known.
@@ -157,4 +157,4 @@ inline void check_physics(const machine_description& machine, const machine_log&
                     .refuse_what_cannot_be();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

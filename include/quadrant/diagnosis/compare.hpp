@@ -6,7 +6,7 @@
 #include "log/log.hpp"
 #include "machine/machine.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Names what differs between two logs of axes with the same description, whatever their motions, lengths and
 /// sample rates. Each log is explained by its own diagnosis; the machine with everything that one log shows,
@@ -19,7 +19,7 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(
     const machine_description& machine, const machine_log& first, const machine_log& second,
     const progress& tell = [](const std::string&) {}, const rules& r = {});
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "compare.ipp"

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& machine, const machine_log& first,
                                                   const machine_log& second_as_read, const progress& tell,
@@ -98,4 +98,4 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 #include "compensate/compensation_result.hpp"
 #include "log/log.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What compensations in the controller would gain: for each cause of a diagnosis that is at least as probable
 /// as `at_least` the feedforward with its fitted values, forecast on the reference of a log of the same machine
@@ -16,7 +16,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                                                        const diagnosis_result& d, const machine_log& log,
                                                        double at_least = 0.5);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "compensate.ipp"

@@ -11,7 +11,7 @@
 
 #include <random>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -151,4 +151,4 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

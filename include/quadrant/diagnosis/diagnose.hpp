@@ -6,7 +6,7 @@
 #include "machine/machine.hpp"
 #include "result/result.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// From a machine file and a log to where they differ, why, how surely, and how far the gap shrinks with each
 /// cause. Deterministic. Machine and log match (match.hpp). A log is refused (bad_input) only where not one
@@ -18,7 +18,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(
     const machine_description& machine, const machine_log& log, const machine_log* holdout = nullptr,
     const progress& tell = [](const std::string&) {}, const rules& r = {});
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "diagnose.ipp"

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The gap of one axis on a motion that was not recorded yet.
 struct forecast_axis {
@@ -38,7 +38,7 @@ QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& mach
 /// What is forecast, as JSON (docs/schema/forecast.schema.json).
 QUADRANT_DIAGNOSIS_DECL nlohmann::ordered_json to_json(const forecast_result& f);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "forecast.ipp"

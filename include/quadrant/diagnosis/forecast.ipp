@@ -12,7 +12,7 @@
 
 #include <random>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -128,4 +128,4 @@ QUADRANT_DIAGNOSIS_DECL nlohmann::ordered_json to_json(const forecast_result& f)
     return {{"schema", "quadrant.forecast/1"}, {"axes", axes}, {"notes", f.notes}};
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

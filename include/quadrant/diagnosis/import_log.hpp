@@ -7,7 +7,7 @@
 #include "log/even_rows.hpp"
 #include "read_log.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Another program's log in the words of ours.
 struct imported_log {
@@ -329,4 +329,4 @@ inline imported_log import_log(const import_map& map, const std::filesystem::pat
     return import_log(map, detail::read_whole(path), path.string(), choice);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

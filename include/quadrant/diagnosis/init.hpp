@@ -12,7 +12,7 @@
 
 #include <map>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a machine file is begun from: numbers by option (init_fields.hpp) and axis, in SI.
 struct init_request {
@@ -441,4 +441,4 @@ inline initialised_machine machine_from_log(const machine_log& log) {
     return init_machine(ask, &log);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Whether a log has the sample period of the machine file, to a hundredth.
 inline bool has_period_of(const machine_description& machine, const machine_log& log) {
@@ -178,4 +178,4 @@ inline void check_match(const machine_description& machine, const machine_log& l
     }
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 #include "result/result.hpp"
 #include "text/json_keys.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -215,4 +215,4 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result read_diagnosis(const std::filesystem::p
     return read_diagnosis(detail::read_whole(path), path.string());
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "log/angle_wraps.hpp"
+#include "log/header_reader.hpp"
 #include "log/log.hpp"
-#include "log/log_header.hpp"
 #include "log/log_rows.hpp"
 #include "log/sensor_box.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -298,4 +298,4 @@ inline machine_log read_log(std::istream& in, std::string_view name) {
     return detail::log_reader(detail::read_whole(in, name), name).read();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

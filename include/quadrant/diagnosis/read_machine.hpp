@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Reads a machine file (docs/formats.md) or throws bad_input. Nothing in it is ignored but a controller of
 /// unknown kind.
 QUADRANT_DIAGNOSIS_DECL machine_description read_machine(std::string_view text, std::string_view name);
 QUADRANT_DIAGNOSIS_DECL machine_description read_machine(const std::filesystem::path& path);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "read_machine.ipp"

@@ -4,7 +4,7 @@
 #include "machine_file/machine_keys.hpp"
 #include "text/key_place.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -247,4 +247,4 @@ QUADRANT_DIAGNOSIS_DECL machine_description read_machine(const std::filesystem::
     return read_machine(detail::read_whole(path), path.string());
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

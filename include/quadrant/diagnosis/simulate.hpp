@@ -5,7 +5,7 @@
 #include "machine/machine.hpp"
 #include "result/result.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One axis of a log as its machine file predicts it.
 struct simulated_axis {
@@ -35,7 +35,7 @@ struct simulation_result {
 /// the log.
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "simulate.ipp"

@@ -6,7 +6,7 @@
 #include "match.hpp"
 #include "text/bad_input.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -81,4 +81,4 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "compare.hpp"
 #include "write_diagnosis.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -60,4 +60,4 @@ inline nlohmann::ordered_json to_json(const comparison_result& c) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

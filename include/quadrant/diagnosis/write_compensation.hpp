@@ -3,7 +3,7 @@
 #include "compensate.hpp"
 #include "write_diagnosis.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -77,4 +77,4 @@ inline nlohmann::ordered_json controller_patch(const compensation_result& r) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

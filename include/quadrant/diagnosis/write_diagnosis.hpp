@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -189,4 +189,4 @@ inline std::string reference_csv(const experiment& e, axis_kind kind) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "controller/json.hpp"
 #include "machine_file/machine_keys.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -97,4 +97,4 @@ inline nlohmann::ordered_json to_json(const machine_description& m) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

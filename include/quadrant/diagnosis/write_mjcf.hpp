@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A machine as MuJoCo reads it, and what of it MuJoCo cannot hold.
 struct mjcf_model {
@@ -160,4 +160,4 @@ inline mjcf_model to_mjcf(const machine_description& machine, int substeps = 10)
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "simulate.hpp"
 #include "write_diagnosis.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a simulation leaves, as JSON (docs/schema/simulation.schema.json).
 inline nlohmann::ordered_json to_json(const simulation_result& s) {
@@ -24,4 +24,4 @@ inline nlohmann::ordered_json to_json(const simulation_result& s) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "velocity_loop.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The position loop inside a drive (cyclic synchronous position): P on position over a `velocity_loop`.
 ///   v_asked = gain (r - x) + velocity_feedforward r'
@@ -49,4 +49,4 @@ private:
     velocity_loop<Real> velocity_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A hobby or robot servo: a proportional law that turns a position error into the duty of a PWM bridge.
 ///   f' = r, at most `rate` a second           the servo's own profile
@@ -67,4 +67,4 @@ private:
     Real gain_, minimum_, maximum_, step_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

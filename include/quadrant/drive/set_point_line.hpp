@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// How a drive goes from one set-point to the next.
 ///   hold     the newest set-point until the next one arrives
@@ -63,4 +63,4 @@ private:
     interpolation kind_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

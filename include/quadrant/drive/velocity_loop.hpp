@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The velocity loop inside a drive: what turns an asked velocity into the force of the motor, on the drive's
 /// own clock.
@@ -76,4 +76,4 @@ private:
     Real gain_, integral_, limit_, follow_{1};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

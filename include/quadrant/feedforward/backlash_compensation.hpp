@@ -3,7 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Crosses the play of a screw or gear when the reference reverses, without a jolt: what has to be added to the
 /// reference of a motor whose encoder sits before the play, so that the load goes where it was asked.
@@ -116,4 +116,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What holds the axis against cogging, from where it is: the harmonics of the pitch (that of the poles, or a
 /// turn) that were worth keeping.
@@ -99,4 +99,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

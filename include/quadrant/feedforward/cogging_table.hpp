@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What holds the axis against cogging, from where it is: a table over one pitch (that of the poles, or a
 /// turn), as measured or made from harmonics.
@@ -97,4 +97,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What the friction feedforward does with the dry part while the reference rests.
 enum class at_rest {
@@ -129,4 +129,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The command that moves the nominal axis as the trajectory asks, before there is an error: mass and viscous
 /// friction.
@@ -22,7 +22,8 @@ namespace quadrant {
 /// from one `axis_model`.
 /// `retune(next)`: another plant from the next step on; jump: |(1/B' - 1/B) a + (A'/B' - A/B) v|.
 /// NaN and infinities: holds the last output, raises faulted().
-/// Throws "inverse_model.gain = ...: must ...", "inverse_model.damping = ...: must ..." and for the period.
+/// Throws "inverse_model.gain = ...: must ...", "inverse_model.viscous_rate = ...: must ..." and for the
+/// period.
 /// Cost: 2 multiplications. One `proportional` on either derivative is the same in two boxes (`milling_axis`:
 /// inertia and drag). From positions alone: `sampled_inverse_model`.
 template <signal_tag Command, class Real = double> class inverse_model {
@@ -38,9 +39,9 @@ public:
     inverse_model(const parameters& p, duration period) : given_(p) {
         require_positive("inverse_model.period", period);
         require_positive("inverse_model.gain", p.gain);
-        require_not_negative("inverse_model.damping", p.damping);
+        require_not_negative("inverse_model.viscous_rate", p.viscous_rate);
         inertia_ = in_real<Real>(gain_of<Command, signal::acceleration, number>(number(1) / p.gain));
-        drag_ = in_real<Real>(gain_of<Command, signal::velocity, number>(p.damping / p.gain));
+        drag_ = in_real<Real>(gain_of<Command, signal::velocity, number>(p.viscous_rate / p.gain));
     }
 
     value operator()(velocity v, acceleration a) noexcept {
@@ -79,4 +80,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Makes a trajectory look ahead: the axis is asked Capacity periods later, so that what comes is known, and a
 /// feedforward can act as much earlier as the drive is late. The path is the same; the whole of it is executed
@@ -151,4 +151,4 @@ private:
     held_output<outcome> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The command that moves the nominal plant as the reference asks, from positions alone: for a trajectory that
 /// does not give its derivatives. Linear-phase differences, so that every order of them is late by the same
@@ -122,4 +122,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

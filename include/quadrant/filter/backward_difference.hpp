@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Rate of change over the last period: reference velocity and acceleration, or a velocity from an encoder.
 ///   v[k] = (x[k] - x[k-1]) / T
@@ -74,4 +74,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -9,7 +9,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Smooths a wire more steeply than `lowpass`: flat up to the corner, then 40 dB per decade.
 ///   H(s) = w^2 / (s^2 + sqrt(2) w s + w^2), bilinear, pre-warped at w = 2 pi corner: -3 dB and -90 degrees sit exactly there.
@@ -109,4 +109,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -15,7 +15,7 @@
 /// coefficient in z holds it in its last digits only: of order n it loses (pole T)^n. In D every coefficient is
 /// small for itself and keeps all its digits. Source: [Middleton1990]. Derivation:
 /// docs/derivations/second_order.md.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Coefficients of a sampled filter by rising power of 1/D, bare numbers in SI:
 ///   (numerator[0] D^n + ... + numerator[n]) / (denominator[0] D^n + ... + denominator[n])
@@ -80,4 +80,4 @@ void rest_if_died_out(Integrators& s, const Output& y, const Values&... around) 
 
 } // namespace detail
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -23,7 +23,7 @@
 /// numerator of slow poles from order 2 on). Table: docs/blocks/discretize.md.
 /// Throws "discretize.denominator = 0: highest coefficient must not be zero", and "must be finite", "must be
 /// finite and above 0" for coefficients and period.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// numerator / denominator in s, coefficients by rising power.
 template <std::size_t Order, class Number = double> struct continuous {
@@ -154,4 +154,4 @@ discrete<Order, Number> matched(const continuous<Order, Number>& c, duration per
     return d;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Velocity from a coarse encoder, by the time between its edges: where a count takes many samples, a
 /// difference reads zero, a whole count in one sample, and zero again.
@@ -147,4 +147,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

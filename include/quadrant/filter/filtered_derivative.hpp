@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Velocity from an encoder: a derivative behind a first-order low-pass.
 ///   H(s) = wc s / (s + wc), wc = 2 pi corner, bilinear without pre-warp:
@@ -100,4 +100,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <concepts>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Smooths a wire: passes what is slower than the corner, takes 20 dB per decade off what is faster.
 ///   H(s) = w / (s + w), bilinear, pre-warped at w = 2 pi corner: -3 dB and -45 degrees sit exactly there.
@@ -102,4 +102,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

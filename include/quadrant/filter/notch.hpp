@@ -8,23 +8,23 @@
 
 #include <complex>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Takes one structural resonance out of a wire: zero gain at the centre, one far from it.
-///   H(s) = (s^2 + w^2) / (s^2 + damping w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
+///   H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear, pre-warped at w = 2 pi centre: the zero sits exactly there.
 /// Source: docs/formats.md (controller kind cascade_p_pi); bilinear form [Franklin1998] ch. 6.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept.
-///   y = x - damping band,  the band from two integrators in a ring (`second_order.hpp`), a constant passes to the last bit
+///   y = x - width band,  the band from two integrators in a ring (`second_order.hpp`), a constant passes to the last bit
 /// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset`
 /// leaves zero, `settle(x)` the state of a constant x (gain one at standstill). What has died out is zero.
 /// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|.
 /// `shift(by)`: as if all inputs so far had been higher by so much.
-/// Range: 0 < centre < half the sampling rate, damping > 0 (-3 dB width = damping times centre, in hertz). In
-/// float the centre may lie down to 3e-7 of the sampling rate (damping 1 and above; else by damping less), in
+/// Range: 0 < centre < half the sampling rate, width > 0 (-3 dB over width times centre, in hertz). In
+/// float the centre may lie down to 3e-7 of the sampling rate (width 1 and above; else by width less), in
 /// double to 6e-16.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "notch.centre = ...: must lie between 0 and half the sampling rate (...)", "must be at least ... of
-/// the sampling rate in this number type (...)", "notch.damping = ...: must be finite and above 0".
+/// the sampling rate in this number type (...)", "notch.width = ...: must be finite and above 0".
 /// Cost: 4 multiplications, 8 additions, 24 bytes of state. For a dip of limited depth use `transfer_function`.
 template <signal_tag Signal, class Real = double> class notch {
 public:
@@ -37,7 +37,7 @@ public:
     /// The resonance to take out: where it is, and how wide.
     struct parameters {
         quadrant::quantity<hertz_unit, number> centre; ///< deepest point; 0 < centre < half the sampling rate
-        number damping = 0.1;                          ///< of the denominator, twice its damping ratio; > 0
+        number width = 0.1; ///< between the -3 dB points, relative to the centre; > 0. Twice the damping ratio
     };
     /// What the slow part lags behind, the band, and the last input.
     struct state {
@@ -49,8 +49,8 @@ public:
     notch(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("notch.period", period);
         require_below_nyquist("notch.centre", p.centre, period);
-        require_positive("notch.damping", p.damping);
-        coefficients_ = second_order<Real>("notch.centre", p.centre, p.damping, period);
+        require_positive("notch.width", p.width);
+        coefficients_ = second_order<Real>("notch.centre", p.centre, p.width, period);
     }
 
     value operator()(value x) noexcept {
@@ -108,4 +108,4 @@ private:
     held_output<value, false> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -9,7 +9,7 @@
 
 /// The arithmetic of discretize.hpp: a polynomial's roots carried from s to z = exp(s T) by the matrix
 /// exponential of its companion matrix. Small fixed-size matrices, any number type, no Eigen.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 
@@ -117,4 +117,4 @@ std::array<Number, Size> mapped(const std::array<Number, Size>& p, double period
 
 } // namespace detail
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -19,7 +19,7 @@
 /// in, `ahead` = x minus the slow part:
 ///   half = thrust (ahead - brake band),  middle = band + half,  slow' = slow + 2 g middle,  band' = middle + half
 /// Derivation: docs/derivations/second_order.md.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// For hertz into rad/s: w = 2 pi f.
 inline constexpr double pi = std::numbers::pi;
@@ -82,4 +82,4 @@ second_order_response response(const second_order_coefficients<Real>& c, frequen
     return {1.0 / under, s / under};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Refuses a corner that is too slow for the number type: below, a period takes less than eight units in the
 /// last place off a state, and the decay is lost in rounding. `damping` below 1 makes the decay of a section of
@@ -28,4 +28,4 @@ void require_held(const detail::field_name& field, const quantity<hertz_unit, Nu
     }
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

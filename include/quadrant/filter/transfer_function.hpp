@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Coefficients of a sampled filter as bare numbers in SI, by rising power of z^-1; what `discretize.hpp`
 /// gives.
@@ -179,4 +179,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

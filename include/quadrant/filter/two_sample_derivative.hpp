@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Velocity from an encoder: backward difference of the mean of the last two samples.
 ///   m[k] = (y[k] + y[k-1]) / 2,   v[k] = (m[k] - m[k-1]) / T = (y[k] - y[k-2]) / (2 T)
@@ -79,4 +79,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

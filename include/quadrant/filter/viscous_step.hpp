@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Exact step over h of dv/dt = u - A v, dx/dt = v with u held (zero-order hold), to all digits for every A >=
 /// 0.
@@ -34,4 +34,4 @@ private:
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction of a guideway and its screw, with parameters of its own in each direction: the static level dies
 /// out as the axis gets faster, the Coulomb level builds up.
@@ -102,4 +102,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -3,7 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction of one level plus a part that grows with speed; as plant friction, or as feedforward against it.
 ///   F = coulomb sign(v) + viscous v, sign(0) = 0
@@ -75,4 +75,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction that gives way like a spring before it slides: bristles that bend to a level which does not depend
 /// on speed.
@@ -121,4 +121,4 @@ private:
     detail::friction_memory<outcome, argument> memory_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

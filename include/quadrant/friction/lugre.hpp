@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction of bristles that bend, slip, and slip at a lower level when the axis is faster.
 ///   dz/dt = v - stiffness |v| z/g(v), g(v) = Fc + (Fs - Fc) exp(-|v/vs|^delta), Fc, Fs, vs, delta of the curve
@@ -147,4 +147,4 @@ template <signal_tag In, signal_tag Out, class Real> bool lugre<In, Out, Real>::
     return true;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

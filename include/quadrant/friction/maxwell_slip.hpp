@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <std::size_t N>
@@ -252,4 +252,4 @@ private:
     detail::friction_memory<outcome, argument> memory_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// In lanes: every spring of every lane lies in one wide number, and no branch depends on a spring. Per lane
 /// the same result as `maxwell_slip` in double, but for the two exponentials, which are those of the lanes
@@ -157,4 +157,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

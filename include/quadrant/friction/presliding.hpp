@@ -6,7 +6,7 @@
 #include <cmath>
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// How near to the solution Newton's method is before its last pass, which then is exact to rounding.
@@ -153,4 +153,4 @@ auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantit
     return outcome{x, friction.after(x, h).next};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The friction of a guide as a plant takes it: Maxwell-slip with a level of its own in each direction, solved
 /// together with the mass that it brakes.
@@ -222,7 +222,7 @@ private:
         return select(slips_on, v_on, select(rests, v_stuck, v_away));
     }
 
-    /// Several springs: who slips is assumed, the velocity solved, and the assumption mended where it was
+    /// Several springs: who slips is assumed, the velocity solved, and the assumption corrected where it was
     /// wrong. `count`: how many there are, a constant where all are.
     [[gnu::noinline]] Real several(state& s, const Real& momentum, const Real& level, const Real& kept,
                                    const Real& inertia, const auto& added, const auto count) const noexcept {
@@ -278,4 +278,4 @@ private:
     side forward_, backward_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -2,7 +2,7 @@
 #pragma once
 #include "../base/select.hpp"
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// What one spring of a Maxwell-slip friction holds at the end of a step, counted along the motion:
 ///   it slips on:     share + (along - share) kept
@@ -24,4 +24,4 @@ template <class Force, class Real> struct spring_law {
     auto sticks(Force reached) const noexcept { return less(reached, share); }
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

@@ -4,7 +4,7 @@
 
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A friction law that a plant can take: what holds a resting axis, what brakes a moving one, its viscous
 /// slope. slip(v) is even, does not exceed breakaway() and does not rise with the speed; what rises with it is
@@ -116,4 +116,4 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
     return forward ? (size - dry) / slope : -((size - dry) / slope);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

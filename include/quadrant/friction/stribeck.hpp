@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction that falls from a breakaway level to the Coulomb level as the axis gets faster, plus a viscous
 /// part.
@@ -116,4 +116,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

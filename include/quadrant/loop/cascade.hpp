@@ -8,7 +8,7 @@
 #include <tuple>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The signal that the velocity loop of a set of boxes puts out; every box behind it has to carry the same.
 template <class Boxes> using command_of = typename decltype(Boxes::velocity_loop)::output;
@@ -282,4 +282,4 @@ private:
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include "../friction/coulomb_viscous.hpp"
 #include "cascade.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The stock boxes of a `cascade`, from the flat parameters of a machine file (controller kind cascade_p_pi):
 ///   cascade<cascade_p_pi_boxes<>> axis{.box = {parameters, 500_us}};
@@ -62,4 +62,4 @@ struct cascade_p_pi_boxes {
 };
 static_assert(axis_boxes<cascade_p_pi_boxes<>>);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 #include <array>
 #include <tuple>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// In the place of a `preview`, for a law that needs none.
 template <motion_sample Motion> struct no_preview {
@@ -220,4 +220,4 @@ private:
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

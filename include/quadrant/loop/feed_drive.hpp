@@ -17,7 +17,7 @@
 #include <limits>
 #include <tuple>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One box per part of a `feed_drive`. Write `static_assert(drive_boxes<my_drive>)` under your struct.
 template <class B>
@@ -221,7 +221,7 @@ requires requires(const Boxes& b) {
 auto model_of(const Boxes& b) {
     const auto drive = b.drive.model();
     return axis_model<signal::voltage, typename decltype(drive.gain)::value_type>{
-        drive.gain * b.amplifier.given().gain, drive.damping};
+        drive.gain * b.amplifier.given().gain, drive.viscous_rate};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -3,7 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Two motors at the ends of one beam, seen as what they do together: moving it and turning it. Each gets a
 /// loop of its own, and the loops do not disturb each other.
@@ -114,4 +114,4 @@ private:
     bool fault_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

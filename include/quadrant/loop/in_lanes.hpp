@@ -14,7 +14,7 @@
 /// The blocks of two axes of one kind as one block in two lanes: the same template with another number type,
 /// and its parameters from those of both axes. An own block of a box becomes one by two overloads beside these,
 /// `in_lanes_of` and `both`.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The number type of two axes in the lanes of one register, x first.
 using xy_number = lanes_in_step<2>;
@@ -107,7 +107,7 @@ both(std::type_identity<milling_axis_boxes<F, D, M, double, C>>, const auto& x, 
             .velocity_gain = both(x.velocity_gain, y.velocity_gain),
             .velocity_integral = both(x.velocity_integral, y.velocity_integral),
             .estimator_corner = both(x.estimator_corner, y.estimator_corner),
-            .notch = {both(x.notch.centre, y.notch.centre), both(x.notch.damping, y.notch.damping)},
+            .notch = {both(x.notch.centre, y.notch.centre), both(x.notch.width, y.notch.width)},
             .plant_gain = both(x.plant_gain, y.plant_gain),
             .plant_pole = both(x.plant_pole, y.plant_pole),
             .friction = both(std::type_identity<F>(), x.friction, y.friction),
@@ -131,4 +131,4 @@ template <class Boxes> struct in_lanes {
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A disturbance box that is fed this cycle's wish, solves the loop through its own estimate, and is told
 /// afterwards what was applied.
@@ -446,4 +446,4 @@ private:
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

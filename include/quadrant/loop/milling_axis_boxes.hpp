@@ -10,7 +10,7 @@
 #include "../filter/notch.hpp"
 #include "milling_axis.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// The boxes that estimate the velocities of an axis: one for each role; in lanes that step together one for
@@ -84,4 +84,4 @@ private:
 };
 static_assert(milling_boxes<milling_axis_boxes<>>);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

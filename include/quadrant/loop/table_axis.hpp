@@ -12,7 +12,7 @@
 #include <array>
 #include <tuple>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One box per part of a `table_axis`. Write `static_assert(table_boxes<my_axis>)` under your struct.
 template <class B>
@@ -157,4 +157,4 @@ private:
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

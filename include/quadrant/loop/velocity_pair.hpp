@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The velocities of reference and measured position of a `milling_axis` in lanes, each by the same filtered
 /// derivative and notch: both in one number that is twice as wide.
@@ -40,7 +40,7 @@ public:
 
     velocity_pair(const parameters& p, duration period)
         : derivative_({twice(p.derivative.corner)}, period),
-          notch_({twice(p.notch.centre), twice(p.notch.damping)}, period) {}
+          notch_({twice(p.notch.centre), twice(p.notch.width)}, period) {}
 
     [[gnu::always_inline]] outcome operator()(const position& reference, const position& measured) noexcept {
         return apart(notch_(derivative_(
@@ -74,4 +74,4 @@ private:
     resonance notch_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

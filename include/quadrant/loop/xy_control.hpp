@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// Beyond this an input is no place, speed or acceleration of a machine (SI), and behind it products may
@@ -180,4 +180,4 @@ private:
     bool fault_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Both axes in lanes.
 template <class Boxes>
@@ -112,4 +112,4 @@ private:
     bool fault_ = false, broken_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

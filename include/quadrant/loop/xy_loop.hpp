@@ -6,7 +6,7 @@
 #include <concepts>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// No tool in the cut: a process of an `xy_loop` that pushes nothing.
 struct no_process {
@@ -114,4 +114,4 @@ private:
     Process process_x_, process_y_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

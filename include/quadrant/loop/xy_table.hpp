@@ -3,9 +3,9 @@
 #include "../block/along.hpp"
 #include "table_axis.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
-/// An xy-table: two axes of named boxes, each shaken by the acceleration of the other.
+/// An xy-table: two axes of named boxes, each excited by the acceleration of the other.
 ///   a_x = (forces of x)/M_x + into_x a_y,   a_y = (forces of y)/M_y + into_y a_x
 /// Source: docs/formats.md (effect cross_coupling); [Jamaludin2008] chapter 2 for the table.
 /// Ports: a pair of commands [V] and a pair of external forces [N] in, the pair of readings [m] of the next
@@ -88,4 +88,4 @@ private:
     quantity<si::mass, real> mass_x_, mass_y_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// What each of four samples at 0, 1, 2, 3 counts for in the cubic through them (Lagrange), read at 1 + u, 0 <=
 /// u <= 1.
@@ -13,4 +13,4 @@ template <class Number> constexpr std::array<Number, 4> cubic_weights(const Numb
             -(left * u * right * sixth)};
 }
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

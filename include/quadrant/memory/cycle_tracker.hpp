@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <std::size_t Capacity>
@@ -146,4 +146,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Gives a wire back a whole number of periods later: lines up a reference with a late measurement, or models a
 /// dead time.
@@ -127,4 +127,4 @@ private:
     parameters given_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 /// What a FIR filter of many taps is made of so that compilers use SIMD without being asked: inputs side by
 /// side, several sums that do not wait for each other.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// The last Size inputs, oldest first and never wrapped around: each is written twice, Size apart. Oldest
 /// first, so that a sum comes last to what was just written.
@@ -58,4 +58,4 @@ private:
     std::array<Real, size> c_{};
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <std::size_t Order, std::size_t Capacity>
@@ -177,4 +177,4 @@ private:
     parameters given_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 template <std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps>
@@ -359,4 +359,4 @@ private:
     parameters given_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

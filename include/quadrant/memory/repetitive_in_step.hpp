@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// The last Size inputs of W lanes as plain numbers, each lane for itself: oldest first and never wrapped
@@ -305,4 +305,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 /// The steady state of a Kalman filter or of a quadratic regulator.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The stabilizing X of A' X A - X - A' X B (R + B' X B)^-1 B' X A + Q = 0.
 /// By structure-preserving doubling: each step does twice as many periods of the recursion as all before
@@ -100,4 +100,4 @@ steady_filter<N, Number> kalman_gain(const matrix<N, N, Number>& step, const col
     return f;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What pushes the axis beside the command, as a command: subtract it and the axis behaves as its nominal
 /// plant.
@@ -294,4 +294,4 @@ robust_stability robustness(const Observer& observer, Frf&& plant, frequency fro
     return result;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

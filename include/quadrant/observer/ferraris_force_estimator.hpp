@@ -8,7 +8,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What pushes the mass, from its acceleration (Ferraris sensor), the command and the friction: no model of the
 /// axis' dynamics, no differentiated encoder.
@@ -100,4 +100,4 @@ private:
     value last_{};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <numbers>
 
 /// Designs of a `harmonic_force_observer`: its gain from poles, or from noise.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Design by eigenvalues: where the errors of the 2 + 2 Harmonics states die out, as poles in s [1/s].
 template <std::size_t Harmonics> struct placed_poles {
@@ -129,4 +129,4 @@ template <std::size_t Harmonics> struct harmonic_model {
 
 } // namespace detail
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

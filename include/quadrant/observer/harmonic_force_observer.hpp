@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Cutting forces of known frequencies, from the position and the command applied, as a command: subtract their
 /// sum.
@@ -73,7 +73,7 @@ public:
     harmonic_force_observer(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive("harmonic_force_observer.period", period);
         require_positive("harmonic_force_observer.plant.gain", p.plant.gain);
-        require_not_negative("harmonic_force_observer.plant.damping", p.plant.damping);
+        require_not_negative("harmonic_force_observer.plant.viscous_rate", p.plant.viscous_rate);
         require_not_negative("harmonic_force_observer.lead", p.lead);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             require_below_nyquist("harmonic_force_observer.harmonics", p.harmonics[i], period);
@@ -88,15 +88,15 @@ public:
             ahead_[2 + 2 * i] = std::cos(angles[i] * p.lead.value() / T);
             ahead_[3 + 2 * i] = std::sin(angles[i] * p.lead.value() / T);
         }
-        model_ = detail::harmonic_model<Harmonics>::of(p.plant.damping.value() * T, angles);
+        model_ = detail::harmonic_model<Harmonics>::of(p.plant.viscous_rate.value() * T, angles);
         if constexpr (std::same_as<Design, expected_noise<Command>>) {
             require_positive("harmonic_force_observer.design.encoder", p.design.encoder);
             require_positive("harmonic_force_observer.design.drift", p.design.drift);
             const double wander = p.design.drift.value() * thrust / p.design.encoder.value();
             scaled_gain_ = model_.gain_for(wander * wander * T);
         } else {
-            require(p.plant.damping.value() > 0, "harmonic_force_observer.plant.damping", p.plant.damping,
-                    "must be above 0 for placed poles (or use expected_noise)");
+            require(p.plant.viscous_rate.value() > 0, "harmonic_force_observer.plant.viscous_rate",
+                    p.plant.viscous_rate, "must be above 0 for placed poles (or use expected_noise)");
             scaled_gain_ = model_.gain_for(p.design.poles, T);
         }
         radius_ = model_.radius(scaled_gain_);
@@ -217,4 +217,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Position, velocity and disturbance force of an axis from its encoder and the command applied: a smooth speed
 /// without the lag of a filtered derivative, and what pushes.
@@ -186,4 +186,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

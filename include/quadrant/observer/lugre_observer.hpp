@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction by a LuGre model whose bristles are bent further as long as the axis stays behind, so that what the
 /// model lacks is learned where it acts.
@@ -117,4 +117,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -13,7 +13,7 @@
 /// Small matrices of fixed size for the design of observers: rows of std::array, any number type, no Eigen (a
 /// scalar loop that includes an observer compiles as fast as before), no allocation. Design only; the steps
 /// write out what they need.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Rows of numbers: m[row][column].
 template <std::size_t Rows, std::size_t Columns = Rows, class Number = double>
@@ -151,4 +151,4 @@ sampled_system<N, Number> sampled(const matrix<N, N, Number>& f, const column<N,
     return s;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Friction by a `maxwell_slip` model whose level is learned while the axis moves: warm oil, more load or a
 /// tightened gib scale the springs, their shape over the displacement stays.
@@ -116,4 +116,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

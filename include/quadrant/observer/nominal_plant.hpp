@@ -9,7 +9,7 @@
 #include <numbers>
 
 /// The model that an observer compares the axis with.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Any rational plant without delay, bare numbers in SI by rising power of s (as in discretize.hpp); the
 /// highest of both not zero. Zeros is the degree of the numerator, Order - Zeros the relative degree.
@@ -35,11 +35,11 @@ template <std::size_t Order, std::size_t Zeros = 0, class Number = double> struc
 /// Source: [Jamaludin2008] eq. (2.2) without its delay. Converts to a `nominal_plant<2>`.
 template <signal_tag Command, class Number = double> struct axis_model {
     gain_of<signal::acceleration, Command, Number> gain; ///< B: acceleration per command
-    quantity<si::frequency, Number> damping{};           ///< A: viscous friction over mass, in 1/s (not hertz)
+    quantity<si::frequency, Number> viscous_rate{};      ///< A: viscous friction over mass, in 1/s (not hertz)
 
     constexpr operator nominal_plant<2, 0, Number>() const {
-        return {{gain.value()}, {Number(0), damping.value(), Number(1)}};
+        return {{gain.value()}, {Number(0), viscous_rate.value(), Number(1)}};
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <numbers>
 
 /// Q of a disturbance observer, and the polynomials that bring Q and Q/Gn into sampled form.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 
@@ -82,4 +82,4 @@ template <std::size_t Order, std::size_t NumeratorOrder, std::size_t RelativeDeg
 concept q_is_not_below_the_relative_degree = (NumeratorOrder < Order) &&
                                              (Order - NumeratorOrder >= RelativeDegree);
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

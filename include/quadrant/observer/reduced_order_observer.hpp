@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Velocity and disturbance force from position and acceleration, both measured: the acceleration is
 /// integrated, the position keeps the integral from drifting. No lag, and the encoder's steps are filtered.
@@ -128,4 +128,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Circular piece of a tool path in the xy plane, or a helix about z, by its path length s [m] from its start;
 /// s beyond an end is held there.
@@ -57,4 +57,4 @@ private:
     double sweep_, rise_, radius_, angle_, length_, turning_ = 0, climb_ = 0;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// What programs write of an arc is rounded: its end may lie this far off the circle about its centre through
 /// its start [m].
@@ -43,4 +43,4 @@ inline std::optional<point> arc_centre(point start, point end, double radius, bo
     return point{0.5 * (start.x + end.x) - side * dy, 0.5 * (start.y + end.y) + side * dx, 0};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

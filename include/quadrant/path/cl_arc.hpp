@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::path::detail {
 
 /// A circle of a CL file whose end comes with the next GOTO.
 struct cl_circle {
@@ -117,4 +117,4 @@ inline point read_to_line(cl_arguments& from, double unit, point start, const st
     return *end;
 }
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::path::detail

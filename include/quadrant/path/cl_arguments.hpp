@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::path::detail {
 
 /// What stands behind the major word of a statement, from left to right.
 class cl_arguments {
@@ -62,4 +62,4 @@ private:
     std::size_t at_ = 0;
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::path::detail

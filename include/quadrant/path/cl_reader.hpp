@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one keyword of the language after the other.
 #pragma once
 #include "cl_arc.hpp"
 #include "spline_moves.hpp"
@@ -12,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Reads a CL file (APT), one move at a time, three coordinates; memory does not grow with the file.
 /// Moves: FROM/ (before the first), GOTO/, GODLTA/; RAPID for the next move; FEDRAT/ with MMPM, IPM, PERMIN or
@@ -271,4 +272,4 @@ private:
     bool rapid_ = false, done_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

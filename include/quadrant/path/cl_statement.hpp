@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::path::detail {
 
 /// A word, a number or one of / , ( ) of a CL file, and where it stands.
 struct cl_token {
@@ -109,4 +109,4 @@ private:
     program_lines lines_;
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::path::detail

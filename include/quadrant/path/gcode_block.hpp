@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::path::detail {
 
 /// A letter and its number.
 struct gcode_word {
@@ -149,4 +149,4 @@ private:
     const program_lines& lines_;
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::path::detail

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Reads a G-code program, one move at a time; memory does not grow with the program.
 /// Words: G0 G1 G2 G3 (I J from the start, or R; helix with Z; full circle with I J), G4 P [s], G17, G20 G21,
@@ -161,4 +161,4 @@ private:
     bool absolute_ = true, began_ = false, done_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

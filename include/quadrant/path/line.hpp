@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Straight piece of a tool path, by its path length s [m] from its start; s beyond an end is held there.
 /// Throws when the ends are not finite or the same place. Never allocates.
@@ -30,4 +30,4 @@ private:
     double length_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

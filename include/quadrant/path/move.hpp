@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// How a move hands over to the next one.
 enum class path_ending {
@@ -26,4 +26,4 @@ struct move {
     std::size_t line = 0;    ///< of the file, from 1
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

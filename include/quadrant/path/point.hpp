@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// A place, a direction or a curvature in the coordinates of the machine: plain numbers in SI, because the
 /// mathematics of a path mixes its axes. Places are metres, unit tangents have no unit, curvatures are 1/m: the
@@ -32,6 +32,6 @@ inline constexpr double same_place = 1e-9;
 constexpr double dot(point a, point b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double magnitude(point a) noexcept { return std::hypot(a.x, a.y, a.z); }
 inline double distance(point a, point b) noexcept { return magnitude(b - a); }
-constexpr bool finite(point a) noexcept { return finite(a.x, a.y, a.z); }
+constexpr bool finite(point a) noexcept { return quadrant::finite(a.x, a.y, a.z); }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

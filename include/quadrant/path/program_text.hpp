@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// A program that cannot be used. what() is one line: "FILE:LINE:COLUMN: message", or "FILE: message" where no
 /// single place is at fault. Line and column count from 1, the column in characters.
@@ -114,7 +114,7 @@ private:
         double value = 0;
         const auto [end, fault] =
             std::from_chars(text_.data() + from, text_.data() + text_.size(), value, form);
-        if (fault == std::errc::invalid_argument || sign_only || !detail::is_finite(value))
+        if (fault == std::errc::invalid_argument || sign_only || !quadrant::detail::is_finite(value))
             fail(at, "a number is missing");
         if (fault != std::errc{} || std::abs(value) > 1e9) fail(at, "the number is out of range");
         at = static_cast<std::size_t>(end - text_.data());
@@ -166,4 +166,4 @@ inline std::ifstream open_program(const std::string& path) {
     return in;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

@@ -6,7 +6,7 @@
 
 #include <variant>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// One smooth piece of a tool path, whatever its shape: all by path length s [m] from its start, held beyond
 /// the ends. No call throws or allocates; copying it copies numbers.
@@ -48,4 +48,4 @@ private:
     shapes shape_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Where a spline piece begins or ends: what its neighbour shares, so that the joint is smooth.
 struct spline_knot {
@@ -191,4 +191,4 @@ private:
     double length_ = 0, fluctuation_ = 0;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

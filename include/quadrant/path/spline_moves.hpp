@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::path::detail {
 
 /// A run of places in a program, as moves that join without a corner. The way to each place has the feed and
 /// the line of that place.
@@ -56,4 +56,4 @@ private:
     std::size_t first_ = 0;
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::path::detail

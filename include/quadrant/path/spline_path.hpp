@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace quadrant {
+namespace quadrant::inline v0::path {
 
 /// Which polynomial joins two places.
 enum class spline_degree {
@@ -134,4 +134,4 @@ inline std::vector<spline> splines_through(const std::vector<point>& places,
     return out;
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0::path

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The current loop of an amplifier as one lag: what the motor gets of a command that is held for a step, on
 /// average over it.
@@ -54,4 +54,4 @@ private:
     bool present_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

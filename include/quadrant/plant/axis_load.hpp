@@ -3,7 +3,7 @@
 #include "../block/absent.hpp"
 #include "../block/maps.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// A ripple box takes force and position, or, as `through` does, the force alone.
@@ -17,7 +17,7 @@ concept ripple_box = maps<R, signal::force, signal::force, Real> ||
 
 /// What a motor's force meets on its way to the mass, box by box, in every sub-step of a `linear_motor`:
 ///   rippled = ripple(motor, x);  drive = rippled + cogging(x) + external;  bent = modes(drive)
-/// The modes are shaken by all but friction; what they add to the reading is deflection().
+/// The modes are excited by all but friction; what they add to the reading is deflection().
 /// Ports: load(x, motor, external) gives the force that drives the mass; position [m], forces [N].
 /// State: that of the boxes; `reset` as new.
 /// NaN and infinities: as the boxes; the plant around goes back to where it was.
@@ -75,4 +75,4 @@ private:
     position deflection_{};
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

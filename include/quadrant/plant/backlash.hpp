@@ -4,7 +4,7 @@
 #include "../base/finite.hpp"
 #include "../base/select.hpp"
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Play between what drives and what is driven: after a reversal the driven side stands still until the play is
 /// crossed.
@@ -63,4 +63,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

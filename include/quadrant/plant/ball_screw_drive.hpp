@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 /// The torque that starts an axis toward one direction: of a law that knows directions, or of one that does
@@ -178,4 +178,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The pull of the magnets on the iron: a force that depends on the position alone, command or not.
 ///   F = sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i)
@@ -52,4 +52,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

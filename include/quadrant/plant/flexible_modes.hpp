@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One mode of a machine beside its rigid axis; the same numbers as `analysis::flexible_mode`.
 template <class Number = double> struct machine_mode {
@@ -36,7 +36,7 @@ template <class Number> machine_mode<Number> base_mode(const machine_base<Number
     return {b.bolts, b.damping, Number(b.slide / b.base)};
 }
 
-/// What the structure adds to the position of an axis: modes in parallel, shaken by the force of its motor.
+/// What the structure adds to the position of an axis: modes in parallel, excited by the force of its motor.
 ///   q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = share_i F/M,   y = sum q_i,   reading = rigid axis + y
 /// The step is exact for a force held over the period. On a free mass a mode makes an anti-resonance at
 /// centre/sqrt(1 + share): share > 0 below it (base; collocated), -1 < share < 0 above it, share <= -1 none
@@ -163,4 +163,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

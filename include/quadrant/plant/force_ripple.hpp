@@ -6,7 +6,7 @@
 #include <complex>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A force constant that varies with the magnets: what the motor gives of what is asked, along the travel.
 ///   y = u (1 + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i))
@@ -74,4 +74,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// What repeats: sum_{i=1..Harmonics} cosine_i cos(i angle) + sine_i sin(i angle). The one place of this law;
 /// forces, ripples, reading errors and processes ask it. Value is a number or a quantity; the first `count`
@@ -52,4 +52,4 @@ private:
     }
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

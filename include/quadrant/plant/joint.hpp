@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Where something may join an axis, in the order in which a command passes. What a law returns there:
 ///   command       added to the command [its unit]
@@ -33,4 +33,4 @@ struct no_joint_laws {
     }
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A linear-motor axis: amplifier limit and DAC, input delay, motor, moving mass on a friction box, encoder.
 ///   M dv/dt = kf u(t - delay) + external - friction(v), dx/dt = v; reading = encoder rounding of x
@@ -196,4 +196,4 @@ private:
     held_output<position> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -4,7 +4,7 @@
 
 #include <concepts>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Nothing: the mass feels motor and external force as they are.
 struct no_load {
@@ -24,4 +24,4 @@ concept motor_load = std::same_as<L, no_load> ||
         l.reset();
     });
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// A damped spring and mass over h while nothing pushes it: the matrix exponential of
 ///   q'' + 2 zeta w q' + w^2 q = 0,   q(h) = stay q + onward q',   q'(h) = back q + keep q'
@@ -41,4 +41,4 @@ template <class Number> struct oscillator {
     }
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

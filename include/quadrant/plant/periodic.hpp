@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A quantity that repeats along the travel: sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i).
 template <signal_tag Signal, std::size_t Harmonics, class Real = double>
@@ -46,4 +46,4 @@ private:
 };
 } // namespace detail
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -13,7 +13,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// One axis with whatever sits at its joints: what simulates a machine file, and what the diagnosis fits to a
 /// log.
@@ -394,4 +394,4 @@ private:
          has_reading_error_ = false; ///< whether any of what may sit at this joint is there
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

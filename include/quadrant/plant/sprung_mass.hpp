@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A second mass on a spring that rides on the axis and that the encoder does not see: anti-resonance at its
 /// frequency (the axis held), resonance above it. It is part of the moving mass.
@@ -75,4 +75,4 @@ private:
     bool present_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What stands between a current command and the force of a linear motor: three phases, an inverter, two PI
 /// controllers of the current in the frame of the magnets. Where lag, ripple and limits of a drive come from.
@@ -225,4 +225,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

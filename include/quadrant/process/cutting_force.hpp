@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Harmonics of a periodic force as a Fourier transform gives them: harmonic i is Re (real + j imaginary) e^{j
 /// i w t}.
@@ -114,4 +114,4 @@ private:
     state state_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

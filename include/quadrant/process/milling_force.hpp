@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Which way an edge goes through the chip: up (conventional) from thin to thick, down (climb) from thick to
 /// thin.
@@ -201,4 +201,4 @@ private:
     bool fault_ = false;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

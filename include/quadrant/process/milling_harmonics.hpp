@@ -6,7 +6,7 @@
 /// The cutting forces measured on the milling table of [Jamaludin2008]: aluminium, 3 edges, feed 320 mm/min.
 ///   cutting_force<15> x{{milling_harmonics::fundamental, milling_harmonics::scale, milling_harmonics::x}, 500_us};
 ///   cutting_force<3> y{{milling_harmonics::fundamental, milling_harmonics::scale, lowest<3>(milling_harmonics::y)}, 500_us};
-namespace quadrant::milling_harmonics {
+namespace quadrant::inline v0::milling_harmonics {
 
 /// Of the tables; the spindle speed printed beside them, 1360 rpm, would be 22.67 Hz.
 inline constexpr frequency fundamental = frequency::from_value(23.294);
@@ -29,4 +29,4 @@ inline constexpr harmonic_table<15> y{
     .imaginary = {-1.263e5, -7.883e4, 1.453e5, 2.417e4, 1.563e4, 2.657e4, -1.180e4, 3.850e3, -1.425e4, 6.895e3,
                   -2.983e3, 1.280e4, 4.901e3, 2.225e3, -2.971e3}};
 
-} // namespace quadrant::milling_harmonics
+} // namespace quadrant::inline v0::milling_harmonics

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// How far a tool is in the cut: 0 ... 1, moving at a constant rate towards where `engage` sends it, so that a
 /// cutting force neither starts nor ends with a jump.
@@ -32,4 +32,4 @@ private:
     bool engaged_ = true;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

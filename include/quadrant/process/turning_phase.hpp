@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// The angle of something that turns at constant speed, sampled for days: counted in 2^-64 of a turn in an
 /// integer that wraps by itself, so that nothing drifts, nothing grows and whole turns are exact.
@@ -43,4 +43,4 @@ private:
     std::uint64_t at_ = 0, step_ = 0;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// What an encoder's interpolation, or an eccentric scale, adds to the position.
 ///   y = x + sum_{i=1..Harmonics} size_i sin(2 pi i x / period + phase_i)
@@ -65,4 +65,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Noise of a sensor, normally distributed and independent from sample to sample: what a tachometer or an
 /// interpolated encoder adds to its wire. The same seed gives the same noise on every machine.
@@ -73,4 +73,4 @@ private:
     state state_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,16 +8,16 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// What a stretch of path is to the speed along it: one segment, or several that follow smoothly.
 struct stretch {
     double length; ///< [m]
     path_shape shape;
     bounds within; ///< of the speed along it
-    point first_tangent, first_curvature, last_tangent, last_curvature;
+    path::point first_tangent, first_curvature, last_tangent, last_curvature;
 
-    stretch(const segment& of, double feed, const plain_limits& machine) noexcept
+    stretch(const path::segment& of, double feed, const plain_limits& machine) noexcept
         : length(of.length()), shape(of), within(along_path(shape, feed, machine)),
           first_tangent(of.tangent(0)), first_curvature(of.curvature(0)), last_tangent(of.tangent(length)),
           last_curvature(of.curvature(length)) {}
@@ -66,7 +66,7 @@ public:
     corner(const stretch& before, const stretch& after, double tolerance, profile_kind kind,
            const plain_limits& machine) noexcept
         : kind_(kind) {
-        const point turn = after.first_tangent - before.last_tangent;
+        const path::point turn = after.first_tangent - before.last_tangent;
         turn_ = magnitude(turn);
         curved_ = before.shape.curved + after.shape.curved;
         smooth_ = before.goes_on_in(after);
@@ -146,4 +146,4 @@ private:
     std::array<part, 4> axis_{};
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

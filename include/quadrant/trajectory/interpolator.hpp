@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// What a path asks of the three axes at one moment.
 struct path_reference {
@@ -50,7 +50,7 @@ public:
 
     bool full() const noexcept { return ahead_.full(); } ///< no room for another move
     /// Adds a move behind those known; needs !full().
-    void push(const move& next) {
+    void push(const path::move& next) {
         require(!full(), "interpolator.push", double(Window), "must wait: the window is full");
         ahead_.push(next);
         if (!settled_) stand_at(next.path.start(), next.line);
@@ -81,7 +81,7 @@ public:
         settle({});
         settled_ = false;
     }
-    void settle(point place) noexcept {
+    void settle(path::point place) noexcept {
         ahead_.clear();
         under_way_ = in_corner_ = false;
         dwell_ = 0;
@@ -137,7 +137,7 @@ private:
         ahead_.pop();
     }
 
-    void stand_at(point place, std::size_t line) noexcept {
+    void stand_at(path::point place, std::size_t line) noexcept {
         settled_ = true;
         now_ = {};
         now_.line = line;
@@ -161,15 +161,15 @@ private:
         report(m1.r + (m2.r - ahead_.on_second(0).path->start()), m1.v + m2.v, m1.a + m2.a, m1.j + m2.j);
     }
     struct moved {
-        point r, v, a, j;
+        path::point r, v, a, j;
     };
     static moved on(const typename look_ahead<Window>::place& at, const along& y) noexcept {
-        const segment& path = *at.path;
-        const point t = path.tangent(at.s), k = path.curvature(at.s), d = third_derivative(path, at.s);
+        const path::segment& path = *at.path;
+        const path::point t = path.tangent(at.s), k = path.curvature(at.s), d = third_derivative(path, at.s);
         return {path.position(at.s), y.v * t, y.a * t + y.v * y.v * k,
                 y.j * t + 3 * y.v * y.a * k + y.v * y.v * y.v * d};
     }
-    void report(point r, point v, point a, point j) noexcept {
+    void report(path::point r, path::point v, path::point a, path::point j) noexcept {
         for (int i = 0; i < 3; ++i) {
             motion& m = now_.axis[std::size_t(i)];
             m.position = quantity_of<signal::position>::from_value(r[i]);
@@ -191,4 +191,4 @@ private:
     path_reference now_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -7,7 +7,7 @@
 #include <limits>
 
 /// From a path to what each axis is asked for in every servo period.
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// m/s^3.
 using jerk_unit = unit_quotient<si::acceleration, si::time>;
@@ -69,4 +69,4 @@ inline void require_limits(const char* block, const motion_limits& of, profile_k
             of.jerk, "must be infinite: only trapezoidal and cubic acceleration keep such a limit");
 }
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

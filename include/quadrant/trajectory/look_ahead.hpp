@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// The next moves of a path and how fast each joint may be passed, so that the speed can always come down in
 /// time: up to Window moves; beyond the last one known the path is taken to end. Moves that follow smoothly
@@ -45,7 +45,7 @@ public:
     };
     /// A place on the path: the segment, the way along it [m], its line in the program.
     struct place {
-        const segment* path;
+        const path::segment* path;
         double s; ///< along it
         std::size_t line;
     };
@@ -67,12 +67,12 @@ public:
     }
 
     /// Needs !full(). Throws for what is refused and changes nothing then.
-    void push(const move& next) {
+    void push(const path::move& next) {
         double feed = next.feed;
         if (next.rapid) feed = unlimited;
         const stretch driven(next.path, feed, machine_);
         check(next, driven);
-        const bool on = last_ && last_->ending == path_ending::continuous && count_ > 0;
+        const bool on = last_ && last_->ending == path::path_ending::continuous && count_ > 0;
         if (on && count_ > planned_ && !(count_ == 1 && begun_) && alike(*at(count_ - 1), driven)) {
             piece& last = *at(count_ - 1);
             last.whole = last.whole.joined(driven);
@@ -125,8 +125,8 @@ public:
 private:
     std::optional<piece>& at(std::size_t i) noexcept { return pieces_[(first_ + i) % Window]; }
     const std::optional<piece>& at(std::size_t i) const noexcept { return pieces_[(first_ + i) % Window]; }
-    std::optional<move>& move_at(std::size_t i) noexcept { return moves_[(first_move_ + i) % Window]; }
-    const std::optional<move>& move_at(std::size_t i) const noexcept {
+    std::optional<path::move>& move_at(std::size_t i) noexcept { return moves_[(first_move_ + i) % Window]; }
+    const std::optional<path::move>& move_at(std::size_t i) const noexcept {
         return moves_[(first_move_ + i) % Window];
     }
     static double enough(const piece& p) noexcept { return 1e-6 * p.whole.length; }
@@ -136,7 +136,7 @@ private:
         for (double l = 0; i + 1 < first + moves && s > (l = move_at(i)->path.length()); ++i) s -= l;
         return {&move_at(i)->path, s, move_at(i)->line};
     }
-    void check(const move& next, const stretch& driven) const {
+    void check(const path::move& next, const stretch& driven) const {
         using quadrant::detail::shortest;
         if (!next.rapid && !(next.feed > 0)) refuse_line(next.line, "the feed must be above 0");
         if (!(next.tolerance >= 0)) refuse_line(next.line, "the corner tolerance must not be below 0");
@@ -148,7 +148,7 @@ private:
             refuse_line(next.line,
                         "the move must begin where the last one ended, not " + shortest(gap) + " m from it");
         const double turn = distance(driven.first_tangent, last_->path.tangent(last_->path.length()));
-        if (last_->ending == path_ending::continuous && !(last_->tolerance > 0) && turn > 1e-3)
+        if (last_->ending == path::path_ending::continuous && !(last_->tolerance > 0) && turn > 1e-3)
             refuse_line(
                 last_->line,
                 "the path turns by " +
@@ -194,10 +194,10 @@ private:
     profile_kind kind_;
     double period_, tolerance_ = -1; ///< tolerance of the newest joint [m]; -1: a stop
     std::array<std::optional<piece>, Window> pieces_{};
-    std::array<std::optional<move>, Window> moves_{};
+    std::array<std::optional<path::move>, Window> moves_{};
     std::size_t first_ = 0, count_ = 0, planned_ = 0, first_move_ = 0, known_ = 0;
     bool begun_ = false; ///< the first piece
-    std::optional<move> last_;
+    std::optional<path::move> last_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

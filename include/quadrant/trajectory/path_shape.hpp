@@ -9,15 +9,15 @@
 #include <cstddef>
 #include <variant>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// d^3r/ds^3 of a piece of path [1/m^2]. Of a spline: the slope of its curvature vector, by a central
 /// difference over a thousandth of the piece.
-inline point third_derivative(const segment& path, double s) noexcept {
-    if (std::get_if<line>(&path.shape())) return {};
-    if (const auto* round = std::get_if<arc>(&path.shape())) {
+inline path::point third_derivative(const path::segment& path, double s) noexcept {
+    if (std::get_if<path::line>(&path.shape())) return {};
+    if (const auto* round = std::get_if<path::arc>(&path.shape())) {
         const double turning = round->sweep() / round->length();
-        point t = round->tangent(s);
+        path::point t = round->tangent(s);
         t.z = 0;
         return -turning * turning * t;
     }
@@ -30,16 +30,16 @@ inline point third_derivative(const segment& path, double s) noexcept {
 /// Spline: from differences of its places on a grid of 48 (so with its feed correction), with 2, 5 and 25 % for
 /// what lies between, and the same of its tangent, curvature and third derivative there.
 struct path_shape {
-    point slope;   ///< |dr/ds|
-    point bend;    ///< |d^2r/ds^2| [1/m]
-    point twist;   ///< |d^3r/ds^3| [1/m^2]
-    double curved; ///< magnitude of d^2r/ds^2 [1/m]
+    path::point slope; ///< |dr/ds|
+    path::point bend;  ///< |d^2r/ds^2| [1/m]
+    path::point twist; ///< |d^3r/ds^3| [1/m^2]
+    double curved;     ///< magnitude of d^2r/ds^2 [1/m]
 
-    explicit path_shape(const segment& path) noexcept : curved(0) {
-        const auto each = [](point& most, double share, point with) {
+    explicit path_shape(const path::segment& path) noexcept : curved(0) {
+        const auto each = [](path::point& most, double share, path::point with) {
             for (int i = 0; i < 3; ++i) most[i] = std::max(most[i], share * std::abs(with[i]));
         };
-        if (const auto* round = std::get_if<arc>(&path.shape())) {
+        if (const auto* round = std::get_if<path::arc>(&path.shape())) {
             const double middle = 0.5 * path.length(), turning = std::abs(round->sweep() / path.length());
             const double around = round->radius() * turning;
             each(slope, 1, path.tangent(middle));
@@ -50,12 +50,12 @@ struct path_shape {
                 bend[i] = std::min(curved, bend[i] + curved * turning * middle);
                 twist[i] = turning * turning * slope[i];
             }
-        } else if (std::get_if<line>(&path.shape())) {
+        } else if (std::get_if<path::line>(&path.shape())) {
             each(slope, 1, path.tangent(0));
         } else {
             constexpr int cells = 48;
             const double h = path.length() / cells;
-            std::array<point, 4> last{}; // the places, newest first
+            std::array<path::point, 4> last{}; // the places, newest first
             for (int i = 0; i <= cells; ++i) {
                 last = {path.position(h * i), last[0], last[1], last[2]};
                 each(slope, 1.02, path.tangent(h * i));
@@ -63,7 +63,7 @@ struct path_shape {
                 each(twist, 1.25, third_derivative(path, h * i));
                 if (i >= 1) each(slope, 1.02, (last[0] - last[1]) / h);
                 if (i >= 2) {
-                    const point k = (last[0] - 2 * last[1] + last[2]) / (h * h);
+                    const path::point k = (last[0] - 2 * last[1] + last[2]) / (h * h);
                     each(bend, 1.05, k);
                     curved = std::max(curved, 1.05 * magnitude(k));
                 }
@@ -125,4 +125,4 @@ inline bounds along_path(const path_shape& shape, double feed, const plain_limit
     return b;
 }
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// One length in the shortest time, from one speed to another, both not negative: the speed goes to the highest
 /// that the limits and the length allow, stays there, and goes to the last one; no acceleration at either end.
@@ -169,4 +169,4 @@ private:
     speed_profile curve_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

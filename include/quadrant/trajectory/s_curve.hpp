@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// The S-curve move of the precision stage: a logistic curve, slow at both ends, very fast in the middle.
 ///   x(t) = L (g(a (t/T - 1/2)) - g(-a/2)) / (1 - 2 g(-a/2)),  g(y) = 1 / (1 + exp(-y))
@@ -64,4 +64,4 @@ private:
     double rate_ = 0, low_ = 0, scale_ = 0;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// Where something is on its way, and the derivatives by time [m, m/s, m/s^2, m/s^3].
 struct along {
@@ -103,4 +103,4 @@ template <class Slack> double highest(double low, double high, double enough, Sl
     return low;
 }
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

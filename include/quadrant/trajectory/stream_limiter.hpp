@@ -12,7 +12,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace quadrant::trajectory {
+namespace quadrant::inline v0::trajectory {
 
 /// Keeps a stream of positions within limits of velocity, acceleration and jerk, sample by sample, whatever
 /// comes in: a hand wheel, a joint of a robot, an external planner that jumps.
@@ -157,4 +157,4 @@ private:
     held_output<value> out_;
 };
 
-} // namespace quadrant::trajectory
+} // namespace quadrant::inline v0::trajectory

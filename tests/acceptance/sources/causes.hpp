@@ -43,7 +43,7 @@ inline nlohmann::ordered_json table_file() {
     c.set("acceleration_feedforward_V_s2_per_m", 1 / a.B.value());
     c.set("viscous_feedforward_V_s_per_m", a.A_gms.value() / a.B.value());
     c.set("notch.frequency_Hz", n.centre.value());
-    c.set("notch.width", n.damping);
+    c.set("notch.width", n.width);
     const auto f = thesis::gms_model::of(a);
     const thesis::gms_model::box box(f, thesis::period);
     c.set("friction.coulomb_V", f.curve.coulomb.value());

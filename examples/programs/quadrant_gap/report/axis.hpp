@@ -42,123 +42,151 @@ inline std::string before_after(const axis_result& a, double before, double afte
     return fmt::format("{} rms before, {} after", quantity(before, unit), quantity(after, unit));
 }
 
-inline std::string axis_charts(chart_book& book, std::size_t index, const axis_result& a) {
-    const axis_signals& s = a.signals;
-    const axis_voice voice = voice_of(a);
-    const bool of_positions = a.positions_only;
-    const std::string length_unit = voice("m"), force_unit = of_positions ? length_unit : voice("N");
-    const auto say = [&](const char* of_force, const char* of_two) {
-        return of_positions ? std::string(of_two) : voice(of_force);
-    };
-    const auto error = [&](const std::vector<double>& simulated) {
+/// The charts of one axis, each with its words. Between two positions there is a difference where other axes
+/// have a force.
+class axis_pictures {
+public:
+    axis_pictures(chart_book& book, std::size_t index, const axis_result& a)
+        : book_(book), index_(index), a_(a), s_(a.signals), voice_(voice_of(a)),
+          of_positions_(a.positions_only), length_unit_(voice_("m")),
+          force_unit_(of_positions_ ? length_unit_ : voice_("N")), residual_{{"before", &s_.residual_before},
+                                                                             {"after", &s_.residual_after}},
+          no_residual_(voice_("the diagnosis holds no residual force for this axis")) {}
+
+    std::string residual() const {
+        const std::string sizes =
+            of_positions_ ? before_after(a_, a_.gap.position_rms_m, a_.gap_after.position_rms_m, length_unit_)
+                          : before_after(a_, a_.gap.force_rms_N, a_.gap_after.force_rms_N, force_unit_);
+        return book_.figure(index_, {"time", say("Residual force", "Difference of the two positions"),
+                                     say("Force that the machine feels and the simulation does not: ",
+                                         "What is read behind, less what was asked or counted: ") +
+                                         sizes + ".",
+                                     "time", "s", say("force", "difference"), force_unit_, s_.t, residual_,
+                                     no_residual_});
+    }
+    std::string position() const {
+        if (of_positions_) return "";
+        const std::vector<double> before = error(s_.simulated_position_before),
+                                  after = error(s_.simulated_position_after);
+        return book_.figure(
+            index_,
+            {"time",
+             "Position error of the simulation",
+             "Closed loop, simulated minus logged: " +
+                 before_after(a_, a_.gap.position_rms_m, a_.gap_after.position_rms_m, length_unit_) + ".",
+             "time",
+             "s",
+             "position",
+             length_unit_,
+             s_.t,
+             {{"before", &before}, {"after", &after}},
+             "the machine file has no controller for this axis, so its closed loop cannot be simulated"});
+    }
+    std::string command() const {
+        if (of_positions_) return "";
+        return book_.figure(
+            index_, {"time",
+                     "Command",
+                     s_.command_replayed.empty()
+                         ? "Controller output in the log; no controller is described that could be replayed."
+                         : "Controller output in the log, and the described controller replayed on the logged "
+                           "reference and position.",
+                     "time",
+                     "s",
+                     "command",
+                     voice_.in_command_unit("V"),
+                     s_.t,
+                     {{"logged", &s_.command}, {"replayed", &s_.command_replayed}},
+                     "the diagnosis holds no command for this axis"});
+    }
+    std::string added_command() const {
+        const std::vector<double> beyond = beyond_the_replay();
+        if (beyond.empty()) return "";
+        return book_.figure(index_, {"time",
+                                     "Added command",
+                                     "What the log commands beyond the replayed controller, and the waveform "
+                                     "that was recognised in it.",
+                                     "time",
+                                     "s",
+                                     "command",
+                                     voice_.in_command_unit("V"),
+                                     s_.t,
+                                     {{"logged minus replayed", &beyond}, {"waveform", &s_.command_added}},
+                                     ""});
+    }
+    std::string over_velocity() const {
+        return book_.figure(
+            index_, {"scatter", say("Residual force against velocity", "Difference against velocity"),
+                     say("Samples as dots, medians as lines: a step at zero is friction.",
+                         "Samples as dots, medians as lines: a step at zero is lost motion, a slope is a lag."),
+                     "velocity", voice_("m/s"), say("force", "difference"), force_unit_, s_.velocity, residual_,
+                     no_residual_, nullptr, &s_.t});
+    }
+    std::string over_position() const {
+        return book_.figure(
+            index_,
+            {"scatter", say("Residual force against position", "Difference against position"),
+             say("Samples as dots, medians of each direction as lines: a wave is cogging, a slope is a spring.",
+                 "Samples as dots, medians of each direction as lines: two lines are lost motion, a slope is a "
+                 "wrong "
+                 "lead, a wave is a pitch error."),
+             "position", length_unit_, say("force", "difference"), force_unit_, s_.position, residual_,
+             no_residual_, &s_.velocity, &s_.t});
+    }
+    std::string spectrum() const {
+        if (of_positions_) return "";
+        return book_.figure(index_, {"spectrum",
+                                     voice_("Spectrum of the residual force"),
+                                     voice_("Peaks are resonances or forces periodic in time."),
+                                     "frequency",
+                                     "Hz",
+                                     voice_("force"),
+                                     voice_("N/√Hz"),
+                                     s_.frequency_Hz,
+                                     {{"before", &s_.spectrum_before}, {"after", &s_.spectrum_after}},
+                                     "the record is too short for a spectrum"});
+    }
+
+private:
+    std::string say(const char* of_force, const char* of_two) const {
+        return of_positions_ ? std::string(of_two) : voice_(of_force);
+    }
+    std::vector<double> error(const std::vector<double>& simulated) const {
         std::vector<double> e;
-        if (simulated.size() == s.position.size())
-            std::transform(simulated.begin(), simulated.end(), s.position.begin(), std::back_inserter(e),
+        if (simulated.size() == s_.position.size())
+            std::transform(simulated.begin(), simulated.end(), s_.position.begin(), std::back_inserter(e),
                            std::minus{});
         return e;
-    };
-    const std::vector<double> error_before = error(s.simulated_position_before),
-                              error_after = error(s.simulated_position_after);
-    const std::vector<series> residual{{"before", &s.residual_before}, {"after", &s.residual_after}};
-    const std::string no_residual = voice("the diagnosis holds no residual force for this axis");
-    const std::string no_loop =
-        "the machine file has no controller for this axis, so its closed loop cannot be simulated";
-
-    const std::string force = book.figure(
-        index,
-        {"time", say("Residual force", "Difference of the two positions"),
-         say("Force that the machine feels and the simulation does not: ",
-             "What is read behind, less what was asked or counted: ") +
-             (of_positions ? before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit)
-                           : before_after(a, a.gap.force_rms_N, a.gap_after.force_rms_N, force_unit)) +
-             ".",
-         "time", "s", say("force", "difference"), force_unit, s.t, residual, no_residual});
-    const std::string position =
-        of_positions
-            ? ""
-            : book.figure(index,
-                          {"time",
-                           "Position error of the simulation",
-                           "Closed loop, simulated minus logged: " +
-                               before_after(a, a.gap.position_rms_m, a.gap_after.position_rms_m, length_unit) +
-                               ".",
-                           "time",
-                           "s",
-                           "position",
-                           length_unit,
-                           s.t,
-                           {{"before", &error_before}, {"after", &error_after}},
-                           no_loop});
-    const std::string command =
-        of_positions
-            ? ""
-            : book.figure(
-                  index,
-                  {"time",
-                   "Command",
-                   s.command_replayed.empty()
-                       ? "Controller output in the log; no controller is described that could be replayed."
-                       : "Controller output in the log, and the described controller replayed on the logged "
-                         "reference and position.",
-                   "time",
-                   "s",
-                   "command",
-                   voice.in_command_unit("V"),
-                   s.t,
-                   {{"logged", &s.command}, {"replayed", &s.command_replayed}},
-                   "the diagnosis holds no command for this axis"});
-    std::vector<double> beyond; // what the log commands beyond the replay
-    if (!s.command_added.empty() && s.command_replayed.size() == s.command.size()) {
-        std::vector<double> rest(s.command.size());
-        for (std::size_t k = 0; k < rest.size(); ++k)
-            rest[k] = s.command[k] - s.command_replayed[k] - s.command_added[k];
-        const double constant =
-            quadrant::diagnosis::quantile(std::move(rest), 0.5); // of the first integral, which no log holds
-        for (std::size_t k = 0; k < s.command.size(); ++k)
-            beyond.push_back(s.command[k] - s.command_replayed[k] - constant);
     }
-    const std::string added =
-        beyond.empty()
-            ? ""
-            : book.figure(index,
-                          {"time",
-                           "Added command",
-                           "What the log commands beyond the replayed controller, and the waveform that was "
-                           "recognised in it.",
-                           "time",
-                           "s",
-                           "command",
-                           voice.in_command_unit("V"),
-                           s.t,
-                           {{"logged minus replayed", &beyond}, {"waveform", &s.command_added}},
-                           ""});
-    const std::string velocity = book.figure(
-        index, {"scatter", say("Residual force against velocity", "Difference against velocity"),
-                say("Samples as dots, medians as lines: a step at zero is friction.",
-                    "Samples as dots, medians as lines: a step at zero is lost motion, a slope is a lag."),
-                "velocity", voice("m/s"), say("force", "difference"), force_unit, s.velocity, residual,
-                no_residual, nullptr, &s.t});
-    const std::string place = book.figure(
-        index,
-        {"scatter", say("Residual force against position", "Difference against position"),
-         say("Samples as dots, medians of each direction as lines: a wave is cogging, a slope is a spring.",
-             "Samples as dots, medians of each direction as lines: two lines are lost motion, a slope is a "
-             "wrong "
-             "lead, a wave is a pitch error."),
-         "position", length_unit, say("force", "difference"), force_unit, s.position, residual, no_residual,
-         &s.velocity, &s.t});
-    const std::string spectrum =
-        of_positions ? ""
-                     : book.figure(index, {"spectrum",
-                                           voice("Spectrum of the residual force"),
-                                           voice("Peaks are resonances or forces periodic in time."),
-                                           "frequency",
-                                           "Hz",
-                                           voice("force"),
-                                           voice("N/√Hz"),
-                                           s.frequency_Hz,
-                                           {{"before", &s.spectrum_before}, {"after", &s.spectrum_after}},
-                                           "the record is too short for a spectrum"});
+    /// What the log commands beyond the replay, without the constant of the first integral, which no log holds.
+    std::vector<double> beyond_the_replay() const {
+        if (s_.command_added.empty() || s_.command_replayed.size() != s_.command.size()) return {};
+        std::vector<double> rest(s_.command.size()), beyond;
+        for (std::size_t k = 0; k < rest.size(); ++k)
+            rest[k] = s_.command[k] - s_.command_replayed[k] - s_.command_added[k];
+        const double constant = quadrant::diagnosis::quantile(std::move(rest), 0.5);
+        for (std::size_t k = 0; k < s_.command.size(); ++k)
+            beyond.push_back(s_.command[k] - s_.command_replayed[k] - constant);
+        return beyond;
+    }
+
+    chart_book& book_;
+    std::size_t index_;
+    const axis_result& a_;
+    const axis_signals& s_;
+    axis_voice voice_;
+    bool of_positions_;
+    std::string length_unit_, force_unit_;
+    std::vector<series> residual_;
+    std::string no_residual_;
+};
+
+inline std::string axis_charts(chart_book& book, std::size_t index, const axis_result& a) {
+    const axis_pictures draw(book, index, a);
+    // Drawn one after the other: the page shows them in this order.
+    const std::string force = draw.residual(), position = draw.position(), command = draw.command(),
+                      added = draw.added_command(), velocity = draw.over_velocity(),
+                      place = draw.over_position(), spectrum = draw.spectrum();
     return fmt::format(
         "<section><h2>Axis {0}: the gap in pictures</h2>\n"
         "<div class=\"zoom\"><p class=\"hint\">Drag across a chart to zoom (two fingers on a touch screen); "

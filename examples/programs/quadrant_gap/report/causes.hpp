@@ -89,7 +89,7 @@ inline std::string causes(const diagnosis_result& d) {
             lines(gap), escape(percent(c.shrink)) + interval_bar(c.shrink, "%", 1));
         std::string more;
         if (!c.confusable_with.empty())
-            more += fmt::format("On this record it cannot be told apart from {}.",
+            more += fmt::format("On this record it cannot be distinguished from {}.",
                                 escape(voice(named(c.confusable_with, "or"))));
         for (const reading& r : c.readings)
             more += fmt::format("<br>{}: {}.",

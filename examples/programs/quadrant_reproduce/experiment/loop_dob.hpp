@@ -11,9 +11,9 @@ namespace thesis {
 /// without delay.
 template <analysis::frequency_response Plant> auto loop_with_observer(const Plant& plant, const axis& a) {
     const analysis::q_model<2, 0> q{a.corner};
-    analysis::axis_model<> nominal = model_of(a);
+    analysis::rigid_axis_model<> nominal = model_of(a);
     nominal.delay = 0_s;
-    return analysis::p_pi_dob_loop{loop_around(plant, a), q, analysis::inverse_model{q, nominal}};
+    return analysis::p_pi_dob_loop{loop_around(plant, a), q, analysis::q_inverse_model{q, nominal}};
 }
 
 /// thesis.loop_dob: margins and bandwidths with the observer, and up to where it helps.

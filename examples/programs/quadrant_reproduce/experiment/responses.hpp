@@ -59,7 +59,7 @@ inline outcome frf_case(const thesis::axis& a, const std::string& id) {
         "Five minutes of white noise at the amplifier, H1 under Hann windows of 2048 samples; dashed the fit.",
         {{"H1", frf}},
         {{"fit of eq. (2.2)",
-          quadrant::analysis::axis_model<>{fit.pole.value, fit.gain.value, fit.delay.value}}})};
+          quadrant::analysis::rigid_axis_model<>{fit.pole.value, fit.gain.value, fit.delay.value}}})};
     return out;
 }
 

@@ -19,10 +19,10 @@ inline const char* const diamond_program = "PARTNO DIAMOND\nUNITS/MM\nFROM/0,0,0
 inline const char* const circle_program = "PARTNO CIRCLE\nUNITS/MM\nFROM/0,0,0\nFEDRAT/12000,MMPM\n"
                                           "CIRCLE/0,-50,0,0,0,1,50\nGOTO/0,0,0\nFINI\n";
 
-inline std::vector<quadrant::move> moves_of(const char* program, const char* name) {
+inline std::vector<quadrant::path::move> moves_of(const char* program, const char* name) {
     std::istringstream text(program);
-    quadrant::cl_reader reader(text, name);
-    std::vector<quadrant::move> all;
+    quadrant::path::cl_reader reader(text, name);
+    std::vector<quadrant::path::move> all;
     while (const auto m = reader.next()) all.push_back(*m);
     return all;
 }
@@ -42,7 +42,7 @@ struct contour_printed {
 
 /// Table against path, with the errors magnified, and the errors over time with what the source prints.
 inline picture contour_picture(const std::string& title, const quadrant::analysis::contour_figures& f,
-                               const std::vector<quadrant::analysis::place>& table, double magnified,
+                               const std::vector<quadrant::analysis::plane_position>& table, double magnified,
                                const contour_printed& printed) {
     line path{.name = "path", .x = {}, .y = {}, .drawn = line::style::dashed},
         shown{.name = "table", .x = {}, .y = {}};
@@ -89,7 +89,7 @@ outcome program_case(const std::string& id, const std::string& title, const char
     for (int seed = 1; seed <= seeds; ++seed) {
         vcnc::servo<Law> x(vcnc::x_axis, law_of(vcnc::x_axis), 0_m, std::uint64_t(2 * seed)),
             y(vcnc::y_axis, law_of(vcnc::y_axis), 0_m, std::uint64_t(2 * seed + 1));
-        std::vector<analysis::place> table;
+        std::vector<analysis::plane_position> table;
         const auto found = analysis::drive_contour(
             moves,
             [&](const axis_motion<>& to_x, const axis_motion<>& to_y) {
@@ -133,7 +133,7 @@ inline outcome profiles_case(const std::string& id) {
             limits.path.jerk = trajectory::motion_limits{}.jerk;
         const auto drive = std::make_unique<trajectory::interpolator<>>(
             trajectory::interpolator<>::parameters{limits, k.is}, vcnc::period);
-        drive->push({.path = quadrant::line({0, 0, 0}, {0.02, 0, 0}), .feed = 0.2, .line = 1});
+        drive->push({.path = quadrant::path::line({0, 0, 0}, {0.02, 0, 0}), .feed = 0.2, .line = 1});
         line feed{.name = k.name, .x = {}, .y = {}}, acceleration = feed;
         double t = 0;
         while (!drive->done() && t < 1) {

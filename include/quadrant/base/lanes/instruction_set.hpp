@@ -3,7 +3,7 @@
 /// The instruction set as a type. A function that is compiled with -mavx2 and the same function compiled
 /// without are two functions; the linker keeps one of two that have the same name. With the set in the type
 /// they have two names.
-namespace quadrant::isa {
+namespace quadrant::inline v0::isa {
 
 /// The extensions of an x86 processor that decide about floating point, one bit each; and whether xsimd is
 /// there.
@@ -91,4 +91,4 @@ inline constexpr bool rounds_in_registers<x86<Extensions>> = (Extensions & sse4_
 /// As the set in it.
 template <class Isa> inline constexpr bool rounds_in_registers<in_step<Isa>> = rounds_in_registers<Isa>;
 
-} // namespace quadrant::isa
+} // namespace quadrant::inline v0::isa

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// W blocks of one lane behind the call of one block in lanes: for a law whose state holds whole numbers (where
 /// in a ring the delay of this lane is read). It loops over its lanes and costs what W blocks cost. The blocks
@@ -75,4 +75,4 @@ private:
     std::array<Block, size> each_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 template <std::size_t W, class Isa> class lanes;
 
@@ -83,4 +83,4 @@ private:
     std::array<piece, pieces> piece_;
 };
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -12,7 +12,7 @@
 /// exp, log, sin and cos are xsimd's; docs/lanes.md says how far they lie from the C library's. tan, atan2 and
 /// pow call the C
 /// library lane by lane: a filter designed with them has the coefficients of its scalar twin, bit for bit.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Without its sign, as std::abs.
 template <std::size_t W, class Isa> lanes<W, Isa> abs(const lanes<W, Isa>& x) noexcept {
@@ -200,4 +200,4 @@ lanes<W, Isa> clamp(const lanes<W, Isa>& x, const std::type_identity_t<lanes<W, 
     return select(less(x, low), low, select(less(high, x), high, x));
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// A number that holds W independent instances: run W loops side by side, one in each lane, with the registers
 /// of the processor. Every operation works lane by lane; + - * / and sqrt give in each lane what a double
@@ -237,4 +237,4 @@ operator/(const quantity<Unit, lanes<W, Isa>>& q, Number n) noexcept {
     return quantity<Unit, lanes<W, Isa>>::from_value(q.value() / n);
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -14,12 +14,12 @@
 #endif
 
 #ifdef XSIMD_HPP
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 /// One of xsimd's sets with all extensions of the translation unit in its name: xsimd's own functions on it are
-/// then told apart by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also of
-/// exp and sin.
+/// then distinguished by the linker too. Without FMA on purpose: with AVX2 the same results as with SSE2, also
+/// of exp and sin.
 template <class Set, unsigned Extensions> struct lane_set : Set {};
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail
 
 // How xsimd declares a set that has the registers of another (XSIMD_DECLARE_SIMD_REGISTER_ALIAS).
 namespace xsimd::types {
@@ -63,7 +63,7 @@ struct trigo_reducer<batch<double, quadrant::detail::lane_set<Set, Extensions>>,
 #endif
 
 /// What the W numbers of a `lanes` are kept in: the widest registers that W fills, else doubles one by one.
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// Doubles one by one: without xsimd, on another processor, or when W is odd.
 template <std::size_t W, class Isa> struct lane_registers {
@@ -193,4 +193,4 @@ constexpr bool all_of(bool m) noexcept { return m; }
 template <class Plain> constexpr void put(Plain x, Plain* out) noexcept { *out = x; }
 template <class Plain> constexpr void get(Plain& x, const Plain* in) noexcept { x = *in; }
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

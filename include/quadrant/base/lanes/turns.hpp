@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 /// Cosine and sine of an angle given in turns.
 template <class Real> struct on_circle { Real cosine, sine; };
@@ -37,4 +37,4 @@ template <std::size_t W, class Isa> on_circle<lanes<W, Isa>> circle_of_turns(con
     return {select(cosine_turned, -cosine, cosine), select(sine_turned, -sine, sine)};
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

@@ -8,7 +8,7 @@
 
 /// Several numbers of lanes side by side in one wider number: the springs of a friction, the taps of a filter.
 /// Where the wider one fills wider registers, no number goes through memory on its way.
-namespace quadrant {
+namespace quadrant::inline v0 {
 
 namespace detail {
 #if defined(XSIMD_HPP) && XSIMD_WITH_AVX
@@ -158,4 +158,4 @@ noexcept {
     }
 }
 
-} // namespace quadrant
+} // namespace quadrant::inline v0

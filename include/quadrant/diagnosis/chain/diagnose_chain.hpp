@@ -4,7 +4,7 @@
 #include "../text/axis_words.hpp"
 #include "outcome.hpp"
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// Puts what was found on a link into the result of an axis.
 QUADRANT_DIAGNOSIS_DECL void join(axis_result& result, std::vector<cause>& causes, diagnosis_result& out,
@@ -64,7 +64,7 @@ QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_descriptio
                                                            const std::vector<std::string>& excluded,
                                                            const rules& limits);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "diagnose_chain.ipp"

@@ -3,7 +3,7 @@
 #include "../../base/version.hpp"
 #include "readings.hpp"
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 inline constexpr std::size_t pieces = 30; ///< of a record; a fifth of them is predicted by the others
 inline constexpr std::size_t folds_of = 5;
@@ -71,7 +71,7 @@ template <class Cost> double least(Cost cost, double low, double high, int grid,
 /// that helps.
 QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "fit.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd solved_normal(Eigen::MatrixXd a, const Eigen::VectorXd& b,
                                                       const Eigen::VectorXd& unit) {
@@ -108,4 +108,4 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
     return f;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

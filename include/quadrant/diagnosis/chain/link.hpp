@@ -4,7 +4,7 @@
 #include "../fit/scales.hpp"
 
 /// Two positions of one axis, one behind the other: what was asked or counted, and what the scale reads.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// One link of the chain, both readings in units of the load.
 struct position_link {
@@ -147,4 +147,4 @@ inline std::vector<double> followed(std::span<const double> x, double period, fo
     return out;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 /// The links of an axis: which two positions are compared, in which units, and with which force.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// A link with what is described of it, and where its ends are.
 struct described_link {
@@ -50,7 +50,7 @@ QUADRANT_DIAGNOSIS_DECL described_link asked_to(const axis_description& axis, co
 /// it acts, less what moves the motor. Smoothed to the band in which the record shows forces.
 QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_description& axis, const axis_log& log);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "links.ipp"

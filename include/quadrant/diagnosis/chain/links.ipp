@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL double slope(std::span<const double> x, std::span<const double> y) {
     double mx = 0, my = 0, xx = 0, xy = 0;
@@ -138,4 +138,4 @@ QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_descriptio
     l.motor_direction = zero_phase(sign, l.force_band_Hz, l.period);
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// What may lie between two readings of one axis.
 enum class term {
@@ -108,4 +108,4 @@ struct equations {
     std::vector<std::optional<term>> of; ///< of each column; none: no cause has it
 };
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -6,7 +6,7 @@
 #include "reversals.hpp"
 
 /// What is said of one link: causes, places, verdict.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// What was found on one link, in the words of a diagnosis.
 struct outcome {
@@ -57,7 +57,7 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
 QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& d, const axis_description& axis,
                                               const std::vector<std::string>& excluded, const rules& limits);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "outcome.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL double described_value(const axis_description& axis, const std::string& key) {
     for (const effect* e : every_effect())
@@ -220,4 +220,4 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
     return out;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -4,7 +4,7 @@
 #include "../compensate/compensation_result.hpp"
 #include "links.hpp"
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// What a control can do about the errors between two positions of an axis: it adds a step at each reversal,
 /// adds a table along the travel, or counts with another travel of a turn. Forecast on the readings of a log:
@@ -17,7 +17,7 @@ QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     const std::string& file, const std::vector<const axis_description*>& inside,
     const std::vector<const axis_description*>& at_ends, const std::vector<std::string>& effects);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "position_compensation.ipp"

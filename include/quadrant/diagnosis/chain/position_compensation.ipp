@@ -3,7 +3,7 @@
 #include "../model/harmonics.hpp"
 #include "model.hpp"
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// A table along the travel between whose places a control draws straight lines.
 struct table_along {
@@ -142,4 +142,4 @@ QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     return out;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -4,7 +4,7 @@
 #include "../model/harmonics.hpp"
 #include "model.hpp"
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// How many rows an equation system has at most; of a longer record every n-th row is taken.
 inline constexpr std::size_t most_rows = 30000;
@@ -70,7 +70,7 @@ private:
     std::vector<std::size_t> rows_;
 };
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "readings.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// The rows that count in every model: a reading is there; the axis has gone a tenth of its travel, so that it
 /// stands at a known side of any play; and the force, where one is known, is far enough from zero for the side
@@ -154,4 +154,4 @@ QUADRANT_DIAGNOSIS_DECL equations readings::of_model(const link_model& m) const 
     return out;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

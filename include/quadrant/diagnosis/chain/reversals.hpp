@@ -3,7 +3,7 @@
 #include "values.hpp"
 
 /// Lost motion reversal by reversal, and how it differs along the travel.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// What one reversal lost, and where.
 struct one_reversal {
@@ -87,4 +87,4 @@ inline std::vector<place> places_of_reversals(const readings& r, const fitted& f
     return out;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

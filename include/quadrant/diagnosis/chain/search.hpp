@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// One term of the best model, and what speaks for it.
 struct finding {
@@ -74,7 +74,7 @@ private:
     std::vector<term> suspects_, excluded_;
 };
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "search.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL seeker::seeker(const readings& r, link_model described, std::vector<term> excluded,
                                        const rules& limits)
@@ -172,4 +172,4 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
     f.group_probability = known * same / sum;
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -5,7 +5,7 @@
 #include "fit.hpp"
 
 /// How each term joins a model: where its fit begins.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// Terms that can lie between these two readings.
 QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l);
@@ -52,7 +52,7 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
 QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& from, term t,
                                             const link_model& described);
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "start.ipp"

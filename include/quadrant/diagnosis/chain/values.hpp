@@ -6,7 +6,7 @@
 #include "search.hpp"
 
 /// The findings of a link as keys of the machine file, with intervals.
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 /// What no law is better than, relative.
 inline constexpr double best_law = 0.01;
@@ -39,7 +39,7 @@ private:
     const axis_description& axis_;
 };
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "values.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis::chain {
+namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL estimate with_interval(double value, double deviation, double count) {
     constexpr double t = 1.96 + 2.4 / (pieces - 1); // Student's factor, two terms
@@ -124,4 +124,4 @@ term_values::steps(const std::vector<Eigen::Index>& at) const {
     return {sizes, times};
 }
 
-} // namespace quadrant::diagnosis::chain
+} // namespace quadrant::inline v0::diagnosis::chain

@@ -5,7 +5,7 @@
 #include "left_over.hpp"
 #include "name_left_over.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What the owner of a machine says before its circles are judged.
 struct circle_options {
@@ -193,4 +193,4 @@ inline circle_result ball_bar(std::vector<circle_run> runs, const circle_options
     return detail::circle_diagnosis(std::move(runs), options)();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "periodic.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// e = A cos(2 pi p/period + phase) of one axis at its place p, which r sees as e cos t (of y: e sin t). Each
 /// run has its own amplitude and phase, so that a force (cogging), whose effect changes with the feed, is found
@@ -145,4 +145,4 @@ private:
     std::vector<std::vector<cell>> cells_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

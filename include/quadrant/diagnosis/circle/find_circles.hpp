@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -143,4 +143,4 @@ inline std::vector<circle_run> find_circles(const machine_log& log, std::size_t 
     return runs;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

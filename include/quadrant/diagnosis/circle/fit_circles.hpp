@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The mean of the samples of one turn within a small angle.
 struct circle_bin {
@@ -165,4 +165,4 @@ private:
     std::vector<bool> used_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -3,7 +3,7 @@
 #include "periodic.hpp"
 #include "spikes.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Runs of the same feed (within 5 %) and radius.
 struct circle_groups {
@@ -164,4 +164,4 @@ private:
     double least_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -4,7 +4,7 @@
 #include "cyclic.hpp"
 #include "vibration.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -71,4 +71,4 @@ inline std::vector<periodic_error> take_periodic(std::vector<circle_run>& runs, 
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 #include "stick_slip.hpp"
 
 /// What is found beside the joint fit, as errors with a name.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The patterns are first order: within 1 % of the loops that were tried. A spike's height depends on its
 /// shape: 15 %.
@@ -94,4 +94,4 @@ inline std::vector<circle_error> name_stick_slip(const std::vector<circle_run>& 
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

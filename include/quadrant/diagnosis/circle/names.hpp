@@ -8,7 +8,7 @@
 
 /// What each error of a circle is called, what its sign means, what tells it from others and what may be behind
 /// it.
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The words for one error of a circle: its name, what a positive value means, what tells it from others, what
 /// may cause it.
@@ -102,4 +102,4 @@ inline circle_error named_error(std::string_view name, std::string axis, std::st
 }
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

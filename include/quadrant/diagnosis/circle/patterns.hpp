@@ -9,7 +9,7 @@
 
 /// What each error leaves in the radius. With e = (e_x, e_y) how far the machine stands off its reference,
 ///   r = e_x cos t + e_y sin t,   velocity (-s v sin t, s v cos t),   s = 1 counterclockwise, -1 clockwise
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A place on a run.
 struct circle_point {
@@ -134,4 +134,4 @@ inline circle_pattern spike_pattern(int axis, int side, std::size_t group,
             shape.width() / feed_over_radius};
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -6,7 +6,7 @@
 
 /// What is periodic along an axis (a cyclic error) or in time (a vibration), sought in what the other errors
 /// leave.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Sample by sample of every run.
 using residuals = std::vector<std::vector<double>>;
@@ -44,4 +44,4 @@ struct periodic_error {
     double common = 1; ///< share of the energy that one amplitude and phase for all runs explains
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -132,4 +132,4 @@ inline std::vector<circle_run> read_radius(std::string_view text, std::string_vi
     return runs;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "run.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 enum class circle_verdict {
     found,         ///< above its detection limit
@@ -68,4 +68,4 @@ struct circle_result {
     std::vector<std::string> notes;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 
 /// Runs along a circle at constant feed: what the ball-bar diagnosis is made from. All values SI, angles in
 /// radians.
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What measured the radius. An encoder sees no error that lies behind it.
 enum class circle_source { encoder, instrument };
@@ -80,4 +80,4 @@ inline std::size_t cut_to_whole_turns(std::vector<double>& angle, std::size_t& t
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The shape of the spikes of one axis in one group of runs: of a grid of rises, decays (0.3 to 25 degrees) and
 /// orders the one that leaves least of the mean of all reversals, beside the step of a play and a cubic for the
@@ -59,4 +59,4 @@ inline spike_shape fit_spike(const std::vector<circle_bin>& bins, const std::vec
     return best;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

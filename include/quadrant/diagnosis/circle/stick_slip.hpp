@@ -2,7 +2,7 @@
 #pragma once
 #include "periodic.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Jumps back and forth of one axis within 25 degrees after its reversals, of what is quicker than 6 degrees in
 /// what the other errors leave. A jump counts when it is eight times the
@@ -59,4 +59,4 @@ inline stick_slip_found stick_slip_of(const circle_run& r, const std::vector<dou
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

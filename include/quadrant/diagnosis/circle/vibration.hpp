@@ -2,7 +2,7 @@
 #pragma once
 #include "periodic.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A tone of fixed frequency, from the mean power of half-second pieces (Hann) of every run: it must stand out
 /// of its neighbours in each group of feeds, for what moves in frequency with the feed is none.
@@ -148,4 +148,4 @@ private:
     const std::vector<std::size_t>& groups_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -63,4 +63,4 @@ inline nlohmann::ordered_json to_json(const circle_result& r) {
             {"notes", r.notes}};
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

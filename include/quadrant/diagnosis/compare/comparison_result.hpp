@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a comparison of two logs says of an axis, from the best to the worst.
 enum class likeness {
@@ -74,4 +74,4 @@ struct comparison_result {
         second_sha256; ///< of the files' bytes; empty: not read from files
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

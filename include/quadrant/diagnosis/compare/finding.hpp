@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 /// One log explained by the machine that the other shows.
 struct direction {
@@ -48,7 +48,7 @@ QUADRANT_DIAGNOSIS_DECL bool differ_without_a_name(const finding& f, const direc
 QUADRANT_DIAGNOSIS_DECL bool holds_more(const finding& f, const direction& d, const std::string& axis,
                                         const rules& r);
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "finding.ipp"

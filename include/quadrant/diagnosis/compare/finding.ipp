@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 inline difference difference_of(const direction& d, const cause& c) {
     difference out;
@@ -155,4 +155,4 @@ QUADRANT_DIAGNOSIS_DECL bool holds_more(const finding& f, const direction& d, co
            f.after.above_floor() > r.near_floor * f.reference.above_floor();
 }
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 /// How a description, calibrated inside its tolerances, explains a log.
 struct fit_of_log {
@@ -46,7 +46,7 @@ private:
     axis_record record_;
 };
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "fit_of_log.ipp"

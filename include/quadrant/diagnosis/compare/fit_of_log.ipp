@@ -6,7 +6,7 @@
 #include "../which/pieces.hpp"
 #include "../which/search.hpp"
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 inline axis_record prepared(const axis_description& axis, const axis_log& log, double period) {
     const double count = observed_count(log.position, log.position_step);
@@ -33,4 +33,4 @@ QUADRANT_DIAGNOSIS_DECL fit_of_log log_of_axis::explained_by(const axis_descript
     return {c.total, models.held_out_force(c), models.floor_force(c), models.suspects().size()};
 }
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside

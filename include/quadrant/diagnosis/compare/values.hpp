@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 /// What a description says under the keys of these values, as numbers without an interval; empty: nothing.
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> described(const machine_description& machine,
@@ -20,7 +20,7 @@ QUADRANT_DIAGNOSIS_DECL bool is_in(const diagnosis_result& d, const cause& c);
 /// other log.
 QUADRANT_DIAGNOSIS_DECL diagnosis_result lent(diagnosis_result d, const diagnosis_result& to);
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "values.ipp"

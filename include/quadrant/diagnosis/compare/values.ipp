@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> described(const machine_description& machine,
                                                                   const cause& c) {
@@ -93,4 +93,4 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result lent(diagnosis_result d, const diagnosi
     return d;
 }
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 /// What no machine file has a key for: it happened in one record.
 QUADRANT_DIAGNOSIS_DECL bool is_of_record(const std::string& effect);
@@ -37,7 +37,7 @@ with_some(const machine_description& machine, diagnosis_result d,
 QUADRANT_DIAGNOSIS_DECL machine_description with_causes(const machine_description& machine,
                                                         const diagnosis_result& d);
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "with_causes.ipp"

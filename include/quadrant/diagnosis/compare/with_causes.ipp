@@ -5,7 +5,7 @@
 #include "../effect/effects.hpp"
 #include "../text/bad_input.hpp"
 
-namespace quadrant::diagnosis::detail::beside {
+namespace quadrant::inline v0::diagnosis::detail::beside {
 
 QUADRANT_DIAGNOSIS_DECL bool is_of_record(const std::string& effect) {
     const quadrant::diagnosis::effect* known = effect_named(effect);
@@ -36,4 +36,4 @@ QUADRANT_DIAGNOSIS_DECL machine_description with_causes(const machine_descriptio
     return all ? std::move(*all) : machine;
 }
 
-} // namespace quadrant::diagnosis::detail::beside
+} // namespace quadrant::inline v0::diagnosis::detail::beside

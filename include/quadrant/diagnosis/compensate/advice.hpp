@@ -2,7 +2,7 @@
 #pragma once
 #include "../effect/effect_list.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What to do about an effect that no feedforward of the reference pays, with the numbers of the corrected
 /// plant `p` where the effect has such words, else its remedy; empty: a feedforward pays it.
@@ -13,4 +13,4 @@ inline std::string advice_on(std::string_view effect, const plant_model& p, doub
     return known->advice ? known->advice(p, resolution, unit) : std::string(known->remedy);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -162,4 +162,4 @@ QUADRANT_DIAGNOSIS_DECL void compensations_of::join(compensation& sum, const com
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

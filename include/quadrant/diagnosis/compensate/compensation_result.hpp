@@ -4,7 +4,7 @@
 #include "../text/key_value.hpp"
 #include "compensator.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// How well an axis follows its reference on one log, and with what command.
 struct tracking {
@@ -29,7 +29,7 @@ struct compensation {
     bool by_keys() const { return forces == compensated_forces{}; }
 };
 
-/// What to do about a cause that no feedforward mends.
+/// What to do about a cause that no feedforward corrects.
 struct advice {
     std::string effect, text;
 };
@@ -61,4 +61,4 @@ struct compensation_result {
     std::vector<std::string> notes;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

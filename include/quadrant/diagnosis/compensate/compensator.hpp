@@ -9,7 +9,7 @@
 
 #include <span>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a compensator is made of. The command's unit is that of the machine file, called volts here.
 using level_block = friction_feedforward<stribeck<>, signal::voltage>; ///< friction by its level
@@ -146,4 +146,4 @@ private:
     std::optional<travel_block> along_, cogging_;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "compensation.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a velocity drive has to be asked for, beside the controller's feedback, so that its motor moves as the
 /// reference r does: the drive's loop read backwards, to the second derivative. With F = M r'' + B r' -
@@ -47,4 +47,4 @@ inline std::vector<compensation> for_velocity_drive(const plant_model& p, const 
     return out.keys.empty() ? std::vector<compensation>{} : std::vector{std::move(out)};
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -7,7 +7,7 @@
 
 #include <type_traits>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -33,7 +33,7 @@ cascade<cascade_p_pi_boxes<Estimator, Notch>> described_cascade(const given_valu
     if constexpr (std::is_same_v<Estimator, filtered_estimate>)
         p.estimator = {.corner = in_si(v["velocity_filter_Hz"])};
     if constexpr (std::is_same_v<Notch, command_notch>)
-        p.notch = {.centre = in_si(v["notch.frequency_Hz"]), .damping = v["notch.width"]};
+        p.notch = {.centre = in_si(v["notch.frequency_Hz"]), .width = v["notch.width"]};
     return {.box = {p, duration::from_value(period)}};
 }
 
@@ -132,4 +132,4 @@ auto with_cascade(const controller_description& c, const actuator_description& a
     return with_cascade(given_values(controllers::cascade_p_pi, c), a, period, f);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

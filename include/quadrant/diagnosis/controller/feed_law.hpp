@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -216,4 +216,4 @@ inline constexpr std::array<controller_key, 2> believed_plant_keys{{
 }};
 
 } // namespace controllers
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

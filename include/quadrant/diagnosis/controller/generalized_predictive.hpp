@@ -3,7 +3,7 @@
 #include "../../control/generalized_predictive.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto generalized_predictive_keys =
     detail::joined(believed_plant_keys,
@@ -31,4 +31,4 @@ inline constexpr controller_kind generalized_predictive{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

@@ -6,7 +6,7 @@
 #include <set>
 
 /// Controllers in JSON: in a machine file under `kind`, in a file of quadrant-cnc under `law`.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The place of a key in a box of a machine file; a dotted one is that of a box inside, which is made where it
 /// is missing.
@@ -181,4 +181,4 @@ inline std::string names_of_kinds() {
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -10,7 +10,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What stands under a key of a controller.
 enum class key_form : unsigned char { number, list, word, yes_no };
@@ -118,4 +118,4 @@ template <std::size_t... N> constexpr auto joined(const std::array<controller_ke
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "../../base/version.hpp"
 #include "kind.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Every kind of controller that a machine file may name.
 QUADRANT_DIAGNOSIS_DECL std::span<const controller_kind* const> controller_kinds();
@@ -23,7 +23,7 @@ inline const controller_kind& kind_of(const controller_description& c) {
     return *kind;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "kinds.ipp"

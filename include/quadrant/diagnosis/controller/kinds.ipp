@@ -13,7 +13,7 @@
 #include "sliding_mode.hpp"
 #include "state_feedback.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::span<const controller_kind* const> controller_kinds() {
     static constexpr const controller_kind* all[] = {
@@ -34,4 +34,4 @@ QUADRANT_DIAGNOSIS_DECL std::span<const controller_kind* const> controller_kinds
     return all;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

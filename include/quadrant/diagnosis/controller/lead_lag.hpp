@@ -3,7 +3,7 @@
 #include "../../control/lead_lag.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto lead_lag_keys =
     detail::joined(believed_plant_keys,
@@ -39,4 +39,4 @@ inline constexpr controller_kind lead_lag{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

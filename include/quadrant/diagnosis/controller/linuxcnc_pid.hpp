@@ -3,7 +3,7 @@
 #include "../../control/linuxcnc_pid.hpp"
 #include "kind.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -103,4 +103,4 @@ inline constexpr controller_kind linuxcnc_pid{
     .acceleration = {"FF2", "units_per_m"}};
 
 } // namespace controllers
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "milling_loop.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr std::array<controller_key, 24> milling_axis_keys{
     {{.name = "position_gain_per_s",
@@ -128,4 +128,4 @@ inline constexpr controller_kind milling_axis{
     .acceleration = {"acceleration_feedforward_V_s2_per_m"},
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

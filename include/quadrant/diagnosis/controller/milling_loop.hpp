@@ -8,7 +8,7 @@
 
 #include <numeric>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A box that a machine file may have or not. Without it a notch passes on what comes in, another box gives
 /// nothing.
@@ -163,8 +163,7 @@ private:
         const filtered_derivative<signal::position, signal::velocity> speed(
             {.corner = in_si(v["velocity_filter_Hz"])}, T);
         typename boxes::velocity_notch::parameters notched;
-        if (v.has_box("notch"))
-            notched = {.centre = in_si(v["notch.frequency_Hz"]), .damping = v["notch.width"]};
+        if (v.has_box("notch")) notched = {.centre = in_si(v["notch.frequency_Hz"]), .width = v["notch.width"]};
         return {.position_loop = {{.gain = in_si(v["position_gain_per_s"])}, T},
                 .reference_velocity = speed,
                 .reference_notch = {notched, T},
@@ -188,4 +187,4 @@ private:
     bool learns_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

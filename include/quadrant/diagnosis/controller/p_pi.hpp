@@ -3,7 +3,7 @@
 #include "../../control/p_pi.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto p_pi_keys = detail::joined(
     std::array<controller_key, 5>{
@@ -43,4 +43,4 @@ inline constexpr controller_kind p_pi{
     .acceleration = {"acceleration_gain_V_s2_per_m"},
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

@@ -2,7 +2,7 @@
 #pragma once
 #include "kind.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -49,4 +49,4 @@ inline constexpr controller_kind p_velocity{
     .viscous = {"velocity_feedforward_V_s_per_m"}};
 
 } // namespace controllers
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

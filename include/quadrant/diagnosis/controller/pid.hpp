@@ -3,7 +3,7 @@
 #include "../../control/pid.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto pid_keys = detail::joined(
     std::array<controller_key, 6>{
@@ -45,4 +45,4 @@ inline constexpr controller_kind pid{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

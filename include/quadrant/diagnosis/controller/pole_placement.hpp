@@ -4,7 +4,7 @@
 #include "../../control/zero_phase_tracking.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto pole_placement_keys = detail::joined(
     believed_plant_keys,
@@ -49,4 +49,4 @@ inline constexpr controller_kind zero_phase{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

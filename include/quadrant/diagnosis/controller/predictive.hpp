@@ -3,7 +3,7 @@
 #include "../../control/predictive.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -80,4 +80,4 @@ inline constexpr controller_kind predictive{
     .motions = true};
 
 } // namespace controllers
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -9,7 +9,7 @@
 #include <limits>
 #include <memory>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A controller as it runs, whatever its kind: one row in, its command out.
 class running_controller {
@@ -83,4 +83,4 @@ private:
 };
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

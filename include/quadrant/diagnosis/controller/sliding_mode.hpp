@@ -3,7 +3,7 @@
 #include "../../control/sliding_mode.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto sliding_mode_keys =
     detail::joined(believed_plant_keys,
@@ -41,4 +41,4 @@ inline constexpr controller_kind sliding_mode{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

@@ -3,7 +3,7 @@
 #include "../../control/state_feedback.hpp"
 #include "feed_law.hpp"
 
-namespace quadrant::diagnosis::controllers {
+namespace quadrant::inline v0::diagnosis::controllers {
 
 inline constexpr auto state_feedback_keys =
     detail::joined(believed_plant_keys,
@@ -45,4 +45,4 @@ inline constexpr controller_kind state_feedback{
         },
     .motions = true};
 
-} // namespace quadrant::diagnosis::controllers
+} // namespace quadrant::inline v0::diagnosis::controllers

@@ -2,7 +2,7 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Commands below the dead zone have no effect, larger ones lose it: an output stage without bias, or a
 /// controller's dead band in the drive. Joins the actuator. Shows when the command changes its sign, at any
@@ -48,4 +48,4 @@ inline constexpr effect actuator_dead_zone{
         return {{"actuator.dead_zone_V", {p.dead_zone}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

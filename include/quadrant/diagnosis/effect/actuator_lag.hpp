@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// A current loop of first order, 1/(lag s + 1), behind the command. Joins the actuator. Shows as a phase that
 /// bends and an amplitude that falls with frequency, where a delay keeps the amplitude.
@@ -41,4 +41,4 @@ inline constexpr effect actuator_lag{
         return {{"actuator.lag_s", {p.lag}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

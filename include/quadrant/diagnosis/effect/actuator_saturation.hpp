@@ -2,7 +2,7 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The drive clips below the limit that the controller knows. Joins the actuator. Shows only while the command
 /// is large: the axis gets less than it was told, always the same force.
@@ -43,4 +43,4 @@ inline constexpr effect actuator_saturation{
         return {{"actuator.drive_limit_V", {p.drive_limit}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

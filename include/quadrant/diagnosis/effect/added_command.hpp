@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// A signal is added to the command in parts of the record: of a test, or by a fault. It is found by replay of
 /// the controller, not by a fit of the plant (added/find_added.hpp); its waveform stands in the diagnosis.
@@ -20,4 +20,4 @@ inline constexpr effect added_command{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "payload_mass.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The payload sits at another distance than described. Moves the inertia with the square of the length and
 /// gravity with the
@@ -39,4 +39,4 @@ inline constexpr effect arm_length{
         return out;
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// B (1 + b sign v) v + Fc (1 + c sign v) sign v: friction differs by direction. Joins the force, in the
 /// friction box. The Coulomb part alone is a constant force, moving and at rest; the viscous part is not.
@@ -74,4 +74,4 @@ inline constexpr effect asymmetric_friction{
         return out;
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Play between the motor and the encoder on the load: the reading stands still until the motor has crossed it.
 /// Joins the position. Shows at each reversal as a pause of the reading at full command, as long as the play is
@@ -48,4 +48,4 @@ inline constexpr effect backlash{
         return {{"backlash_m", {p.backlash}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The drive's clock runs slower or faster than the controller's: now and then a set-point never arrives, or
 /// comes twice, and between these moments its age grows or shrinks by a period. Joins the drive.
@@ -49,4 +49,4 @@ inline constexpr effect clock_slip{
         return {{"drive.clock_slip", {p.drive.clock_slip}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

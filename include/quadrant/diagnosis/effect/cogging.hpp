@@ -2,11 +2,11 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& cogging_harmonics(plant_model& p) { return p.cogging; }
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Force periodic in position: sum of N_i sin(2 pi i x / period + phase_i), the magnets' pitch of a motor or
 /// one turn of a screw. Joins the force. Shows as a residual that repeats with position whatever the speed; as
@@ -76,4 +76,4 @@ inline constexpr effect cogging{
     },
     .join = [](plant_model& p, const screening&) { p.cogging.count = harmonics::most; }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

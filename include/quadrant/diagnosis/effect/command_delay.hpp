@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Set-points reach the loops of the drive later (or earlier) than described. Joins the drive. Shows as a force
 /// that follows the velocity and acceleration of the set-points.
@@ -46,4 +46,4 @@ inline constexpr effect command_delay{
         return {{"drive.command_delay_s", {p.drive.delay}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

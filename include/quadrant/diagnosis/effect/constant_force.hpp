@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// A force that never changes: gravity on a tilted axis, an amplifier's offset. Joins the force, with the
 /// motor's sign. Shows as a residual with a mean.
@@ -45,4 +45,4 @@ inline constexpr effect constant_force{
         return {{"constant_force_N", {p.constant_force}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The controller that ran is not the one described. It is found by replay of the logged reference and
 /// position, not by a fit of the plant (controller_mismatch.hpp); its keys are those of the controller's kind.
@@ -21,4 +21,4 @@ inline constexpr effect controller_mismatch{
     .trial = {.low = 0.005, .high = 1, .into = [](trial_machine& m) { m.change_controller(); }},
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = Fc sign(v), stick at rest [Armstrong1994]. Joins the force, in the friction box. Shows as a residual
 /// that jumps with the direction and does not change with speed.
@@ -61,4 +61,4 @@ inline constexpr effect coulomb_friction{
         return {{"coulomb_N", {p.friction.coulomb}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// M c a_other: the acceleration of the other axis forces this one, through a guide that is not square or a
 /// base that gives way. Joins the force. Shows while the other axis accelerates, at rest too.
@@ -51,4 +51,4 @@ inline constexpr effect cross_coupling{
         return {{"coupling", {p.coupling}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

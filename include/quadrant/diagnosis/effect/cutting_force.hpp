@@ -2,11 +2,11 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& cutting_force_harmonics(plant_model& p) { return p.cutting; }
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the
 /// force. Shows as lines in the frequency of the residual that no motion shifts. The mean cannot be told from a
@@ -98,4 +98,4 @@ inline constexpr effect cutting_force{
     },
     .join = [](plant_model& p, const screening&) { p.cutting.count = 8; }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

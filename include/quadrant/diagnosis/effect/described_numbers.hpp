@@ -2,7 +2,7 @@
 #pragma once
 #include "effect_list.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The numbers that a description has under a key of an effect; empty: it says nothing. A member that is no
 /// optional says nothing while it is 0.
@@ -52,4 +52,4 @@ inline void put_numbers(axis_description& axis, const machine_key& key, const ef
     }
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A part of the record, in rows.
 struct stretch_of_rows {
@@ -32,9 +32,9 @@ inline stretch_of_rows silent_part(std::span<const double> left, std::span<const
     return most > 0.5 * whole ? best : stretch_of_rows{};
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The drive gives nothing in one part of the record, and no column says so: it switched itself off, or its
 /// power failed. Joins the drive. The two times are of the record, so that no machine file has a key for them.
@@ -76,4 +76,4 @@ inline constexpr effect drive_dropout{
         return {{"off_from_s", {p.drive.off_from}}, {"off_until_s", {p.drive.off_until}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The gains of the drives, each a number of one kind or two.
 inline constexpr std::array<std::pair<const char*, double drive_model::*>, 5> drive_gains{
@@ -12,9 +12,9 @@ inline constexpr std::array<std::pair<const char*, double drive_model::*>, 5> dr
      {"drive.position_gain_per_s", &drive_model::position_gain},
      {"drive.position_gain_per_m", &drive_model::duty_gain}}};
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// A gain inside the drive differs: the velocity of a volt, P or I of the velocity loop, P of the position
 /// loop, duty of a position error. Joins the drive. Shows as a force that follows the drive's own error.
@@ -95,4 +95,4 @@ inline constexpr effect drive_gain{
     },
     .read = [](const plant_model& p) { return detail::farthest(p, detail::drive_gains); }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The drive gives less force, or less duty, than described at most. Joins the drive. Shows only while its
 /// error is large.
@@ -49,4 +49,4 @@ inline constexpr effect drive_limit{
         return {{"drive.force_limit_N", {p.drive.force_limit}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -3,7 +3,7 @@
 #include "effect.hpp"
 
 /// What the suspects of a drive with loops of its own share.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A number that is freed between a quarter and four times its value, from the best of several ratios: where
 /// friction holds a model that is driven too weakly, no slope leads out.
@@ -51,4 +51,4 @@ inline std::vector<key_value> farthest(const plant_model& p,
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What an effect may look at to choose its start values: the machine file, the best model so far and the force
 /// that this model leaves.
@@ -69,4 +69,4 @@ inline parameter limit_below(const screening& s, const char* key, double& (*of)(
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Every effect that a file may speak of, in the order of effects.hpp. The list costs no compile time here: it
 /// is made with the rest of the diagnosis (base/version.hpp).
@@ -56,7 +56,7 @@ inline bool is_listed(const own_law* law) {
     return false;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "effect_list.ipp"

@@ -2,8 +2,8 @@
 #pragma once
 #include "effects.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::span<const effect* const> every_effect() { return listed_effects; }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

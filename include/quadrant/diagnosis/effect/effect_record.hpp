@@ -4,7 +4,7 @@
 #include "machine_key.hpp"
 #include "trial_machine.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 struct parameter;
 struct screening;
@@ -74,4 +74,4 @@ constexpr bool may_be_one(const effect& a, const effect& b) {
     return names(a, b) || names(b, a);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

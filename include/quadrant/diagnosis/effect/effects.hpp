@@ -49,7 +49,7 @@
 #include "viscous_friction.hpp"
 #include "wind_up.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 // clang-format off
 /// The list: one include above and one line here for each effect, in the order in which files and pages name
@@ -105,4 +105,4 @@ inline constexpr std::array listed_effects{
 };
 // clang-format on
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,11 +2,11 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& encoder_cyclic_error_harmonics(plant_model& p) { return p.cyclic; }
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Reading = x + cyclic sin(2 pi x / period + phase): the interpolation error of an encoder, or an eccentric
 /// scale. Joins the measurement. Keeps its size in position at every speed, so that as a force it grows with
@@ -72,4 +72,4 @@ inline constexpr effect encoder_cyclic_error{
     },
     .join = [](plant_model& p, const screening&) { p.cyclic.count = 1; }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

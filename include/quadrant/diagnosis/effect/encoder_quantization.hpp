@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The encoder counts in coarser steps than described. Joins the reading. No fit of the plant finds it: every
 /// position is a multiple of the count (count_cause in causes.hpp).
@@ -35,4 +35,4 @@ inline constexpr effect encoder_quantization{
                   }},
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

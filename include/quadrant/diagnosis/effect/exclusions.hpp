@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Effects that are no suspects of an axis.
 struct exclusions {
@@ -27,4 +27,4 @@ private:
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = kf u with another kf than described. Joins the actuator gain. Scales whatever the command does:
 /// acceleration, and also what balances friction and offset.
@@ -41,4 +41,4 @@ inline constexpr effect force_constant{
         return {{"force_constant_N_per_V", {p.force_constant}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

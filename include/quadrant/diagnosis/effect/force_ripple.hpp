@@ -2,11 +2,11 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& force_ripple_harmonics(plant_model& p) { return p.ripple; }
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// kf (1 + ripple sin(2 pi x / period + phase)): the force of a motor varies with the magnets. Joins the
 /// actuator's gain. Shows as a residual that repeats with position and grows with the command; without command
@@ -76,4 +76,4 @@ inline constexpr effect force_ripple{
     },
     .join = [](plant_model& p, const screening&) { p.ripple.count = 1; }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

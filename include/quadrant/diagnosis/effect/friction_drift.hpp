@@ -2,7 +2,7 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Fc (1 + drift (1 - exp(-t / time))) sign(v): the Coulomb level changes over the log, as the guides warm up.
 /// Joins the force, in the friction box. Shows as the same stroke that needs another force later.
@@ -77,4 +77,4 @@ inline constexpr effect friction_drift{
         return {{"friction_drift", {p.friction.drift}}, {"friction_drift_time_s", {p.friction.drift_time}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

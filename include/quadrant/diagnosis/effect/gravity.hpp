@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The sine and cosine of the position that the residual force holds, beside friction that is not modelled
 /// either:
@@ -20,9 +20,9 @@ inline Eigen::Vector2d weight_in_residual(const screening& s) {
     return solved(left, right).head<2>();
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Torque -m g l sin(q - q0): the weight of an arm, a tilting table, an unbalanced chuck. Joins the force of a
 /// rotary axis. Shows as a residual that follows the sine of the position, at rest too. Over a small angle a
@@ -83,4 +83,4 @@ inline constexpr effect gravity{
                 {"gravity_phase_rad", {std::remainder(p.gravity.phase, 2 * std::numbers::pi)}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// How the missing friction grows with what the drive transmits: `slope` beside a level that stays, `share`
 /// without one.
@@ -28,9 +28,9 @@ inline friction_over_load friction_over_load_in(const screening& s) {
     return {spread > 0 ? (n * product - sum * force) / spread : 0, square > 0 ? product / square : 0};
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The Coulomb level grows by load_friction |motor - load|, what the drive carries between the motor and the
 /// constant forces on its load (constant force, spring, gravity): teeth and nuts that are pressed together rub.
@@ -82,4 +82,4 @@ inline constexpr effect load_friction{
         return {{"load_friction", {p.friction.load}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The load stands still after a reversal until the motor has crossed the play.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -26,4 +26,4 @@ inline constexpr effect lost_motion{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

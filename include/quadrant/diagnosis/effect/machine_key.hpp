@@ -7,7 +7,7 @@
 #include <concepts>
 #include <variant>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 struct plant_model;
 
@@ -95,4 +95,4 @@ private:
     std::size_t count_ = 0;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

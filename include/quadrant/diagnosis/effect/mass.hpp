@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// M dv/dt with another M than described. Joins the inertia. Shows as a residual proportional to the
 /// acceleration,
@@ -35,4 +35,4 @@ inline constexpr effect mass{
         return {{"mass_kg", {p.mass}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

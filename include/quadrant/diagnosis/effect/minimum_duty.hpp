@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The servo adds another least duty in the direction of its error than described. Joins the drive. Shows as a
 /// force of one size that turns with the sign of the error; without a measured duty it is much like friction in
@@ -42,4 +42,4 @@ inline constexpr effect minimum_duty{
         return {{"drive.minimum_duty", {p.drive.minimum_duty}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The motor loses steps, or a coupling slips: the difference of two readings jumps and stays. The rows and
 /// sizes stand in
@@ -22,4 +22,4 @@ inline constexpr effect missed_steps{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

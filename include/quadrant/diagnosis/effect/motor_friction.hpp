@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Friction before the transmission, not in the guide: that part of the motor's force winds nothing up.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -25,4 +25,4 @@ inline constexpr effect motor_friction{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One number of a law, as a fit moves it.
 template <const own_law& Law, std::size_t I> double& own_number(plant_model& p) { return p.own.of(Law)[I]; }
@@ -75,4 +75,4 @@ inline constexpr effect searched = [] {
 /// `effect` written out as those in effect/, with own_parameter<bellows, 0>(start).
 template <const own_law& Law> inline constexpr const effect* own_effect = &detail::searched<Law>;
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

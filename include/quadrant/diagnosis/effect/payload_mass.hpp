@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A payload is a part of the described inertia and gravity. A hundredth is the rounding of numbers with two
 /// digits.
@@ -34,9 +34,9 @@ inline std::string feedforwards_of_payload(const plant_model& p, double, std::st
                        p.moving_mass(), p.weight());
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Another mass at the end of the arm than described. Moves the inertia by m l^2 and the gravity torque by m g
 /// l together, which `mass` and `gravity` do one by one. Without `gravity_torque_Nm` the arm turns in a level
@@ -89,4 +89,4 @@ inline constexpr effect payload_mass{
         return out;
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

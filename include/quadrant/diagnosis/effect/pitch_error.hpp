@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Error of screw or gear that repeats each turn.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -44,4 +44,4 @@ inline constexpr effect pitch_error{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

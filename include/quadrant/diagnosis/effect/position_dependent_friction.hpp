@@ -2,11 +2,11 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 inline harmonics& position_dependent_friction_harmonics(plant_model& p) { return p.friction.along; }
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Fc (1 + amplitude sin(2 pi x / period + phase)) sign(v): the Coulomb level varies along the travel, as on a
 /// guide that is not straight or a screw that is tight at one end. Joins the force, in the friction box. Shows
@@ -74,4 +74,4 @@ inline constexpr effect position_dependent_friction{
     },
     .join = [](plant_model& p, const screening&) { p.friction.along.count = 1; }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "repeating.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = -k x + F0: a cable carrier, a bellows, a spring-balanced axis. Joins the force. Shows as a residual
 /// proportional to the position, at rest too, that does not turn with the direction. Where the spring is at
@@ -61,4 +61,4 @@ inline constexpr effect position_spring{
         return {{"spring_N_per_m", {p.spring}}, {"constant_force_N", {p.constant_force}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Friction that gives way before it slips and remembers where it turned: elements in parallel, each a spring
 /// with its share of the friction level (Maxwell-slip [Jamaludin2008] eq. 3.6-3.8; Dahl and LuGre have nearly
@@ -113,4 +113,4 @@ inline constexpr effect presliding_friction{
     // exp(-x/2l): the same branch by twice the length.
     .by_another_law = 2};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

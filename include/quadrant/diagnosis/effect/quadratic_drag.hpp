@@ -2,7 +2,7 @@
 #pragma once
 #include "own_effect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The law: one number, one force.
 inline constexpr own_law drag{.name = "quadratic_drag",
@@ -11,9 +11,9 @@ inline constexpr own_law drag{.name = "quadratic_drag",
                                   return -number[0] * now.velocity * std::abs(now.velocity);
                               }};
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = -q v |v|: air that a fast table pushes, oil that a way cover squeezes, a fan. Joins the force. Shows as
 /// a residual that grows with the square of the speed and turns its sign with it; viscous friction grows with
@@ -67,4 +67,4 @@ inline constexpr effect quadratic_drag{
     },
     .read = own_values<detail::drag>};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

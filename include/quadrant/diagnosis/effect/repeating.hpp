@@ -6,7 +6,7 @@
 #include <complex>
 
 /// What the effects share whose force, friction or reading repeats along the travel or in time.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 using harmonics_of = harmonics& (*)(plant_model&);
 
@@ -163,4 +163,4 @@ inline double largest_command(const screening& s) {
     return most;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

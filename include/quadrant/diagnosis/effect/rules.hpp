@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What the selection asks of a cause, in one place. Scores are log-scores of held-out motion.
 struct rules {
@@ -54,4 +54,4 @@ inline rules fast_rules() {
 
 using progress = std::function<void(const std::string&)>; ///< one short line of what is going on
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

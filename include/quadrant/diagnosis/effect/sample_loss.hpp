@@ -3,7 +3,7 @@
 #include "effect.hpp"
 #include "rules.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Whether one gain is above another by more than a margin, and not in a few places only: the scatter of the
 /// places where either has a say leaves one chance in a hundred.
@@ -17,9 +17,9 @@ inline bool everywhere(const std::vector<double>& gain, const std::vector<double
     return n >= 4 && sum >= rules{}.margin && sum >= 2.33 * std::sqrt(squares * n / (n - 1));
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// In some periods the drive keeps the previous command: a bus telegram that came too late. Joins the actuator.
 /// Shows as pulses as large as what the command changed by in that period; see sample_loss.hpp for how they are
@@ -41,7 +41,7 @@ inline constexpr effect sample_loss{
     .prior = {0.03, "a healthy bus loses nothing; one with a bad plug or without real time does"},
     .remedy = "Repair the connection between controller and drive: plugs, shielding, real time of the host.",
     .advice = [](const plant_model&, double, std::string_view) -> std::string {
-        return "mend the transmission: which periods lose their command is not known beforehand";
+        return "repair the transmission: which periods lose their command is not known beforehand";
     },
     .trial = {.low = 0.001,
               .high = 0.2,
@@ -76,4 +76,4 @@ inline constexpr effect sample_loss{
         return {{"actuator.loss_probability", {p.loss}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The load goes further (or less far) at each turn than described.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -30,4 +30,4 @@ inline constexpr effect scale_error{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

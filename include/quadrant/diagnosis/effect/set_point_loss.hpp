@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Which they were is not
 /// known: a model has what they do on average, a set-point that lags.
@@ -37,4 +37,4 @@ inline constexpr effect set_point_loss{
         return {{"drive.set_point_loss", {p.drive.loss}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

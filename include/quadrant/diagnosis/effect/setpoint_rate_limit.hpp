@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The servo follows its set-points at most so fast: a profile velocity in its registers. Joins the drive.
 /// Shows while the set-points move faster.
@@ -49,4 +49,4 @@ inline constexpr effect setpoint_rate_limit{
         return {{"drive.setpoint_rate_limit_m_per_s", {p.drive.rate_limit}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = (Fs - Fc) exp(-(|v|/vs)^d) sign(v) on top of the Coulomb level; d = 1: [Jamaludin2008] eq. (3.5), d = 2:
 /// LuGre's curve [Armstrong1994]. Joins the force, in the friction box. Shows as a residual that grows as the
@@ -97,4 +97,4 @@ inline constexpr effect stribeck_friction{
                 {"stribeck_exponent", {p.friction.stribeck_exponent}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

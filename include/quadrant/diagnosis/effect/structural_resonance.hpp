@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Frequencies at which a small second mass would take most out of the innovations, the best first: one pass
 /// for each of a ladder whose rungs are as close as a light damping is wide, and where it leads uphill the gain
@@ -45,9 +45,9 @@ inline std::vector<double> ringing_frequencies(const screening& s, double lowest
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// A second mass on a spring, part of the moving mass, that the encoder does not see: anti-resonance at the
 /// frequency given (the first mass held), resonance above it [Altintas2012] ch. 3. Joins the inertia. Shows as
@@ -129,4 +129,4 @@ inline constexpr effect structural_resonance{
                 {"mode_damping", {p.mode.damping}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "drive_suspect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The drive runs from another voltage than described. Joins the drive. Scales the torque of every duty, as the
 /// torque constant does.
@@ -40,4 +40,4 @@ inline constexpr effect supply_voltage{
         return {{"drive.supply_V", {p.drive.supply}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The command acts later (or earlier) than described: u(t - delay). Joins the actuator. Shows as a phase that
 /// grows with frequency while the amplitude stays.
@@ -50,4 +50,4 @@ inline constexpr effect time_delay{
         return {{"delay_s", {p.delay}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Smooth part of the pitch error, beside what is proportional to the travel.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -36,4 +36,4 @@ inline constexpr effect travel_error{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What the size of an effect is measured against when a trial puts it into a machine: numbers of the machine's
 /// own motion without the effect.
@@ -80,4 +80,4 @@ struct trial_injection {
     bool slow_shows_it = false;             ///< may be asked of one slow stroke
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

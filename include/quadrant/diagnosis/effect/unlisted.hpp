@@ -5,7 +5,7 @@
 /// What no list names: a force of any smooth form over one quantity. Never a cause; a rival to the causes.
 /// Where such a form predicts held-out motion better than a name does, the name is the nearest of a list, not
 /// the effect.
-namespace quadrant::diagnosis::unlisted {
+namespace quadrant::inline v0::diagnosis::unlisted {
 
 namespace detail {
 
@@ -59,7 +59,7 @@ template <over Of> std::vector<std::vector<parameter>> starts(const screening& s
 }
 (std::make_index_sequence<terms>())
 }; // namespace detail
-} // namespace quadrant::diagnosis::unlisted
+} // namespace quadrant::inline v0::diagnosis::unlisted
 
 template <over Of> constexpr effect form(std::string_view name) {
     return {.name = name,
@@ -81,4 +81,4 @@ inline constexpr effect by_position = detail::form<detail::over::position>(
 /// says so (better_form).
 inline constexpr std::array curves{&by_position, &by_velocity, &by_time, &by_command};
 
-} // namespace quadrant::diagnosis::unlisted
+} // namespace quadrant::inline v0::diagnosis::unlisted

@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// F = B v with another B than described. Joins the force, in the friction box. Shows as a residual
 /// proportional to the velocity.
@@ -50,4 +50,4 @@ inline constexpr effect viscous_friction{
         return {{"viscous_N_s_per_m", {p.friction.viscous_slope}}};
     }};
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

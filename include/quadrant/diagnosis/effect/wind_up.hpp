@@ -2,7 +2,7 @@
 #pragma once
 #include "effect.hpp"
 
-namespace quadrant::diagnosis::suspect {
+namespace quadrant::inline v0::diagnosis::suspect {
 
 /// The transmission is softer (or stiffer) than described: the load stays behind by force over stiffness.
 /// Found by the difference of two readings (chain/search.hpp), not by a fit of the plant.
@@ -25,4 +25,4 @@ inline constexpr effect wind_up{
     },
 };
 
-} // namespace quadrant::diagnosis::suspect
+} // namespace quadrant::inline v0::diagnosis::suspect

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -76,4 +76,4 @@ inline std::optional<axis_log> both_motions(const axis_description& axis, const 
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Solves a x = b for a symmetric, positive a. Its rows have different units: each is taken in its own size, so
 /// that no pivot depends on them.
@@ -21,7 +21,7 @@ QUADRANT_DIAGNOSIS_DECL Eigen::MatrixXd inverted(const Eigen::MatrixXd& a);
 QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd bounded_step(const Eigen::MatrixXd& a, const Eigen::VectorXd& g,
                                                      const Eigen::VectorXd& low, const Eigen::VectorXd& high);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "bounded_step.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -52,4 +52,4 @@ QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd bounded_step(const Eigen::MatrixXd& a, c
     return d;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

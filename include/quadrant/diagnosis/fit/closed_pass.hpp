@@ -3,7 +3,7 @@
 #include "../../base/lanes.hpp"
 #include "../model/closed_drive.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a pass over a log needs in which drives close their loops on the plants, and where its results go.
 struct closed_input {
@@ -113,4 +113,4 @@ template <class Real> void closed_pass(const closed_input& in) {
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

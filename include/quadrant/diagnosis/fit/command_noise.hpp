@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// White noise that a logged signal may carry, rms: as much as its power density is anywhere, at its lowest
 /// in half of the stretches (Hann windows, half overlapped). What moves the axis stands on top of it, steps in
@@ -37,7 +37,7 @@ QUADRANT_DIAGNOSIS_DECL double share_added_by_measurement(const std::vector<doub
 /// rms of white noise of rms 1 behind the zero-phase low-pass of the residual force.
 QUADRANT_DIAGNOSIS_DECL double white_noise_below(double bandwidth_Hz, double period);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "command_noise.ipp"

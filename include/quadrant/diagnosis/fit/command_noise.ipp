@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x) {
     constexpr std::size_t shortest = 32, longest = 1024, bands = 8;
@@ -72,4 +72,4 @@ QUADRANT_DIAGNOSIS_DECL double white_noise_below(double bandwidth_Hz, double per
     return std::sqrt(std::inner_product(passed.begin(), passed.end(), passed.begin(), 0.0));
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One number of a drive or of the axis that it moves, identified from a record.
 struct identified_number {
@@ -52,7 +52,7 @@ struct drive_estimate {
 QUADRANT_DIAGNOSIS_DECL drive_estimate estimate_drive(const axis_description& axis, const axis_log& log,
                                                       double period, const std::set<std::string>& known);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "drive_estimate.ipp"

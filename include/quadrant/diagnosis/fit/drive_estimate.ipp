@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -578,4 +578,4 @@ QUADRANT_DIAGNOSIS_DECL drive_estimate estimate_drive(const axis_description& ax
     return detail::drive_fitter(axis, log, period, known).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

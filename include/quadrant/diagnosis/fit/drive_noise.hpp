@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What the replay of a drive makes of noise in the position that it is fed: its force for a reading that is
 /// wrong by one unit in a single row, in the middle of a record at rest [N/m]. An integral keeps its share to
@@ -38,7 +38,7 @@ QUADRANT_DIAGNOSIS_DECL void set_gains(channel& c, const std::vector<double>& e)
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "drive_noise.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> reaction_to_reading(const plant_model& described,
                                                                 const driven_motion& of) {
@@ -72,4 +72,4 @@ QUADRANT_DIAGNOSIS_DECL void set_gains(channel& c, const std::vector<double>& e)
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

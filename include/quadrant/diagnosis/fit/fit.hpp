@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One number of the plant model that a fit may move.
 struct parameter {
@@ -154,7 +154,7 @@ private:
     bool better_ = false;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "fit.ipp"

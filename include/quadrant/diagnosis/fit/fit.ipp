@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL void fitter::put(plant_model& plant, const std::vector<parameter>& ps,
                                          const Eigen::VectorXd& x) {
@@ -261,4 +261,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> fitter::objectives(std::span<const p
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

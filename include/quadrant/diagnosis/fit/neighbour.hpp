@@ -2,7 +2,7 @@
 #pragma once
 #include "record.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The log of one axis with the acceleration of the axis of its kind that moves most beside it: what
 /// cross-coupling would follow. It is filtered two octaves above the bandwidth of the residual force, so that
@@ -22,4 +22,4 @@ inline axis_log with_neighbour(const machine_log& log, const axis_log& own, doub
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What one pass of an observer over a log needs, and where its results go.
 struct pass_input {
@@ -210,4 +210,4 @@ inline void pass_all(const pass_input& in, const pass_table& by) {
     (in.plants > 4 ? by.more : in.plants > 2 ? by.four : in.plants > 1 ? by.two : by.one)(in);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The passes to use: those of this translation unit's instruction set; in a program that has more of them,
 /// those of the best set that the processor has.
@@ -131,7 +131,7 @@ private:
               const guidance& by) const;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "predictor.ipp"

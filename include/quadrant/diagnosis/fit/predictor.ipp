@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 #ifdef QUADRANT_DIAGNOSIS_PASSES // the program has pass.hpp compiled for these sets too
 extern const pass_table passes_avx2, passes_avx512;
@@ -282,4 +282,4 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass(std::span<const plant_model> plants
              passes());
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

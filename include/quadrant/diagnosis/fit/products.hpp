@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Signals of which the sums of products over blocks of rows are asked for.
 struct products_input {
@@ -58,4 +58,4 @@ template <class Real> void products(const products_input& in) {
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Mean squares of the blocks of one channel as quadratics in the step of the parameters: ms + 2 g d + d' A d.
 /// A is symmetric, and what known slopes make of it is kept once for all fits that know them (shared_slopes):
@@ -145,4 +145,4 @@ inline void find_quadratics(block_quadratics& q, const viewed_signal& e, const s
     }
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

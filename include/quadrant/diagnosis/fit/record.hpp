@@ -8,7 +8,7 @@
 #include "fit.hpp"
 #include "scales.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One axis of one log, made ready for the fits: motion segments, score, smoothed motion.
 struct axis_record {
@@ -143,7 +143,7 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
                                                 held_by how = held_by::readings,
                                                 const plant_model* nearest = nullptr);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "record.ipp"

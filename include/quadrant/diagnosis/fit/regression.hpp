@@ -5,7 +5,7 @@
 #include "fit.hpp"
 #include "scales.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One number of a regression and its standard deviation between parts of the record.
 struct regressed {
@@ -47,7 +47,7 @@ struct regression_part {
 /// have any size there.
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "regression.ipp"

@@ -5,7 +5,7 @@
 #include "../log/signals.hpp"
 #include "../machine/machine.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What is long, fast and strong on one axis, measured from its record. Every threshold, start value and bound
 /// of the diagnosis is a multiple of one of these or has no dimension, so that the answer does not depend on
@@ -88,4 +88,4 @@ inline double bandwidth_of(const axis_description& axis, const axis_log& log, do
     return scales_of(axis.plant, log, period, std::max(axis.encoder.resolution_m, count)).bandwidth_Hz();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

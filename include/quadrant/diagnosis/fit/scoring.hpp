@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// No law is better than some five per cent of the force that it explains.
 inline constexpr double law_error = 0.05;
@@ -163,4 +163,4 @@ inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t r
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

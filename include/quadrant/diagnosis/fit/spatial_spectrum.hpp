@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -116,4 +116,4 @@ inline std::vector<double> carried_peaks(std::span<const double> signal, std::sp
     return detail::highest_peaks(taken, first, line, travel, count);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

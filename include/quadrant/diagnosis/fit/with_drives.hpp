@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -90,4 +90,4 @@ inline machine_log with_drives(const machine_description& machine, machine_log l
     return log;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

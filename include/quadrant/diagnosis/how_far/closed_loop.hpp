@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Reading of the encoder [m] and command [V] of a simulated loop, one entry a row of the log.
 struct closed_loop_run {
@@ -24,7 +24,7 @@ simulate_closed_loop(const controller_description& c, const axis_description& ax
                      double period, const axis_log& log, std::span<const double> sensor_noise = {},
                      int substeps = 4, std::span<const double> added = {});
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "closed_loop.ipp"

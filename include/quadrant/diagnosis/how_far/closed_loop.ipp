@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_closed_loop(
     const controller_description& c, const axis_description& axis, const plant_model& plant, double period,
@@ -51,4 +51,4 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_closed_loop(
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

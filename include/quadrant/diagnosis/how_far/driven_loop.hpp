@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Whether a loop can be simulated from what the log asks for: a position drive follows its set-points, a
 /// velocity drive needs the controller that closes the position.
@@ -22,7 +22,7 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& 
                                                         std::span<const double> sensor_noise = {},
                                                         std::vector<double>* set_points = nullptr);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "driven_loop.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL bool can_close(const axis_description& axis, const axis_log& log) {
     if (axis.drive.takes_position()) return log.drive != nullptr;
@@ -38,4 +38,4 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_driven(const axis_description& 
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// How far the gap shrinks: the gap of the machine file as given, after each cause, and with everything added,
 /// in force, position and command. On the hold-out log when there is one, else on motion segments predicted by
@@ -58,7 +58,7 @@ private:
 /// in this order.
 QUADRANT_DIAGNOSIS_DECL void doubt_by_loop(std::span<cause> causes, const std::vector<double>& errors);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "how_far.ipp"

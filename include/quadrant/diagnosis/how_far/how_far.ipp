@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<cause>& causes) const {
     stage before = at(case_.models.given(), case_.axis.controller);
@@ -195,4 +195,4 @@ QUADRANT_DIAGNOSIS_DECL void doubt_by_loop(std::span<cause> causes, const std::v
         detail::to_suspects(causes.subspan(static_cast<std::size_t>(best - errors.begin())));
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

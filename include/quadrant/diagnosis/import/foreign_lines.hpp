@@ -4,7 +4,7 @@
 #include "../text/text.hpp"
 #include "map.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The lines of another program's log, one after the other, cut into cells as a map says.
 class foreign_lines {
@@ -80,4 +80,4 @@ private:
     std::vector<cell> cells_{};
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

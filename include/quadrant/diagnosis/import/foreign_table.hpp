@@ -4,7 +4,7 @@
 #include "../text/json_node.hpp"
 #include "foreign_lines.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// One column of another program's log, in SI.
 struct foreign_column {
@@ -234,4 +234,4 @@ private:
     foreign_table out_{};
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

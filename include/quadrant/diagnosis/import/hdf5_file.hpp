@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one file format, read without its library: the structures of its specification one after the other.
 #pragma once
 #include "../../base/portable.hpp"
 #include "inflated.hpp"
@@ -10,7 +11,7 @@
 #include <map>
 #include <set>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -434,4 +435,4 @@ inline std::string table_of_hdf5_file(std::string_view bytes, std::string_view f
     return detail::hdf5_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

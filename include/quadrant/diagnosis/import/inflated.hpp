@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a deflate stream held, and how it ended.
 struct inflation {
@@ -38,4 +38,4 @@ inline inflation inflated(std::string_view packed, std::size_t most) {
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

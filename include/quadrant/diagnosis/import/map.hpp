@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a signal of an axis is.
 enum class signal_role {
@@ -101,4 +101,4 @@ struct import_map {
     std::vector<axis> axes;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one file format, read without its library: the structures of its specification one after the other.
 #pragma once
 #include "../text/bad_input.hpp"
 #include "inflated.hpp"
@@ -12,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -257,4 +258,4 @@ inline std::string table_of_mat_file(std::string_view bytes, std::string_view fi
     return detail::mat_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A column of a file of numbers on its way to a table of text. NaN stands for no value.
 struct number_column {
@@ -50,4 +50,4 @@ inline std::string text_of_table(const std::vector<number_column>& columns, std:
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

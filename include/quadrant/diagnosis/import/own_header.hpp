@@ -3,7 +3,7 @@
 #include "../text/axis_name.hpp"
 #include "foreign_lines.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -92,4 +92,4 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

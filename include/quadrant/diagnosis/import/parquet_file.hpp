@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one file format, read without its library: the structures of its specification one after the other.
 #pragma once
 #include "../../base/portable.hpp"
 #include "inflated.hpp"
@@ -11,7 +12,7 @@
 #include <limits>
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -390,4 +391,4 @@ inline std::string table_of_parquet_file(std::string_view bytes, std::string_vie
     return detail::parquet_reader(bytes, file).take();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What physics says of the units of one axis. Nothing here has an absolute scale.
 struct unit_check {
@@ -187,4 +187,4 @@ inline unit_check check_units(const axis_log& log, double period) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "../text/json_keys.hpp"
 #include "map.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -214,4 +214,4 @@ inline import_map read_import_map(const std::filesystem::path& path) {
     return read_import_map(detail::read_whole(path), path.string());
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -5,7 +5,7 @@
 #include "mat_file.hpp"
 #include "parquet_file.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A log as another program wrote it, as text: a MAT-file, a Parquet or HDF5 file as its table, a text in
 /// UTF-8.
@@ -16,4 +16,4 @@ inline std::string text_of_table_file(std::string bytes, std::string_view file) 
     return detail::in_utf8(std::move(bytes));
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A structure in Thrift's compact protocol: fields by number. What Parquet writes its footer and page headers
 /// in.
@@ -150,4 +150,4 @@ private:
     std::map<int, field> fields_{};
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A unit as files name it: factor to the SI unit of its kind.
 struct unit_name {
@@ -72,4 +72,4 @@ inline const unit_name* unit_at_end(std::string_view name) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

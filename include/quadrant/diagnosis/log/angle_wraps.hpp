@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// How often an angle starts again, as a counter of one turn does, and makes it go on instead [rad]. Such an
 /// angle never leaves one turn; it jumps from one end of that turn to the other; and no other step is longer
@@ -50,4 +50,4 @@ inline void turn_to(std::vector<double>& angle, const std::vector<double>& other
     for (double& a : angle) a += turn * std::round(apart / turn);
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -3,7 +3,7 @@
 #include "even_rows.hpp"
 #include "log.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A log on another sample period: smooth signals by the cubic through the nearest rows, the command by the
 /// mean of its staircase. Samples between rows of which one is left out are left out. A note says so.
@@ -40,4 +40,4 @@ inline machine_log at_period(const machine_log& log, double period) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "row_clock.hpp"
 #include "wrong_readings.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Puts the columns of a log onto an even clock. A row that stands on the clock keeps its numbers as they are.
 /// Between rows a smooth signal follows the cubic through the four nearest good readings, and a held one (a
@@ -121,4 +121,4 @@ private:
     std::size_t samples_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

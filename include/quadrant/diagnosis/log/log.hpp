@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 struct driven_motion;
 
@@ -77,4 +77,4 @@ struct machine_log {
     std::vector<std::string> notes;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A step of the stamps may be this share of the period off, if the log is resampled (docs/formats.md).
 inline constexpr double most_spread = 0.5 + 0.01;
@@ -92,4 +92,4 @@ private:
     std::optional<even_rows> rows_{};
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

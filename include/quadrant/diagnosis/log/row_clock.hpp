@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// What the stamps of a log say: the period of its rows, how far the stamps depart from an even clock, and
 /// where rows are missing.
@@ -170,4 +170,4 @@ inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 struct sample_clock {
     double period = 0;
@@ -75,4 +75,4 @@ template <class Refuse> sample_clock read_even_clock(const std::vector<double>& 
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The step in which a position column really moves: the smallest difference that nearly all differences of
 /// neighbouring rows are multiples of; at least the rounding of the column. Needs no dynamics. 0: it never
@@ -25,4 +25,4 @@ inline double observed_count(std::span<const double> position, double rounding) 
     return 10 * multiples >= 9 * steps.size() ? count : rounding;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

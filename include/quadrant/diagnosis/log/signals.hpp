@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Signal arithmetic of the diagnosis, off line and in plain SI numbers.
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Root of the mean square; 0 of nothing.
 inline double rms(std::span<const double> x) {
@@ -66,4 +66,4 @@ inline std::vector<double> derivative(std::span<const double> x, double period) 
     return d;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The cubic through four points (at[i], x[i]), at `where` [Lagrange]. The points may be unevenly spaced.
 inline double cubic_through(const std::array<double, 4>& at, const std::array<double, 4>& x, double where) {
@@ -173,4 +173,4 @@ private:
     wrong_readings out_{};
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

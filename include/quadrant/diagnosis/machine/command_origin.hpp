@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Where the command column of a log was taken: before the amplifier (what the controller asked for), or behind
 /// it (a measured current, force or torque). Behind it the limit, dead zone, lag, delay and lost samples of the
@@ -14,4 +14,4 @@ constexpr std::string_view name_of(command_origin o) {
     return o == command_origin::measured ? "measured" : "asked";
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The last row before the next call of a controller that begins in the middle of a motion, SI.
 struct loop_start {
@@ -54,4 +54,4 @@ struct controller_description {
     void set(std::string_view key, double value) { values[std::string(key)] = {value}; }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

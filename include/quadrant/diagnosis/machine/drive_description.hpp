@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a drive takes: a current, force or torque (every servo amplifier in torque mode), a velocity (+-10 V,
 /// or in units of the axis), a position (cyclic synchronous position), or a position that a proportional law
@@ -44,4 +44,4 @@ struct drive_description {
     bool takes_position() const { return kind == drive_kind::position || kind == drive_kind::position_servo; }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -16,7 +16,7 @@
 /// Field names are the file's keys, so that a message, the file and the code say the same word; all values SI.
 /// An absent optional is an effect that the simulation does not have. A rotary axis has the same fields in rad
 /// and N m.
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 struct effect;
 
@@ -133,4 +133,4 @@ struct machine_description {
     std::vector<std::string> notes;     ///< what was assumed while reading
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

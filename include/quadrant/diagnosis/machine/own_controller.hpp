@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -54,7 +54,7 @@ template <class Loop> running_loop running(Loop loop) {
 } // namespace detail
 
 /// A controller of your own in the place of the cascade: replayed on the log, run in the closed loop, judged,
-/// and, with keys, mended. `make` builds it from the values of the keys, as new, whenever one is needed:
+/// and, with keys, corrected. `make` builds it from the values of the keys, as new, whenever one is needed:
 ///   machine.axes[0].controller = own_controller({{"gain_V_per_m", 9000}, {"lead_Hz", 40}}, [](std::span<const double> v) {
 ///       return my_lead{.gain = v[0], .lead = v[1]}; });
 /// The loop is anything copyable that is called once a sample, reference and measured position in, command out:
@@ -76,4 +76,4 @@ template <class Loop> controller_description own_controller(Loop loop) {
     return own_controller({}, [loop = std::move(loop)](std::span<const double>) { return loop; });
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

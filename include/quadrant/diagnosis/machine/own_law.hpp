@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 using quadrant::joint; ///< where a law acts, and what its number means there
 
@@ -97,4 +97,4 @@ private:
     std::size_t count_ = 0;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What carries the motor's motion to the load.
 enum class transmission_kind { screw, belt, gear };
@@ -45,4 +45,4 @@ struct motor_encoder_description {
     bool operator==(const motor_encoder_description&) const = default;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

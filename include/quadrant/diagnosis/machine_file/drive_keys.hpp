@@ -5,7 +5,7 @@
 
 /// What a machine file says of a drive beside the keys of effects: its kind, its timing and its filter, and
 /// which key is of which kind.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Numbers of a drive that are described and not searched.
 inline constexpr std::array drive_number_keys{
@@ -79,4 +79,4 @@ inline void read_drive_others(const json_node& node, double period, drive_descri
                 fmt::format("must be at least sample_period_s ({:g}): a log has one set-point a row", period));
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

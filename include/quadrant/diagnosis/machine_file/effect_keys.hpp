@@ -7,7 +7,7 @@
 
 /// What a machine file may say of effects: everything here follows from the records of the list
 /// (effect_list.hpp).
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The last letter of a key that names the unit of the command.
 inline constexpr std::string_view command_units = "VA";
@@ -147,4 +147,4 @@ private:
     Note note_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

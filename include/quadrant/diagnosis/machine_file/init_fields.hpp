@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One number that begins a machine file: the option that asks for it, where it goes, and between what sizes it
 /// usually is. Key, unit and meaning are those of a linear axis (axis_words.hpp); so are the sizes, where the
@@ -99,4 +99,4 @@ inline constexpr std::array drive_init_fields{
     init_field{"supply", "drive", "supply_V", "V", "supply of a position servo", 1, 1e3},
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -6,7 +6,7 @@
 
 /// The keys of a machine file that belong to no effect; those of effects follow from their records
 /// (effect_keys.hpp).
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Keys of the actuator that belong to no effect: what the controller itself does to its command, and where the
 /// log's command was taken.
@@ -37,4 +37,4 @@ inline std::vector<std::string> keys_of_box(std::string_view box, axis_kind kind
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -4,7 +4,7 @@
 #include "drive_keys.hpp"
 
 /// What a machine file says of a transmission and of the motor's encoder beside the keys of effects.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 inline constexpr std::array transmission_number_keys{
     number_key<transmission_description>{"damping_N_s_per_m", rule::not_negative,
@@ -37,4 +37,4 @@ inline void read_motor_encoder(const json_node& node, motor_encoder_description&
     }
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// How finely a row is simulated when a drive closes its loop inside the plant: its fastest loop turns by a
 /// twentieth of a radian at most in a step, in two hundred steps at most.
@@ -145,4 +145,4 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     return command;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

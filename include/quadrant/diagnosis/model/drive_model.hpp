@@ -4,7 +4,7 @@
 #include "../../drive/position_servo.hpp"
 #include "../machine/drive_description.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The drive of a plant model: the numbers that a fit may move, neutral where nothing is described. SI, in the
 /// words of a linear axis.
@@ -71,4 +71,4 @@ struct drive_model {
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The set-points of a record on the drive's clock: what its loops follow during each part of a row.
 class set_point_clock {
@@ -324,4 +324,4 @@ private:
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The contact that gives way before it slips: elements in parallel, each a spring that slips at its share of
 /// the friction level (Maxwell-slip, [Jamaludin2008] section 3.2). One element is a sticking contact with a
@@ -60,4 +60,4 @@ struct friction_contact {
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

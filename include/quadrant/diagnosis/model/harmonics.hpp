@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// sum of cosine_i cos(2 pi i z / period) + sine_i sin(2 pi i z / period), i = 1, 2, ...: what repeats along z,
 /// a position or a time. In the files size_i sin(2 pi i z / period + phase_i).
@@ -53,4 +53,4 @@ private:
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

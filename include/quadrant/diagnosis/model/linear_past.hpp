@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What of an innovation follows linearly from what was known before it: its own last rows and the last steps
 /// of the command,
@@ -44,7 +44,7 @@ private:
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "linear_past.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL linear_past linear_past::of(std::span<const double> e, std::span<const double> step,
                                                     std::span<const double> weight, std::size_t from) {
@@ -49,4 +49,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> linear_past::left(const std::vector<
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "../../plant/servo_axis.hpp"
 #include "plant_model.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -138,4 +138,4 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A point mass at the end of a slender link, which turns about the other end.
 struct arm_load {
@@ -175,4 +175,4 @@ private:
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

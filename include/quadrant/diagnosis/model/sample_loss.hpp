@@ -10,7 +10,7 @@
 #include <limits>
 #include <numeric>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a drive that loses commands is taken to do: in each period it keeps the command before with this
 /// probability.
@@ -110,7 +110,7 @@ private:
     double energy_ = 0, told_ = 0;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "sample_loss.ipp"

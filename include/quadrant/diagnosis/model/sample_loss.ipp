@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL lossy_commands lost_commands::find(std::span<const double> command,
                                                            std::span<const double> innovation,
@@ -166,4 +166,4 @@ QUADRANT_DIAGNOSIS_DECL lossy_commands lost_commands::found() const {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

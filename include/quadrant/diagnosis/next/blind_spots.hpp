@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What an encoder reads wrongly or does not reach is in no log of that encoder: the loop holds the reading,
 /// not the tool, where it should be. What it is, and the instrument that sees it.
@@ -48,4 +48,4 @@ inline std::vector<unseen> unseen_by(const axis_result& a, const std::vector<cau
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

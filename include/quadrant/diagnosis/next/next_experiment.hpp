@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The motion that tells the names apart best, whichever of them is true: the one with the largest of the least
 /// gains over all pairs and both directions.
@@ -51,7 +51,7 @@ QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "next_experiment.ipp"

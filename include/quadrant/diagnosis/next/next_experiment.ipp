@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL separation best_motion(const proving_ground& ground,
                                                const std::vector<planned_motion>& motions,
@@ -171,4 +171,4 @@ QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

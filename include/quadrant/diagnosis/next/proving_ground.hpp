@@ -4,7 +4,7 @@
 #include "../which/causes.hpp"
 #include "standard_motions.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One of the names that a record does not tell apart: its effect, and the model of the whole axis under this
 /// name.
@@ -118,4 +118,4 @@ private:
     double sigma_;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

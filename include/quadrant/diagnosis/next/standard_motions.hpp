@@ -3,7 +3,7 @@
 #include "../where/places.hpp"
 #include "motion_writer.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// What a machine has shown of itself in a log: the next motion asks for no more.
 struct shown_motion {
@@ -29,158 +29,197 @@ struct planned_motion {
     bool slips = true; ///< friction slips for most of the time; false: the contact gives way and holds
 };
 
-/// Motions that have told effects apart on servo axes, each 3 to 7 units of time long (record_scales::unit()),
-/// inside the travel, velocity and acceleration that the log showed. No reversal is smaller than sixty counts.
-/// None when the log stands still. The multi-sines ask for frequencies that the log may not have had, and say
-/// which.
-inline std::vector<planned_motion> standard_motions(const shown_motion& shown, double period,
-                                                    const record_scales& scale) {
-    using detail::worded;
-    const double a = shown.acceleration, travel = shown.high - shown.low, unit = scale.unit();
-    const double v = std::min(shown.velocity, 0.25 * unit * a); // ramps of 0.4 units at most
-    if (!(travel > 0) || !(v > 0) || !(a > 0)) return {};
-    const double up = shown.high - shown.start, down = shown.start - shown.low;
-    const double side = up >= down ? 1 : -1, room = std::max(up, down); // strokes go where there is room
-    const auto mm = [](double x) { return 1e3 * x; };
-    std::vector<planned_motion> out;
-    const auto add = [&](std::string words, const detail::motion_writer& m, bool slips = true) {
-        out.push_back({std::move(words), m.written(), slips});
-    };
-    const auto both_ways = [&](detail::motion_writer& m, double length, double speed, double acceleration) {
-        m.stroke(side * length, speed, acceleration);
-        m.rest(0.1);
-        m.stroke(-side * length, speed, acceleration);
-        m.rest(0.1);
-    };
-    const auto reach = [&](double speed, double units) { return std::min(room, speed * units * unit); };
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double slow = v / 30, fast = v / 6, l1 = reach(slow, 1.2), l2 = reach(fast, 0.9);
-        both_ways(m, l1, slow, a / 4);
-        both_ways(m, l2, fast, a / 4);
-        add(worded("slow strokes in both directions: %.3g mm at %.3g mm/s and %.3g mm at %.3g mm/s", mm(l1),
-                   mm(slow), mm(l2), mm(fast)),
-            m);
+namespace detail {
+
+/// One function a motion. All lie inside what the log showed; lengths and times are in units of
+/// record_scales::unit() and of the travel there is.
+class motion_planner {
+public:
+    motion_planner(const shown_motion& shown, double period, const record_scales& scale)
+        : shown_(shown), period_(period), scale_(scale), unit_(scale.unit()), a_(shown.acceleration),
+          v_(std::min(shown.velocity, 0.25 * unit_ * a_)), travel_(shown.high - shown.low),
+          up_(shown.high - shown.start), down_(shown.start - shown.low), side_(up_ >= down_ ? 1 : -1),
+          room_(std::max(up_, down_)), tones_(period, unit_), tone_peaks_(tones_.peaks(2 * unit_, period)) {}
+
+    /// The log shows a motion to plan from.
+    static bool moves(const shown_motion& shown, double unit) {
+        return shown.high - shown.low > 0 && std::min(shown.velocity, 0.25 * unit * shown.acceleration) > 0 &&
+               shown.acceleration > 0;
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double creep = v / 200, length = reach(creep, 0.8);
-        const double wide = std::min(room / 2, 1800 * scale.give()),
-                     narrow = std::min(room / 4, 60 * scale.give());
+
+    planned_motion slow_strokes() const {
+        motion_writer m = begin();
+        const double slow = v_ / 30, fast = v_ / 6, l1 = reach(slow, 1.2), l2 = reach(fast, 0.9);
+        both_ways(m, l1, slow, a_ / 4);
+        both_ways(m, l2, fast, a_ / 4);
+        return {worded("slow strokes in both directions: %.3g mm at %.3g mm/s and %.3g mm at %.3g mm/s", mm(l1),
+                       mm(slow), mm(l2), mm(fast)),
+                m.written()};
+    }
+    planned_motion creep_and_slow_reversals() const {
+        motion_writer m = begin();
+        const double creep = v_ / 200, length = reach(creep, 0.8);
+        const double wide = std::min(room_ / 2, 1800 * scale_.give()),
+                     narrow = std::min(room_ / 4, 60 * scale_.give());
         const auto frequency = [&](double height) {
-            return std::max(0.5 / unit, std::min({2 / unit, v / (std::numbers::pi * height),
-                                                  std::sqrt(2 * a / height) / (2 * std::numbers::pi)}));
+            return std::max(0.5 / unit_, std::min({2 / unit_, v_ / (std::numbers::pi * height),
+                                                   std::sqrt(2 * a_ / height) / (2 * std::numbers::pi)}));
         };
-        both_ways(m, length, creep, a / 4);
-        m.swing(side * wide, frequency(wide), 2);
+        both_ways(m, length, creep, a_ / 4);
+        m.swing(side_ * wide, frequency(wide), 2);
         m.rest(0.3);
-        m.swing(side * narrow, frequency(narrow), 2);
-        add(worded("creep of %.3g mm in both directions at %.3g mm/s, then slow reversals: swings of %.3g and "
+        m.swing(side_ * narrow, frequency(narrow), 2);
+        return {
+            worded("creep of %.3g mm in both directions at %.3g mm/s, then slow reversals: swings of %.3g and "
                    "%.3g "
                    "um at %.2g Hz",
                    mm(length), mm(creep), 1e6 * wide, 1e6 * narrow, frequency(wide)),
-            m, false);
+            m.written(), false};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double slow = v / 15,
-                     l1 = std::min({room, 1.2 * v * v / a * std::numbers::pi / 2, 0.4 * unit * v}),
+    planned_motion strong_accelerations() const {
+        motion_writer m = begin();
+        const double slow = v_ / 15,
+                     l1 = std::min({room_, 1.2 * v_ * v_ / a_ * std::numbers::pi / 2, 0.4 * unit_ * v_}),
                      l2 = reach(slow, 0.8);
-        for (int i = 0; i < 2; ++i) both_ways(m, l1, v, a);
-        both_ways(m, l2, slow, a / 4);
-        add(worded("strong accelerations beside slow strokes: %.3g mm to and fro twice at %.3g m/s2, then "
-                   "%.3g mm in both directions at %.3g mm/s",
-                   mm(l1), a, mm(l2), mm(slow)),
-            m);
+        for (int i = 0; i < 2; ++i) both_ways(m, l1, v_, a_);
+        both_ways(m, l2, slow, a_ / 4);
+        return {worded("strong accelerations beside slow strokes: %.3g mm to and fro twice at %.3g m/s2, then "
+                       "%.3g mm in both directions at %.3g mm/s",
+                       mm(l1), a_, mm(l2), mm(slow)),
+                m.written()};
     }
-    const detail::multi_sine tones(period, unit);
-    const auto [tone_velocity, tone_acceleration] = tones.peaks(2 * unit, period);
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double size = std::min(0.8 * a / tone_acceleration, 0.8 * v / tone_velocity);
-        m.stroke(side * size * tones.reach(), v / 10, a / 4); // away from the end of the travel
-        m.append(5 * unit, [&](double t) { return size * tones.at(t, 5 * unit); });
-        add(worded("multi-sine of %.3g to %.3g Hz about one place, peak %.3g m/s2, %.3g s", tones.bottom_Hz,
-                   tones.top_Hz, size * tone_acceleration, 5 * unit),
-            m, false);
+    planned_motion tones_about_one_place() const {
+        motion_writer m = begin();
+        const auto [tone_velocity, tone_acceleration] = tone_peaks_;
+        const double size = std::min(0.8 * a_ / tone_acceleration, 0.8 * v_ / tone_velocity);
+        m.stroke(side_ * size * tones_.reach(), v_ / 10, a_ / 4); // away from the end of the travel
+        m.append(5 * unit_, [&](double t) { return size * tones_.at(t, 5 * unit_); });
+        return {worded("multi-sine of %.3g to %.3g Hz about one place, peak %.3g m/s2, %.3g s",
+                       tones_.bottom_Hz, tones_.top_Hz, size * tone_acceleration, 5 * unit_),
+                m.written(), false};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double speed = std::min(v / 3, room / (2 * unit)), length = reach(speed, 2.2);
-        const double size = std::min(0.8 * a / tone_acceleration, 0.7 * speed / tone_velocity);
+    planned_motion tones_on_strokes() const {
+        motion_writer m = begin();
+        const auto [tone_velocity, tone_acceleration] = tone_peaks_;
+        const double speed = std::min(v_ / 3, room_ / (2 * unit_)), length = reach(speed, 2.2);
+        const double size = std::min(0.8 * a_ / tone_acceleration, 0.7 * speed / tone_velocity);
         const auto on_top = [&](double t, double even) {
-            return even > 0.4 * unit ? size * tones.at(t, even) : 0;
+            return even > 0.4 * unit_ ? size * tones_.at(t, even) : 0;
         };
-        m.stroke(side * length, speed, a / 4, on_top);
+        m.stroke(side_ * length, speed, a_ / 4, on_top);
         m.rest(0.1);
-        m.stroke(-side * length, speed, a / 4, on_top);
-        add(worded("multi-sine of %.3g to %.3g Hz, peak %.3g m/s2, on strokes of %.3g mm in both directions at "
+        m.stroke(-side_ * length, speed, a_ / 4, on_top);
+        return {
+            worded("multi-sine of %.3g to %.3g Hz, peak %.3g m/s2, on strokes of %.3g mm in both directions at "
                    "%.3g mm/s, slow enough for the tones and fast enough not to reverse",
-                   tones.bottom_Hz, tones.top_Hz, size * tone_acceleration, mm(length), mm(speed)),
-            m);
+                   tones_.bottom_Hz, tones_.top_Hz, size * tone_acceleration, mm(length), mm(speed)),
+            m.written()};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double length = reach(v, 0.3);
+    planned_motion rest_at_two_places() const {
+        motion_writer m = begin();
+        const double length = reach(v_, 0.3);
         m.rest(2.5);
-        m.stroke(side * length, v / 2, a / 2);
+        m.stroke(side_ * length, v_ / 2, a_ / 2);
         m.rest(2.3);
-        add(worded("rest at two places %.3g mm apart, %.2g s each, with the process as in this log", mm(length),
-                   2.5 * unit),
-            m, false);
+        return {worded("rest at two places %.3g mm apart, %.2g s each, with the process as in this log",
+                       mm(length), 2.5 * unit_),
+                m.written(), false};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double speed = std::min(v, travel / (1.4 * unit)), length = std::min(travel, 1.4 * unit * speed);
-        m.stroke(-side * std::min(up, down), v, a);
+    planned_motion whole_travel() const {
+        motion_writer m = begin();
+        const double speed = std::min(v_, travel_ / (1.4 * unit_)),
+                     length = std::min(travel_, 1.4 * unit_ * speed);
+        m.stroke(-side_ * std::min(up_, down_), v_, a_);
         m.rest(0.2);
-        m.stroke(side * length, speed, a / 2);
+        m.stroke(side_ * length, speed, a_ / 2);
         m.rest(0.3);
-        m.stroke(-side * length, speed, a / 2);
+        m.stroke(-side_ * length, speed, a_ / 2);
         m.rest(0.3);
-        add(worded("slow strokes of %.3g mm, the whole travel as far as time allows, in both directions at "
-                   "%.3g mm/s, with rest "
-                   "at both ends",
-                   mm(length), mm(speed)),
-            m);
+        return {worded("slow strokes of %.3g mm, the whole travel as far as time allows, in both directions at "
+                       "%.3g mm/s, with rest "
+                       "at both ends",
+                       mm(length), mm(speed)),
+                m.written()};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double length = reach(v, 0.45);
+    planned_motion three_speeds() const {
+        motion_writer m = begin();
+        const double length = reach(v_, 0.45);
         for (double share : {1.0, 0.5, 0.25})
-            both_ways(m, std::min(length, 0.7 * unit * share * v), share * v, a);
-        add(worded("strokes of up to %.3g mm in both directions at %.3g, %.3g and %.3g mm/s", mm(length), mm(v),
-                   mm(v / 2), mm(v / 4)),
-            m);
+            both_ways(m, std::min(length, 0.7 * unit_ * share * v_), share * v_, a_);
+        return {worded("strokes of up to %.3g mm in both directions at %.3g, %.3g and %.3g mm/s", mm(length),
+                       mm(v_), mm(v_ / 2), mm(v_ / 4)),
+                m.written()};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double length = reach(v / 4, 0.4);
+    planned_motion the_same_stroke() const {
+        motion_writer m = begin();
+        const double length = reach(v_ / 4, 0.4);
         for (int i = 0; i < 5; ++i) {
-            m.stroke(side * length, v / 4, a / 2);
-            m.stroke(-side * length, v / 4, a / 2);
+            m.stroke(side_ * length, v_ / 4, a_ / 2);
+            m.stroke(-side_ * length, v_ / 4, a_ / 2);
         }
-        add(worded("the same stroke of %.3g mm at %.3g mm/s, five times to and fro", mm(length), mm(v / 4)), m);
+        return {
+            worded("the same stroke of %.3g mm at %.3g mm/s, five times to and fro", mm(length), mm(v_ / 4)),
+            m.written()};
     }
-    {
-        detail::motion_writer m(shown.start, period, unit);
-        const double frequency = std::clamp(a / (2 * std::numbers::pi * v), 1.5 / unit, 10 / unit),
+    planned_motion strongest_swings() const {
+        motion_writer m = begin();
+        const double frequency = std::clamp(a_ / (2 * std::numbers::pi * v_), 1.5 / unit_, 10 / unit_),
                      w = 2 * std::numbers::pi * frequency;
-        const double height = std::min({room, 2 * v / w, 2 * a / (w * w)});
-        const int cycles = static_cast<int>(std::max(1.0, std::floor(2.4 * unit * frequency)));
-        m.swing(side * height, frequency, cycles);
+        const double height = std::min({room_, 2 * v_ / w, 2 * a_ / (w * w)});
+        const int cycles = static_cast<int>(std::max(1.0, std::floor(2.4 * unit_ * frequency)));
+        m.swing(side_ * height, frequency, cycles);
         m.rest(0.2);
-        m.swing(side * height / 2, frequency, cycles);
-        add(worded(
+        m.swing(side_ * height / 2, frequency, cycles);
+        return {
+            worded(
                 "swings of %.3g and %.3g mm at %.2g Hz: the strongest acceleration (%.3g m/s2) and half of it",
                 mm(height), mm(height / 2), frequency, height * w * w / 2),
-            m);
+            m.written()};
     }
-    const double longest = 7 * unit;
+
+private:
+    static double mm(double x) { return 1e3 * x; }
+    motion_writer begin() const { return {shown_.start, period_, unit_}; }
+    /// How far the axis gets at this speed in so many units of time, with the room there is.
+    double reach(double speed, double units) const { return std::min(room_, speed * units * unit_); }
+    void both_ways(motion_writer& m, double length, double speed, double acceleration) const {
+        m.stroke(side_ * length, speed, acceleration);
+        m.rest(0.1);
+        m.stroke(-side_ * length, speed, acceleration);
+        m.rest(0.1);
+    }
+
+    const shown_motion& shown_;
+    double period_;
+    const record_scales& scale_;
+    double unit_, a_;
+    double v_; ///< ramps of 0.4 units at most
+    double travel_, up_, down_;
+    double side_, room_; ///< strokes go where there is room
+    multi_sine tones_;
+    decltype(tones_.peaks(1.0, 1.0)) tone_peaks_; ///< velocity and acceleration
+};
+
+} // namespace detail
+
+/// Motions that have distinguished effects on servo axes, each 3 to 7 units of time long
+/// (record_scales::unit()), inside the travel, velocity and acceleration that the log showed. No reversal is
+/// smaller than sixty counts. None when the log stands still. The multi-sines ask for frequencies that the log
+/// may not have had, and say which.
+inline std::vector<planned_motion> standard_motions(const shown_motion& shown, double period,
+                                                    const record_scales& scale) {
+    if (!detail::motion_planner::moves(shown, scale.unit())) return {};
+    const detail::motion_planner plan(shown, period, scale);
+    std::vector<planned_motion> out{plan.slow_strokes(),         plan.creep_and_slow_reversals(),
+                                    plan.strong_accelerations(), plan.tones_about_one_place(),
+                                    plan.tones_on_strokes(),     plan.rest_at_two_places(),
+                                    plan.whole_travel(),         plan.three_speeds(),
+                                    plan.the_same_stroke(),      plan.strongest_swings()};
+    const double longest = 7 * scale.unit();
     std::erase_if(out, [&](const planned_motion& m) {
         return static_cast<double>(m.reference.size()) * period > longest;
     });
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

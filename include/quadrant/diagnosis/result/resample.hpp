@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Draws whole motion segments with replacement, the same draws for the same number of segments: how many times
 /// each segment counts in each draw. Samples inside a segment are correlated; segments are what is independent.
@@ -53,4 +53,4 @@ struct segment_energy {
     }
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -12,7 +12,7 @@
 /// What a diagnosis says: the JSON of docs/formats.md (schema quadrant.diagnosis/1) plus the signals that the
 /// report draws. Fields named in m and N are in rad and N m for a rotary axis; keys and sentences are in its
 /// own words already.
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Ordered from the best to the worst: the verdict of several axes is the largest.
 enum class verdict { no_gap, within_tolerance, explained, partly_explained, unexplained };
@@ -178,4 +178,4 @@ template <class Axes> auto named(const Axes& axes, const std::string& name) {
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

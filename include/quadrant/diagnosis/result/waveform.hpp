@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The form of a signal that is added to a command.
 enum class waveform_form : unsigned char { constant, square, pattern, tone, chirp, unknown };
@@ -49,4 +49,4 @@ struct added_waveform {
     double sample_period_s = 0;   ///< of `values`
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

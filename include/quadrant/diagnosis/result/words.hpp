@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -76,4 +76,4 @@ inline std::string in_words(const added_waveform& w, std::string_view unit) {
     }
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

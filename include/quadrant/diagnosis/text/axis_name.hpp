@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Names appear in messages, as JSON keys and in dotted paths.
 inline bool is_axis_name(std::string_view name) {
@@ -10,4 +10,4 @@ inline bool is_axis_name(std::string_view name) {
     return !name.empty() && name.find_first_not_of(allowed) == name.npos;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A linear axis has a mass, forces and metres, a rotary one an inertia, torques and radians. The mathematics
 /// is one: inside the diagnosis every axis has the linear names, and what a file, a message or a page shows is
@@ -94,4 +94,4 @@ inline std::string text_of(std::string_view linear, axis_kind kind) {
 /// The command of the axis is its force or torque itself: there is no constant between them.
 inline bool is_force(std::string_view command_unit) { return command_unit == "N" || command_unit == "Nm"; }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

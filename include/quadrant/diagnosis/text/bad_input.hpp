@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -51,4 +51,4 @@ struct bad_input : std::runtime_error {
                                          detail::one_line(message, 400))) {}
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

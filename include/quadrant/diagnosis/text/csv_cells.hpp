@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// The cells of one CSV line (RFC 4180), blanks around them dropped. A quoted cell may hold commas and doubled
 /// quotes, no line break.
@@ -55,4 +55,4 @@ private:
     bool broken_ = false;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

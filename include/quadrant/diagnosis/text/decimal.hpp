@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Reads the whole of `cell`, whatever the locale. Returns what is wrong with it, or nullptr.
 inline const char* parse_number(std::string_view cell, double& value) {
@@ -91,4 +91,4 @@ private:
     std::size_t rows_ = 0, changes_ = 0;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

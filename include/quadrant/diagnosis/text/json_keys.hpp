@@ -6,7 +6,7 @@
 #include <variant>
 
 /// What the readers of JSON files share: schema, axes, unknown keys, and tables of numbers.
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 using key_names = std::span<const std::string_view>;
 
@@ -66,4 +66,4 @@ void read_numbers(const json_node& node, const std::array<number_key<Target>, N>
     }
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

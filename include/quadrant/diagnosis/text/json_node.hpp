@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// One value of a JSON file with its dotted path, for messages "FILE: axes.x.plant.mass_kg: must be ...".
 struct json_node {
@@ -102,4 +102,4 @@ template <class Names> std::string suggestion(std::string_view given, const Name
     return best.empty() ? std::string() : fmt::format("; did you mean {}?", best);
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Builds the document itself: the library's own parsers keep the last of two equal keys without a word, nest
 /// without a limit and, with a callback, take time by the square of the number of objects.
@@ -93,4 +93,4 @@ QUADRANT_DIAGNOSIS_DECL nlohmann::json parse_json(std::string_view text, std::st
     return std::move(builder.root());
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

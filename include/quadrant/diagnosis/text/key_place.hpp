@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Line and column, from 1, of the key at a dotted path of a JSON text that parses; {0, 0} when it is written
 /// with escapes.
@@ -34,4 +34,4 @@ inline std::pair<std::size_t, std::size_t> key_place(std::string_view text, std:
     return {0, 0};
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A key in two parts: what it is called and its unit, as keys are written. "stribeck_velocity_m_per_s" is
 /// {"stribeck_velocity", "m_per_s"}; a pure number has no unit.
@@ -57,4 +57,4 @@ inline std::string unit_text(std::string_view unit) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

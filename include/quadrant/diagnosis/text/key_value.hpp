@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A key of the machine file and its numbers.
 struct key_value {
@@ -11,4 +11,4 @@ struct key_value {
     std::vector<double> values; ///< one, or one a harmonic
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a number of a file must be: as a text for messages, as a test, and by the name it has in docs/schema.
 struct number_rule {
@@ -35,4 +35,4 @@ inline constexpr number_rule bits{"must be a whole number from 1 to 32",
                                   [](double x) { return x >= 1 && x <= 32 && x == std::floor(x); }, "bits"};
 } // namespace rule
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Threads that are waited for where they end; std::jthread is not in every C++20 library.
 struct joined_threads {
@@ -50,4 +50,4 @@ template <class Work> void on_all_cores(std::size_t count, std::size_t threads, 
     if (failed) std::rethrow_exception(failed);
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

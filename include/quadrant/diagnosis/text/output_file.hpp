@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -168,4 +168,4 @@ inline void write_aside(const std::filesystem::path& path, std::string_view text
     out.finish();
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <istream>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A text of 16-bit units (UTF-16 with its byte order mark, as Windows programs export) in UTF-8; any other as
 /// it is.
@@ -83,4 +83,4 @@ inline std::size_t characters(std::string_view text) {
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -135,7 +135,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_d
                                                               std::span<const double> position,
                                                               std::span<const double> command);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "controller_box.ipp"

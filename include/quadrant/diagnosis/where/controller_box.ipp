@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> made(const controller_description& c,
                                                                  const actuator_description& a, double period) {
@@ -101,4 +101,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_d
     return replay_controller(c, a, period, loop_columns{reference, position, command});
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

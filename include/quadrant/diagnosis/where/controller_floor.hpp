@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -192,4 +192,4 @@ inline std::size_t rows_of_unknown_past(const controller_description& c, const r
 }
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

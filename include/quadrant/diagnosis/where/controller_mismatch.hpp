@@ -6,7 +6,7 @@
 #include "controller_box.hpp"
 #include "searched_keys.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is
 /// not the one described. Which key differs is found by fitting one at a time, on this box alone.
@@ -37,7 +37,7 @@ QUADRANT_DIAGNOSIS_DECL controller_finding judge_controller(const controller_des
                                                             const axis_log& log, const axis_record& record,
                                                             double count = 0);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "controller_mismatch.ipp"

@@ -2,7 +2,7 @@
 #pragma once
 #include "added/find_added.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -99,4 +99,4 @@ QUADRANT_DIAGNOSIS_DECL controller_finding judge_controller(const controller_des
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

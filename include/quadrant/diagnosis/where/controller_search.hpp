@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Sum over the blocks of log(mean square + floor): free of scale, and no block gains from being below the
 /// floor.
@@ -165,4 +165,4 @@ private:
     std::vector<double> described_; ///< replayed less logged as described, without the converter
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -57,7 +57,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> regimes(const std::vector<double>& re
 QUADRANT_DIAGNOSIS_DECL void spectrum(const std::vector<double>& x, double period, double up_to_Hz,
                                       std::vector<double>& frequency, std::vector<double>& density);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "places.ipp"

@@ -3,7 +3,7 @@
 #include "../controller/kinds.hpp"
 #include "../fit/scales.hpp"
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A number of a controller that may be found to be another.
 struct searched_key {
@@ -89,4 +89,4 @@ inline std::vector<searched_key> searched_keys(const controller_description& c, 
     return out;
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

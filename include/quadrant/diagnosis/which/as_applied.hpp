@@ -3,7 +3,7 @@
 #include "../../base/version.hpp"
 #include "causes.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -24,7 +24,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight
 QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& causes,
                                             std::vector<std::vector<detail::rival>>& rivals);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "as_applied.ipp"

@@ -11,7 +11,7 @@
 #include <array>
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One axis under diagnosis, everything found out once: where its wires disagree and the models on the way
 /// from the machine file to its causes. What is said of them (causes.hpp, how_far.hpp, block_places.hpp) only
@@ -116,7 +116,7 @@ public:
     std::vector<double> command_difference(const axis_log& l, const controller_description& c) const;
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "axis_case.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period, const exclusions& excluded,
@@ -196,4 +196,4 @@ axis_case::command_difference(const axis_log& l, const controller_description& c
     return d;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c) {
     using detail::worded;
@@ -59,4 +59,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 #include "axis_case.hpp"
 #include "interval.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -46,7 +46,7 @@ inline constexpr effect described_values{
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
                                                                    const std::vector<cause>& causes);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "calibrated.ipp"

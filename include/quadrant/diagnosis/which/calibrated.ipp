@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> calibrated(const axis_case& c, const candidate& model,
                                                                    const std::vector<cause>& causes) {
@@ -21,4 +21,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> calibrated(const axis_ca
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

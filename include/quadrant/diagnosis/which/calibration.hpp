@@ -4,7 +4,7 @@
 #include "../effect/described_numbers.hpp"
 #include "../effect/effect.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// The force that the velocity loop inside a drive holds at the first row: no file can know it.
 inline parameter start_of_drive(const record_scales& scale) {
@@ -34,7 +34,7 @@ inline bool is_of_record(const parameter& p) {
 /// alike. `give`: of every contact, record_scales::give().
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "calibration.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL std::array<parameter, 2> timing_of_readings(const drive_model& d, double period) {
     const auto within_a_row = [&](const char* key, double& (*of)(plant_model&), double start) {
@@ -90,4 +90,4 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A model under trial: the described machine, calibrated, with some effects joined; and how well it predicts
 /// motion that it was not fitted to.
@@ -97,7 +97,7 @@ QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c);
 QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, std::span<candidate* const> sketches);
 QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, candidate& c);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "candidate.ipp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -188,4 +188,4 @@ QUADRANT_DIAGNOSIS_DECL void finish(const axis_record& record, candidate& c) {
     finish(record, std::span(&one, 1));
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -5,7 +5,7 @@
 #include "axis_case.hpp"
 #include "interval.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -123,7 +123,7 @@ QUADRANT_DIAGNOSIS_DECL cause added_cause(const axis_case& c);
 /// rounding is the cause; one that does not is a guess.
 QUADRANT_DIAGNOSIS_DECL std::optional<cause> controller_cause(const axis_case& c);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "causes.ipp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -22,4 +22,4 @@ inline double by_chance(std::size_t suspects, double left) {
 
 } // namespace detail
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

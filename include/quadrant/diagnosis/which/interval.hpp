@@ -4,7 +4,7 @@
 #include "../result/result.hpp"
 #include "candidate.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Covariance of the fitted parameters, in fit coordinates: H^-1 (S + P) H^-1 with H the curvature of the
 /// score, S the scatter of the gradient between motion segments and P the owner's tolerance. Segments, not
@@ -18,7 +18,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> estimates(const candidat
 /// Marks the values that stopped at the end of what they were allowed: the fit would have gone on.
 QUADRANT_DIAGNOSIS_DECL void mark_bounds(const candidate& c, std::vector<parameter_estimate>& estimates);
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "interval.ipp"

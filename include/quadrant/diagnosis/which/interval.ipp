@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL Eigen::MatrixXd covariance(const candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
@@ -61,4 +61,4 @@ QUADRANT_DIAGNOSIS_DECL void mark_bounds(const candidate& c, std::vector<paramet
     }
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -3,7 +3,7 @@
 #include "../fit/record.hpp"
 #include "candidate.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A record of one motion, or a replayed one of fewer motions than there are folds, cut into as many pieces as
 /// folds, of whole blocks: a model is then tested on the piece that it was not fitted to, as it is on a motion
@@ -26,4 +26,4 @@ inline axis_record in_pieces(axis_record r, std::size_t& motions) {
     return r;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

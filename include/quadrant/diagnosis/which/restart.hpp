@@ -3,7 +3,7 @@
 #include "../fit/record.hpp"
 #include "calibration.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// A model as it runs in another log. A process that turns has no memory of the first log: where in its cycle
 /// the other one begins is found again, everything else stays as fitted. Costs some forty passes, when there is
@@ -46,4 +46,4 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
         .plant;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -13,7 +13,7 @@
 #include <random>
 #include <set>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// One axis under diagnosis: the record, the described machine and the models tried so far.
 class search {
@@ -292,7 +292,7 @@ private:
     mutable std::vector<double> cloud_{}; ///< found when it is asked for
 };
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
 #    include "search.ipp"

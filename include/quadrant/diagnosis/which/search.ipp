@@ -2,7 +2,7 @@
 #pragma once
 #include "../effect/unlisted.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_description& axis,
                                        exclusions excluded, rules r, progress tell)
@@ -784,4 +784,4 @@ QUADRANT_DIAGNOSIS_DECL std::string search::describe(const candidate& c) const {
     return (out += ' ') += std::to_string(static_cast<long>(c.total - calibrated_.total));
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

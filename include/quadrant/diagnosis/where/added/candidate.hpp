@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// That a signal is added to the command, beside the other readings of the same difference.
 struct added_finding {
@@ -35,4 +35,4 @@ struct waveform_candidate {
 };
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A signal cut where its level changes: binary segmentation. A part is cut in two where that takes most off
 /// the sum of squares, as long as that is more than noise would give anywhere in the record.
@@ -74,4 +74,4 @@ private:
     std::vector<std::size_t> ends_;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

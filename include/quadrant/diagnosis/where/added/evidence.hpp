@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A signal as a sum of columns, fitted by least squares to four fifths of its blocks and compared with the
 /// other fifth, five times. Neighbouring blocks are fitted and compared in turn, so that a part of the record
@@ -107,4 +107,4 @@ inline double mean_of(const std::vector<double>& x) {
     return x.empty() ? 0 : sum / static_cast<double>(x.size());
 }
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -6,7 +6,7 @@
 #include "levels.hpp"
 #include "tones.hpp"
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
@@ -191,4 +191,4 @@ private:
 };
 
 } // namespace detail
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// Parts of constant level, as a waveform: single constants, or levels that repeat.
 class level_finder {
@@ -166,4 +166,4 @@ private:
     std::size_t groups_ = 0, zero_ = 0, repeat_ = 0, first_ = 0;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

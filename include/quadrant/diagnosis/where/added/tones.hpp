@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-namespace quadrant::diagnosis::detail {
+namespace quadrant::inline v0::diagnosis::detail {
 
 /// A tone, or one whose frequency changes evenly: a cos phase + b sin phase + c, the phase
 /// 2 pi (frequency t + sweep t^2 / 2), t from the middle of the rows.
@@ -172,4 +172,4 @@ private:
     bool usable_ = false;
 };
 
-} // namespace quadrant::diagnosis::detail
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -7,13 +7,13 @@
 #include <cstddef>
 #include <vector>
 
-namespace quadrant::analysis {
+namespace quadrant::inline v0::analysis {
 
 /// A place or a way along an axis.
 using displacement = quantity_of<signal::position>;
 
 /// A number with its interval of 95 %.
-template <class Quantity> struct estimate {
+template <class Quantity> struct estimated {
     Quantity value, low, high;
     bool holds(Quantity truth) const { return low <= truth && truth <= high; }
 };
@@ -70,4 +70,4 @@ inline steady_mean settle_mean(const std::vector<double>& x) {
             double(parts - 1), first, first < latest};
 }
 
-} // namespace quadrant::analysis
+} // namespace quadrant::inline v0::analysis

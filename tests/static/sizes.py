@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSL-1.0
+"""usage: sizes.py ROOT: no function is longer than 60 lines, and no file than 250, without a reason in its head.
+
+Files that were too long when this test came are listed in it and are still to be split: the lists only get shorter.
+
+Looks at include/ and examples/. A function is counted from the line of its opening brace to that of its closing one. The reason
+stands among the first 12 lines of the file, in a comment line of its own:
+
+    // Long: one keyword of the language after the other.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+root = pathlib.Path(sys.argv[1]).resolve()
+FUNCTION, FILE = 60, 250
+
+# Still to be split by meaning: files of more than 250 lines, and files with a function of more than 60.
+long_files = {
+    "include/quadrant/analysis/genetic.hpp",
+    "examples/programs/quadrant_gap/settings.hpp",
+    "examples/programs/quadrant_gap/trial/chain_population.hpp",
+    "examples/programs/quadrant_reproduce/milling_table.hpp",
+    "examples/programs/quadrant_reproduce/stage.hpp",
+    "include/quadrant/analysis/repetitive_design.hpp",
+    "include/quadrant/diagnosis/diagnose.ipp",
+    "include/quadrant/diagnosis/fit/drive_estimate.ipp",
+    "include/quadrant/diagnosis/fit/fit.ipp",
+    "include/quadrant/diagnosis/fit/predictor.ipp",
+    "include/quadrant/diagnosis/fit/record.ipp",
+    "include/quadrant/diagnosis/import_log.hpp",
+    "include/quadrant/diagnosis/init.hpp",
+    "include/quadrant/diagnosis/model/driven_motion.hpp",
+    "include/quadrant/diagnosis/read_log.hpp",
+    "include/quadrant/diagnosis/which/causes.ipp",
+    "include/quadrant/diagnosis/which/search.hpp",
+    "include/quadrant/diagnosis/which/search.ipp",
+    "include/quadrant/friction/maxwell_slip.hpp",
+    "include/quadrant/friction/slip_contact.hpp",
+    "include/quadrant/loop/cascade.hpp",
+    "include/quadrant/loop/milling_axis.hpp",
+    "include/quadrant/memory/repetitive.hpp",
+    "include/quadrant/memory/repetitive_in_step.hpp",
+    "include/quadrant/observer/disturbance_observer.hpp",
+    "include/quadrant/plant/servo_axis.hpp",
+}
+long_functions = {
+    "include/quadrant/analysis/genetic.hpp",
+    "examples/programs/quadrant_gap/fleet.cpp",
+    "examples/programs/quadrant_gap/report/overview.hpp",
+    "examples/programs/quadrant_gap/simulation_report.hpp",
+    "examples/programs/quadrant_gap/trial.cpp",
+    "examples/programs/quadrant_gap/trial/chain_population.hpp",
+    "examples/programs/quadrant_gap/trial/judge.hpp",
+    "examples/programs/quadrant_gap/trial/loop.hpp",
+    "examples/programs/quadrant_gap/trial/population.hpp",
+    "examples/programs/quadrant_gap/trial/tally.hpp",
+    "examples/programs/quadrant_gap/words.hpp",
+    "examples/programs/quadrant_reproduce/experiment/circle.hpp",
+    "examples/programs/quadrant_reproduce/experiment/harmonic_observer.hpp",
+    "examples/programs/quadrant_reproduce/experiment/repetitive.hpp",
+    "examples/programs/quadrant_reproduce/experiment/robustness.hpp",
+    "examples/programs/quadrant_reproduce/experiment/sensitivity.hpp",
+    "examples/programs/quadrant_reproduce/experiment/vcnc_other.hpp",
+    "examples/programs/quadrant_reproduce/parts.cpp",
+    "examples/python/source/blocks.cpp",
+    "examples/python/source/diagnosis.cpp",
+    "include/quadrant/analysis/circular_test.hpp",
+    "include/quadrant/analysis/cogging_map.hpp",
+    "include/quadrant/analysis/contour_run.hpp",
+    "include/quadrant/analysis/fit_lugre.hpp",
+    "include/quadrant/analysis/fit_modes.hpp",
+    "include/quadrant/analysis/fit_plant.hpp",
+    "include/quadrant/analysis/fit_stribeck.hpp",
+    "include/quadrant/analysis/judge_compensation.hpp",
+    "include/quadrant/analysis/minimise.hpp",
+    "include/quadrant/analysis/slow_branches.hpp",
+    "include/quadrant/analysis/virgin_curve.hpp",
+    "include/quadrant/diagnosis/chain/fit.ipp",
+    "include/quadrant/diagnosis/chain/outcome.ipp",
+    "include/quadrant/diagnosis/chain/position_compensation.ipp",
+    "include/quadrant/diagnosis/chain/readings.ipp",
+    "include/quadrant/diagnosis/chain/start.ipp",
+    "include/quadrant/diagnosis/compare.ipp",
+    "include/quadrant/diagnosis/compare/finding.ipp",
+    "include/quadrant/diagnosis/compensate.ipp",
+    "include/quadrant/diagnosis/diagnose.ipp",
+    "include/quadrant/diagnosis/fit/drive_estimate.ipp",
+    "include/quadrant/diagnosis/init.hpp",
+    "include/quadrant/diagnosis/where/places.ipp",
+    "include/quadrant/diagnosis/which/calibration.ipp",
+    "include/quadrant/diagnosis/which/candidate.ipp",
+    "include/quadrant/diagnosis/which/causes.ipp",
+    "include/quadrant/plant/servo_axis.hpp",
+}
+strings = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"|(?<![0-9a-fA-F])\'(?:[^\'\\\n]|\\.)+\'', re.S)
+control = re.compile(r"^(?:else\s+)?(?:if|for|while|switch|do|else|try|catch|return|case|default)\b")
+no_function = re.compile(r"\b(?:namespace|struct|class|enum|union)\b(?![^(]*\()|[=,(]\s*$|\breturn\b\s*$|^\s*$")
+
+
+def functions(text):
+    """First line and number of lines of each function in a source, whose comments and strings are blanked."""
+    text = strings.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
+    text = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", lambda m: re.sub(r"[^\n]", " ", m[0]), text, flags=re.M)
+    open_at, head = [], 0
+    line = 1
+    for at, c in enumerate(text):
+        if c == "\n":
+            line += 1
+        elif c == "{":
+            before = text[head:at].strip()
+            before = re.sub(r"^(?:public|private|protected):", "", before).strip()
+            is_function = ")" in before and not control.match(before) and not no_function.search(before)
+            open_at.append((line, is_function))
+            head = at + 1
+        elif c == "}":
+            if open_at:
+                begin, is_function = open_at.pop()
+                if is_function:
+                    yield begin, line - begin + 1
+            head = at + 1
+        elif c == ";":
+            head = at + 1
+
+
+names = subprocess.run(["git", "-C", root, "ls-files", "include", "examples"], capture_output=True, text=True, check=True).stdout.split()
+faults, left, seen = [], set(), 0
+for name in names:
+    path = root / name
+    if path.suffix not in (".hpp", ".ipp", ".cpp", ".cc", ".h") or not path.is_file():
+        continue
+    text = path.read_text()
+    lines = text.splitlines()
+    reason = any(re.match(r"\s*//+!? Long: \w", line) for line in lines[:12])
+    for begin, length in functions(text):
+        seen += 1
+        if length > FUNCTION and name in long_functions:
+            left.add(name)
+        elif length > FUNCTION:
+            faults.append((length, f"{name}:{begin}: a function of {length} lines, {FUNCTION} at most"))
+    if len(lines) > FILE and name in long_files:
+        left.add(name)
+    elif len(lines) > FILE and not reason:
+        faults.append((len(lines), f"{name}: {len(lines)} lines, {FILE} at most without '// Long: ...' in its head"))
+for _, fault in sorted(faults, reverse=True):
+    print(fault)
+if seen < 1000:
+    sys.exit(f"only {seen} functions were found")
+for name in sorted((long_files | long_functions) - left):
+    print(f"{name}: is short now; take it off the lists of sizes.py")
+print(f"{seen} functions, {len(faults)} faults, {len(left)} files still to be split")
+sys.exit(bool(faults))
