@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Time per servo period of a closed axis loop: typed blocks beside the same loop written by hand in doubles, moving,
-// standing and reversing.
+// Time per servo period of a closed axis loop: typed blocks beside the same loop written by hand in doubles,
+// moving, standing and reversing.
 #include "axis_loop.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage: blocks_count list        the numbers and names of what can be counted, one a line
-//        blocks_count I N [standing]   runs N samples (at most 20000) of number I; blocks.sh counts the instructions. Standing: at
-//                                 zero, after a motion and 32 000 samples of rest
+//        blocks_count I N [standing]   runs N samples (at most 20000) of number I; blocks.sh counts the instructions.
+//                                      Standing: at zero, after a motion and 32 000 samples of rest
 #include "counted.hpp"
 
 #include <cstdio>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage:
 //        xy_loop_count typed|typed_lanes|hand_written|virtual_graph|expert[_without_fir] N [standing|reversing]
-//                                       runs N samples, at most 18 850, standing 50 850 (callgrind.sh counts); on a circle without a third word
+//                                runs N samples, at most 18 850, standing 50 850 (callgrind.sh counts); on a circle
+//                                without a third word
 //        xy_loop_count same             fails unless the loops agree: bit for bit, or behind the DAC those that round otherwise
 //        xy_loop_count same_commands    the latter alone: for a build in which the compiler may fuse products and sums
 #include "xy_loop.hpp"

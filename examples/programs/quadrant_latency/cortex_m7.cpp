@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Runs the directed calls on a Cortex-M7 under QEMU and prints the instructions of each: kind, calls, median, most,
-// a row each with bars between. Built by cortex_m7.sh; `quadrant-latency --bound` starts it.
+// Runs the directed calls on a Cortex-M7 under QEMU and prints the instructions of each kind in a row, with
+// bars between: name, calls, median, most. Built by cortex_m7.sh; `quadrant-latency --bound` starts it.
 #include "directed.hpp"
 
 #include <algorithm>
