@@ -78,6 +78,20 @@ inline std::vector<double> sine() {
         r[k] = 0.015 * (1 - std::cos(2 * std::numbers::pi * 1.06 * static_cast<double>(k) * 0.0005));
     return r;
 }
+/// Parked: the same, then at rest where it ends, for as long as it takes for what dies out, and `samples` more.
+constexpr std::size_t rested = samples + 32'000;
+inline std::vector<double> standing() {
+    std::vector<double> r = sine();
+    r.resize(rested + samples, r.back());
+    return r;
+}
+/// Turning round every ten samples, on 20 um.
+inline std::vector<double> reversing() {
+    std::vector<double> r(samples);
+    for (std::size_t k = 0; k < samples; ++k)
+        r[k] = 10e-6 * std::sin(std::numbers::pi * static_cast<double>(k) / 10);
+    return r;
+}
 /// The same with steps that drive the amplifier into its limit, a lost encoder line (NaN) and a value that
 /// overflows
 /// in the gains: every branch of the policy.
@@ -155,6 +169,7 @@ template <class A, class B> bool same(const std::vector<double>& reference, cons
 inline bool comparable() {
     return same<typed_loop, hand_loop<true>>(sine(), "typed, by hand") &&
            same<typed_loop, hand_loop<true>>(rough(), "typed, by hand, rough reference") &&
+           same<typed_loop, hand_loop<true>>(reversing(), "typed, by hand, turning round") &&
            same<typed_loop, hand_loop<false>>(sine(), "typed, by hand, unchecked");
 }
 

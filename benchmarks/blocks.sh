@@ -18,9 +18,11 @@ instructions() { # PROGRAM WHICH SAMPLES
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$@" 2>&1 >/dev/null |
         sed -n 's/.*Collected : *\([0-9]*\).*/\1/p'
 }
-per_sample() { # PROGRAM WHICH
-    few=$(instructions "$1" "$2" 1000)
-    many=$(instructions "$1" "$2" 5000)
+per_sample() { # PROGRAM WHICH [MOTION]
+    first=1000
+    case ${3-}$1 in standing*xy_loop_count) first=32000 ;; esac # after its rest
+    few=$(instructions "$1" "$2" $first ${3-})
+    many=$(instructions "$1" "$2" $((first + 4000)) ${3-})
     awk "BEGIN { printf \"%.1f\", ($many - $few) / 4000 }"
 }
 shortest() { # PROGRAM [FILTER]: name and nanoseconds a sample, the shortest of 40: short ones, which other programs leave alone
@@ -36,8 +38,10 @@ rows() { # the names that begin with = are loops and comparisons, with ~ sums
     shortest "$here/benchmarks/blocks_time" >"$here/times.txt"
     while read -r number name; do
         counted=$(per_sample "$here/benchmarks/blocks_count" "$number")
+        at_rest=$(per_sample "$here/benchmarks/blocks_count" "$number" standing)
         time=$(awk -F'|' -v name="blocks/$name" '$1 == name { print $2 }' "$here/times.txt")
-        echo "| $name | $counted | $time |"
+        rest=$(awk -F'|' -v name="standing/$name" '$1 == name { print $2 }' "$here/times.txt")
+        echo "| $name | $counted | $at_rest | $time | $rest |"
     done <"$here/list.txt"
 }
 both_axes() {
@@ -51,12 +55,15 @@ both_axes() {
                 '$1 == name { printf "| %s | %s | %.3f | %s |\n", name, n, n / hand, $2 }' "$here/xy_times.txt"
         done
     done
-    for kind in typed typed_lanes hand_written virtual_graph; do # parked for 32 000 periods; turning round every ten
-        for motion in standing reversing; do
-            sed -n "s/^\\(xy_loop\\/$kind\\/$motion\\)|\\(.*\\)/| \\1 | | | \\2 |/p" "$here/xy_times.txt"
+    for motion in standing reversing; do # parked for 32 000 periods; turning round every ten
+        hand=$(per_sample "$here/benchmarks/xy_loop_count" hand_written $motion)
+        for kind in typed typed_lanes hand_written virtual_graph; do
+            counted=$(per_sample "$here/benchmarks/xy_loop_count" $kind $motion)
+            awk -F'|' -v name="xy_loop/$kind/$motion" -v n="$counted" -v hand="$hand" \
+                '$1 == name { printf "| %s | %s | %.3f | %s |\n", name, n, n / hand, $2 }' "$here/xy_times.txt"
         done
     done
-    sed -n 's/^xy_loop\/hal_chain|\(.*\)/| xy_loop\/hal_chain | | | \1 |/p' "$here/xy_times.txt" # where LinuxCNC is installed
+    sed -n 's/^\(xy_loop\/hal_chain[^|]*\)|\(.*\)/| \1 | | | \2 |/p' "$here/xy_times.txt" # where LinuxCNC is installed
 }
 both_axes_v3() { # the same for x86-64-v3, products and sums fused where the compiler likes, beside an expert's loop
     grep -q avx2 /proc/cpuinfo || { echo "| (no AVX2 here) | | | | |"; return; }
@@ -96,8 +103,8 @@ passing a number costs. Library functions (\`sin\`, \`exp\`) are counted as what
 
 ## Blocks
 
-| block | instructions | ns |
-|---|---|---|
+| block | instructions | standing | ns | ns, standing |
+|---|---|---|---|---|
 $(grep -v '^| [=~] ' "$here/rows.txt")
 
 ## The axis of the milling table, and notches without the library
@@ -106,8 +113,8 @@ $(grep -v '^| [=~] ' "$here/rows.txt")
 \`disturbance_observer\`, memory \`repetitive\` with 90 and 61 taps. The notches have no NaN policy; the one in
 Eigen is a fixed-size state space. All three notches are compared sample by sample before anything is counted.
 
-| | instructions | ns |
-|---|---|---|
+| | instructions | standing | ns | ns, standing |
+|---|---|---|---|---|
 $(grep '^| = ' "$here/rows.txt" | sed 's/^| = /| /')
 
 ## Sums of FIR filters, and two axes in the lanes of one register
@@ -119,8 +126,8 @@ multiplications (an even filter) leave as many additions and loads. Two axes in 
 registers of a FIR filter already; the recursion of a notch is shorter in instructions, not in time, since it waits for itself. With AVX it is
 another matter: see "Both axes in lanes" below. What stands in a group is compared sample by sample before anything is counted.
 
-| | instructions | ns |
-|---|---|---|
+| | instructions | standing | ns | ns, standing |
+|---|---|---|---|---|
 $(grep '^| ~ ' "$here/rows.txt" | sed 's/^| ~ /| /')
 
 ## Both axes of the milling table

@@ -31,6 +31,12 @@ template <class Step> double run(Step step, const std::vector<double>& x, std::s
     for (std::size_t k = 0; k < n; ++k) sum += sample(step, x[k]);
     return sum;
 }
+/// What has moved for 1000 samples and then stood for 32 000, its input at zero: what dies out has died out.
+template <class Step> Step rested(Step step, const std::vector<double>& x) {
+    for (std::size_t k = 0; k < 1000; ++k) sample(step, x[k]);
+    for (std::size_t k = 0; k < 32'000; ++k) sample(step, 0.0);
+    return step;
+}
 
 /// The notch of the conformance list in doubles, transposed direct form II, without any check.
 struct biquad_by_hand {

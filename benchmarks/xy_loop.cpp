@@ -1,57 +1,51 @@
 // SPDX-License-Identifier: BSL-1.0
 // Time per servo period of the controller of both axes of the milling table: typed, by hand in doubles with the
 // same NaN policy, and as a run-time graph of the same blocks, each with the memory's FIR filters and without;
-// and what LinuxCNC's components can do of it, chained as in a HAL thread.
+// and what LinuxCNC's components can do of it, chained as in a HAL thread. Each moving, standing and reversing.
 #include "xy_loop.hpp"
 #include "hal_chain.hpp"
 
 #include <benchmark/benchmark.h>
 #include <optional>
+#include <string>
 
 namespace {
 
-template <class Loop>
-void passes(benchmark::State& state, Loop& both,
-            const std::vector<quadrant_latency::sample>& in = quadrant_latency::circle()) {
+template <class Loop> void passes(benchmark::State& state, Loop& both, xy_loop::motion motion) {
+    const auto in = xy_loop::inputs(motion);
+    if (motion == xy_loop::motion::standing) xy_loop::run(both, in, xy_loop::rest);
     for (auto _ : state) benchmark::DoNotOptimize(xy_loop::run(both, in, in.size()));
     state.counters["per_sample"] = benchmark::Counter(
         double(in.size()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-template <class Loop> void loop(benchmark::State& state) {
+template <class Loop> void loop(benchmark::State& state, xy_loop::motion motion) {
     Loop both;
-    passes(state, both);
+    passes(state, both, motion);
 }
-/// Parked: after a rest of 32 000 samples on one place, which must cost no more than moving.
-template <class Loop> void standing(benchmark::State& state) {
-    Loop both;
-    const auto rest = quadrant_latency::standing();
-    for (int k = 0; k < 32'000; ++k) both.step(rest[0]);
-    passes(state, both, rest);
+/// `add(name, motion)` of a row for each motion.
+template <class Add> void each_motion(const std::string& name, Add&& add) {
+    add(name, xy_loop::motion::moving);
+    add(name + "/standing", xy_loop::motion::standing);
+    add(name + "/reversing", xy_loop::motion::reversing);
 }
-template <class Loop> void reversing(benchmark::State& state) {
-    Loop both;
-    passes(state, both, quadrant_latency::reversing());
+template <class Loop> void rows(const std::string& name) {
+    each_motion(name, [](const std::string& row, xy_loop::motion motion) {
+        benchmark::RegisterBenchmark(row.c_str(), loop<Loop>, motion);
+    });
 }
-BENCHMARK(loop<xy_loop::typed<90, 61>>)->Name("xy_loop/typed");
-BENCHMARK(standing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/standing");
-BENCHMARK(reversing<xy_loop::typed<90, 61>>)->Name("xy_loop/typed/reversing");
-BENCHMARK(loop<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes");
-BENCHMARK(standing<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes/standing");
-BENCHMARK(reversing<xy_loop::typed_lanes<90, 61>>)->Name("xy_loop/typed_lanes/reversing");
+void add_loops() {
+    rows<xy_loop::typed<90, 61>>("xy_loop/typed");
+    rows<xy_loop::typed_lanes<90, 61>>("xy_loop/typed_lanes");
 #ifdef __AVX2__
-BENCHMARK(loop<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert");
-BENCHMARK(standing<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert/standing");
-BENCHMARK(reversing<xy_loop::by_expert<90, 61>>)->Name("xy_loop/expert/reversing");
+    rows<xy_loop::by_expert<90, 61>>("xy_loop/expert");
 #endif
-BENCHMARK(loop<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written");
-BENCHMARK(standing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/standing");
-BENCHMARK(reversing<xy_loop::by_hand<90, 61>>)->Name("xy_loop/hand_written/reversing");
-BENCHMARK(loop<xy_loop::as_graph<90, 61>>)->Name("xy_loop/virtual_graph");
-BENCHMARK(standing<xy_loop::as_graph<90, 61>>)->Name("xy_loop/virtual_graph/standing");
-BENCHMARK(loop<xy_loop::typed<1, 1>>)->Name("xy_loop/typed/without_fir");
-BENCHMARK(loop<xy_loop::typed_lanes<1, 1>>)->Name("xy_loop/typed_lanes/without_fir");
-BENCHMARK(loop<xy_loop::by_hand<1, 1>>)->Name("xy_loop/hand_written/without_fir");
-BENCHMARK(loop<xy_loop::as_graph<1, 1>>)->Name("xy_loop/virtual_graph/without_fir");
+    rows<xy_loop::by_hand<90, 61>>("xy_loop/hand_written");
+    rows<xy_loop::as_graph<90, 61>>("xy_loop/virtual_graph");
+    rows<xy_loop::typed<1, 1>>("xy_loop/typed/without_fir");
+    rows<xy_loop::typed_lanes<1, 1>>("xy_loop/typed_lanes/without_fir");
+    rows<xy_loop::by_hand<1, 1>>("xy_loop/hand_written/without_fir");
+    rows<xy_loop::as_graph<1, 1>>("xy_loop/virtual_graph/without_fir");
+}
 
 /// LinuxCNC's own components chained: cascade, notch and inverse of the plant, without friction, observer and
 /// memory.
@@ -98,9 +92,11 @@ void add_hal_chain() try {
     chain.step(moved); // pid's first call only enables it
     const double u = chain.step(moved).x;
     if (!(u > 0 && u < 10)) throw std::runtime_error("gives no command");
-    benchmark::RegisterBenchmark("xy_loop/hal_chain", [](benchmark::State& state) {
-        passes(state, chain);
-        state.SetLabel("no friction, observer, memory");
+    each_motion("xy_loop/hal_chain", [](const std::string& row, xy_loop::motion motion) {
+        benchmark::RegisterBenchmark(row.c_str(), [motion](benchmark::State& state) {
+            passes(state, chain, motion);
+            state.SetLabel("no friction, observer, memory");
+        });
     });
 } catch (const std::exception& e) {
     std::fprintf(stderr, "xy_loop/hal_chain: SKIPPED: %s (Debian package linuxcnc-uspace)\n", e.what());
@@ -110,6 +106,7 @@ void add_hal_chain() try {
 
 int main(int argc, char** argv) {
     if (!xy_loop::comparable<90, 61>() || !xy_loop::comparable<1, 1>()) return 1;
+    add_loops();
     add_hal_chain();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -112,13 +112,22 @@ template <std::size_t Learning, std::size_t Smoothing> struct as_graph {
 };
 
 /// One pass; the sum stands for a consumer of the commands.
-template <class Loop> double run(Loop& loop, const std::vector<sample>& in, std::size_t n) {
+template <class Loop> [[gnu::noinline]] double run(Loop& loop, const std::vector<sample>& in, std::size_t n) {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
         const commands u = loop.step(in[k]);
         sum += u.x + u.y;
     }
     return sum;
+}
+
+/// What the loops are measured in: on the circle, parked, and turning round every ten periods.
+enum class motion { moving, standing, reversing };
+constexpr std::size_t rest = 32'000; ///< after so many periods on one place what dies out has died out
+inline std::vector<sample> inputs(motion m) {
+    return m == motion::moving     ? quadrant_latency::circle()
+           : m == motion::standing ? quadrant_latency::standing(rest + quadrant_latency::five_turns)
+                                   : quadrant_latency::reversing();
 }
 
 /// The circle with a lost encoder line (NaN), an infinite reference, and values that overflow in the gains.

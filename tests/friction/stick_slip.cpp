@@ -2,6 +2,7 @@
 // One implicit step of a mass on friction, over random axes: from 0.1 to 1000 kg, sub-steps from 1 us to 1 ms.
 #include <quadrant/base/dual.hpp>
 #include <quadrant/base/literals.hpp>
+#include <quadrant/friction/asymmetric_stribeck.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/friction/stick_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
@@ -319,4 +320,99 @@ TEST_CASE(
     const D stands = step(D::variable(340, 0), D::variable(0, 1), D::variable(50, 2), D::variable(177, 3));
     CHECK(stands.value == 0);
     CHECK(stands.partial == std::array{0.0, 0.0, 0.0, 0.0});
+}
+
+namespace {
+using two_sided = asymmetric_stribeck<signal::velocity, signal::force>;
+static_assert(friction_law_by_direction<two_sided, double>);
+static_assert(!friction_law<two_sided, double> && !friction_law_by_direction<stribeck<>, double>);
+
+two_sided::side side(double held, double level, double fall, double rise) {
+    return {force::from_value(held), force::from_value(level), velocity::from_value(fall),
+            velocity::from_value(rise)};
+}
+two_sided::side any_side(dice& roll) {
+    return side(roll.decades(1, 300), roll.decades(1, 300), roll.decades(1e-4, 1e-2), roll.decades(1e-4, 1e-2));
+}
+const two_sided::side& toward(const two_sided& law, double direction) {
+    return direction < 0 ? law.given().backward : law.given().forward;
+}
+} // namespace
+
+TEST_CASE(
+    "stick_slip by direction: stands if and only if breakaway of that side or no speed can carry the push, "
+    "else takes the fastest speed that solves the step") {
+    dice roll;
+    int moving = 0, steep = 0, stood = 0;
+    for (int n = 0; n < 100'000; ++n) {
+        const auto viscous = gain_of<signal::force, signal::velocity>::from_value(roll.often() ? 850 : 0);
+        const two_sided law({any_side(roll), any_side(roll), viscous}, Ts);
+        situation s{roll.decades(0.1, 1000), 0, 0, roll.decades(1e-6, 1e-3)};
+        if (roll.often()) s.v = roll(-3, 3) * (roll.often() ? 100 * s.h / s.mass : 1e-2);
+        if (roll.often()) s.drive = roll(-600, 600);
+        const double p = push(s), k = slope(law, s), v = s.step(law), v_along = p < 0 ? -v : v;
+        const double held = toward(law, p).static_level.value();
+        const double small = 1e-11 * (std::abs(p) + held + toward(law, p).coulomb.value());
+        const auto excess = [&](double speed) { // of what speed needs over the push
+            return k * speed + slip(law, p < 0 ? -speed : speed) - std::abs(p);
+        };
+        REQUIRE(v_along >= 0);
+        if (v != 0) {
+            ++moving;
+            REQUIRE(excess(v_along) >= -small); // friction is never more than the law
+            const auto at = law.parts(p > 0, velocity::from_value(v_along));
+            if (-at.falling_slope.value() < 0.5 * k)
+                REQUIRE(excess(v_along) <= small);
+            else
+                ++steep; // where two solutions are about to meet the step may stop short of them
+        } else if (s.v * p > 0 || std::abs(p) > held)
+            ++stood;
+        else
+            continue;                   // held by breakaway
+        for (int i = 1; i <= 30; ++i) { // none is faster
+            const double faster = v_along + (std::abs(p) / k - v_along) * i / 30;
+            if (faster > v_along) REQUIRE(excess(faster) >= -small);
+        }
+    }
+    CHECK(moving > 30'000);
+    CHECK(steep < moving / 2);
+    CHECK(stood > 1000);
+}
+TEST_CASE(
+    "stick_slip by direction: with both sides alike and as wide a rise as fall it is the step on stribeck") {
+    dice roll;
+    for (int n = 0; n < 50'000; ++n) {
+        const double level = roll.decades(1, 300), held = level * roll(1, 3), scale = roll.decades(1e-3, 1e-2);
+        const auto both = side(held, level, scale, scale);
+        const two_sided law({both, both, {}}, Ts);
+        const stribeck<> even{{force::from_value(level), force::from_value(held), velocity::from_value(scale)},
+                              Ts};
+        situation s{roll.decades(100, 1000), roll(-1e-2, 1e-2), roll(-2, 2) * held, roll.decades(1e-6, 1e-4)};
+        if (roll.often()) s.v = 0;
+        REQUIRE(std::abs(s.step(law) - s.step(even)) <=
+                1e-10 * (std::abs(s.v) + std::abs(push(s)) / slope(law, s)));
+    }
+}
+TEST_CASE("stick_slip by direction: a dual carries the derivative by mass and by either level") {
+    const auto step = [](auto mass, auto held, auto level) {
+        using Real = decltype(mass);
+        using law = asymmetric_stribeck<signal::velocity, signal::force, Real>;
+        typename law::side one{quantity_of<signal::force, Real>::from_value(held),
+                               quantity_of<signal::force, Real>::from_value(level),
+                               quantity_of<signal::velocity, Real>::from_value(Real(2e-3)),
+                               quantity_of<signal::velocity, Real>::from_value(Real(5e-3))};
+        return stick_slip<Real>(law({one, one, {}}, Ts), quantity<si::mass, Real>::from_value(mass),
+                                quantity_of<signal::velocity, Real>::from_value(Real(4e-3)),
+                                quantity_of<signal::force, Real>::from_value(Real(200)),
+                                quantity<si::time, Real>::from_value(Real(1e-4)))
+            .value();
+    };
+    using d = dual<3>;
+    const d v = step(d::variable(20, 0), d::variable(150, 1), d::variable(110, 2));
+    const auto by = [&](double m, double held, double level) {
+        return (step(20 + m, 150 + held, 110 + level) - step(20 - m, 150 - held, 110 - level));
+    };
+    CHECK(v.partial[0] == doctest::Approx(by(1e-3, 0, 0) / 2e-3).epsilon(1e-6));
+    CHECK(v.partial[1] == doctest::Approx(by(0, 1e-2, 0) / 2e-2).epsilon(1e-6));
+    CHECK(v.partial[2] == doctest::Approx(by(0, 0, 1e-2) / 2e-2).epsilon(1e-6));
 }

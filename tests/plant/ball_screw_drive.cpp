@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/base/literals.hpp>
+#include <quadrant/friction/dahl.hpp>
+#include <quadrant/friction/lugre.hpp>
+#include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/backlash.hpp>
 #include <quadrant/plant/ball_screw_drive.hpp>
+#include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>
 
@@ -259,4 +263,133 @@ TEST_CASE(
     CHECK(b(7.01_um) == before);
     CHECK(std::abs((b(6_um) - 7.5_um).value()) < 1e-18);
     for (const auto& x : {10_um, 7.01_um, 6_um}) CHECK(none(x) == x);
+}
+
+namespace {
+// Each law with a memory on the screw, and the same in newtons and metres on a table without a screw.
+using rotary = signal::angular_velocity;
+auto nm(double t) { return quantity_of<signal::torque>::from_value(t); }
+auto radps(double w) { return quantity_of<rotary>::from_value(w); }
+auto nm_per_rad(double k) { return gain_rate_of<signal::torque, rotary>::from_value(k); }
+auto n_per_m(double k) { return gain_rate_of<signal::force, signal::velocity>::from_value(k); }
+auto mps(double v) { return quantity<si::velocity>::from_value(v); }
+
+struct with_dahl {
+    using screw = dahl<rotary, signal::torque>;
+    using table = dahl<>;
+    static screw::parameters on_screw() { return {.coulomb = nm(2.1), .stiffness = nm_per_rad(900)}; }
+    static table::parameters on_table() {
+        return {.coulomb = newtons(2.1 / rg), .stiffness = n_per_m(900 / rg / rg)};
+    }
+};
+struct with_lugre {
+    using screw = lugre<rotary, signal::torque>;
+    using table = lugre<>;
+    static screw::parameters on_screw() {
+        return {.curve = {.coulomb = nm(1.5),
+                          .static_level = nm(2.4),
+                          .stribeck_velocity = radps(3.5),
+                          .viscous = {}},
+                .stiffness = nm_per_rad(600)};
+    }
+    static table::parameters on_table() {
+        return {.curve = {.coulomb = newtons(1.5 / rg),
+                          .static_level = newtons(2.4 / rg),
+                          .stribeck_velocity = mps(3.5 * rg),
+                          .viscous = {}},
+                .stiffness = n_per_m(600 / rg / rg)};
+    }
+};
+struct with_springs {
+    using screw = maxwell_slip<3, rotary, signal::torque>;
+    using table = maxwell_slip<3>;
+    static screw::parameters on_screw() {
+        screw::parameters p;
+        p.curve = {.coulomb = nm(1.5), .static_level = nm(2.4), .stribeck_velocity = radps(3.5), .viscous = {}};
+        p.weights = {0.5, 0.3, 0.2};
+        p.stiffness = {nm_per_rad(900), nm_per_rad(300), nm_per_rad(50)};
+        p.attraction = decltype(p.attraction)::from_value(20);
+        return p;
+    }
+    static table::parameters on_table() {
+        table::parameters p;
+        p.curve = {.coulomb = newtons(1.5 / rg),
+                   .static_level = newtons(2.4 / rg),
+                   .stribeck_velocity = mps(3.5 * rg),
+                   .viscous = {}};
+        p.weights = {0.5, 0.3, 0.2};
+        p.stiffness = {n_per_m(900 / rg / rg), n_per_m(300 / rg / rg), n_per_m(50 / rg / rg)};
+        p.attraction = decltype(p.attraction)::from_value(20 / rg);
+        return p;
+    }
+};
+} // namespace
+
+TEST_CASE_TEMPLATE(
+    "ball_screw_drive: on a friction with memory it goes where a linear_motor of the same mass and law goes, "
+    "to 1e-9 of the way",
+    Law, with_dahl, with_lugre, with_springs) {
+    using on_screw = ball_screw_drive<typename Law::screw>;
+    using on_table = linear_motor<typename Law::table>;
+    on_screw screw{{.inertia = J * 1_kgm2,
+                    .torque_constant = Kt * 1_Nm / 1_A,
+                    .pitch = 10_mm,
+                    .friction = Law::on_screw(),
+                    .substeps = 5},
+                   Ts};
+    on_table table{{.mass = quantity<si::mass>::from_value(J / rg / rg),
+                    .force_constant = gain_of<signal::force, signal::voltage>::from_value(Kt / rg),
+                    .friction = Law::on_table(),
+                    .substeps = 5},
+                   Ts};
+    double furthest = 0, apart = 0;
+    for (int k = 0; k < 4000; ++k) { // break-away, reversals, and a rest on bent springs
+        const double i = k < 3000 ? 9 * std::sin(0.01 * k) * std::sin(0.0021 * k) : 2.0;
+        const double push = 40 * std::sin(0.003 * k);
+        const double a = screw(amperes(i), newtons(push)).value();
+        const double b = table(quantity<si::electric_potential>::from_value(i), newtons(push)).value();
+        furthest = std::max(furthest, std::abs(b));
+        apart = std::max(apart, std::abs(a - b));
+    }
+    CHECK(furthest > 1e-3);
+    CHECK(apart <= 1e-9 * furthest);
+    CHECK(!screw.faulted());
+}
+TEST_CASE("ball_screw_drive: on springs its viscous friction brakes as that of the law does, and a lost number "
+          "moves neither table nor springs") {
+    using law = with_springs::screw;
+    using on_springs = ball_screw_drive<law>;
+    const auto with_viscous = [](double in_drive, double in_law) {
+        auto friction = with_springs::on_screw();
+        friction.curve.viscous = decltype(friction.curve.viscous)::from_value(in_law);
+        return on_springs({.inertia = J * 1_kgm2,
+                           .viscous = in_drive * 1_Nm / 1_radps,
+                           .torque_constant = Kt * 1_Nm / 1_A,
+                           .pitch = 10_mm,
+                           .friction = friction},
+                          Ts);
+    };
+    on_springs a = with_viscous(B, 0), b = with_viscous(0, B);
+    for (int k = 0; k < 2000; ++k) {
+        const auto i = amperes(10 * std::sin(0.01 * k));
+        REQUIRE(near(a(i).value(), b(i).value(), 1e-9));
+    }
+    const auto x = a.now().x;
+    const auto spring = a.friction().now().elements[0].force;
+    const auto before = a(amperes(std::nan("")));
+    CHECK(a.faulted());
+    CHECK(before.value() == x.value());
+    CHECK(a.friction().now().elements[0].force.value() == spring.value());
+    CHECK(a(amperes(1e300 * 1e10)).value() == x.value());
+    a.settle(1_mm);
+    CHECK(!a.faulted());
+    CHECK(a.friction().now().elements[0].force.value() == 0);
+    // Held below breakaway by springs: it yields, stands, and comes back when it is let go.
+    double there = 0;
+    for (int k = 0; k < 4000; ++k) there = a(1_A).value();
+    CHECK(there > 1.0001e-3);
+    CHECK(std::abs(a.now().v.value()) < 1e-15); // the springs have rung down
+    double back = 0;
+    for (int k = 0; k < 4000; ++k) back = a(0_A).value();
+    CHECK(back < there);
 }

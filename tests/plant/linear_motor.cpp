@@ -2,6 +2,7 @@
 #include <quadrant/base/dual.hpp>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/maps.hpp>
+#include <quadrant/friction/asymmetric_stribeck.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
@@ -435,4 +436,27 @@ TEST_CASE("linear_motor: refuses what no machine has, in the name of the box tha
     CHECK(message([](P& p) { p.mass = bad_number * 1_kg; }) ==
           "linear_motor.mass = nan kg: must be finite and above 0");
     CHECK(message(nothing, 0_s) == "linear_motor.period = 0 s: must be finite and above 0");
+}
+
+TEST_CASE("linear_motor: on a friction by direction a resting axis is held by one level forward and by another "
+          "backward, and goes on at one speed forward and at another backward") {
+    using law = asymmetric_stribeck<signal::velocity, signal::force>;
+    using two_sided = linear_motor<law>;
+    const law::parameters friction{
+        {170_N, 120_N, 2_mmps, 2_mmps}, {110_N, 80_N, 3_mmps, 5_mmps}, 950_N / 1_mps};
+    const two_sided::parameters p{.mass = 340_kg, .force_constant = 1000_N / 1_V, .friction = friction};
+    const auto after_2_s = [&](double newtons) {
+        two_sided m{p, 500_us};
+        for (int k = 0; k < 4000; ++k) m(quantity<si::electric_potential>::from_value(newtons / 1000));
+        return m.now().v.value();
+    };
+    CHECK(after_2_s(169.9) == 0);
+    CHECK(after_2_s(170.1) > 0);
+    CHECK(after_2_s(-109.9) == 0);
+    CHECK(after_2_s(-110.1) < 0);
+    // 300 N in the end: what friction leaves over is carried by the viscous part; the levels have built up by
+    // then.
+    const double settled = 1 - std::exp(-2 * 950.0 / 340);
+    CHECK(after_2_s(300) == doctest::Approx((300 - 120) / 950.0 * settled).epsilon(2e-3));
+    CHECK(after_2_s(-300) == doctest::Approx(-(300 - 80) / 950.0 * settled).epsilon(2e-3));
 }

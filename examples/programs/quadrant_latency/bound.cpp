@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "bound.hpp"
 
-#include "loop.hpp"
+#include "directed.hpp"
 
 #include <quadrant/analysis/measure.hpp>
 
@@ -20,52 +20,6 @@
 namespace quadrant_latency {
 
 namespace {
-
-/// The kinds of calls, in their order, and how many of each.
-struct kind {
-    const char* name;
-    std::size_t calls;
-};
-constexpr std::array kinds{kind{"first sample", 1},
-                           kind{"moving", 300},
-                           kind{"reversing", 100},
-                           kind{"held for a NaN", 3},
-                           kind{"retune", 1},
-                           kind{"cycle fades", 90},
-                           kind{"standing, after 32 000", 50},
-                           kind{"beyond the limit", 20}};
-
-template <class Loop> void directed_calls() {
-    using control = typename Loop::control;
-    const auto loop = std::make_unique<Loop>();
-    const auto calls = [&](const std::vector<sample>& in, std::size_t n) {
-        const auto step = [&](const sample& s) { return loop->step(s); };
-        for (std::size_t k = 0; k < n; ++k) detail::use(measured_call(step, in[k % in.size()]));
-    };
-    calls(circle(1), kinds[0].calls);
-    calls(circle(1000), kinds[1].calls);
-    calls(reversing(1000), kinds[2].calls);
-    auto lost = circle(1);
-    lost[0].y.measured = std::numeric_limits<double>::quiet_NaN();
-    calls(lost, kinds[3].calls);
-
-    auto x = parameters_of<memory>(thesis::x), y = parameters_of<memory>(thesis::y);
-    x.memory.cycle = y.memory.cycle = 87.2 * thesis::period;
-    x.friction.curve.coulomb = 0.9 * x.friction.curve.coulomb;
-    const auto next = std::make_unique<control>(typename control::parameters{x, y}, thesis::period);
-    const auto retune = [&](const typename control::motions& r) {
-        loop->both.retune(*next, r);
-        return 0;
-    };
-    detail::use(measured_call(retune, typename control::motions{}));
-    calls(circle(1000), kinds[5].calls);
-    const auto rest = standing(1);
-    for (int k = 0; k < 32'000; ++k) loop->step(rest[0]);
-    calls(rest, kinds[6].calls);
-    auto far = standing(1);
-    far[0].x.position = far[0].y.position = 0.01; // metres away
-    calls(far, kinds[7].calls);
-}
 
 std::vector<std::size_t> counts_in(const std::filesystem::path& folder, std::size_t calls) {
     std::vector<std::size_t> counts;
@@ -98,46 +52,125 @@ struct scratch {
 } // namespace
 
 void make_directed_calls() {
-    directed_calls<typed_loop<memory>>();
-    directed_calls<typed_lanes<memory>>();
+    const auto call = [](std::size_t, const auto& step, const auto& in) {
+        detail::use(measured_call(step, in));
+    };
+    directed_calls<typed_loop<memory>>(call);
+    directed_calls<typed_lanes<memory>>(call);
 }
+
+namespace {
+
+bool is_here(const char* program) {
+    return std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) == 0;
+}
+/// Median and most of each kind of call.
+struct figures {
+    std::array<std::size_t, kinds.size()> median{}, most{};
+
+    std::size_t most_of_a_sample() const {
+        std::size_t out = 0;
+        for (std::size_t i = 0; i < kinds.size(); ++i)
+            if (std::string_view(kinds[i].name) != "retune") out = std::max(out, most[i]);
+        return out;
+    }
+};
+figures of_kinds(const std::size_t* counts) {
+    figures out;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        std::vector<std::size_t> sorted(counts, counts + kinds[i].calls);
+        std::sort(sorted.begin(), sorted.end());
+        out.median[i] = sorted[sorted.size() / 2];
+        out.most[i] = sorted.back();
+        counts += kinds[i].calls;
+    }
+    return out;
+}
+
+/// What the image for a Cortex-M7 printed, row by row as cortex_m7.cpp writes them.
+figures printed(const std::string& file) {
+    figures out;
+    std::ifstream in(file);
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        std::string name, calls, median, most;
+        const bool read = std::getline(in, name, '|') && std::getline(in, calls, '|') &&
+                          std::getline(in, median, '|') && std::getline(in, most);
+        if (!read || name != kinds[i].name)
+            throw std::runtime_error("the image for the Cortex-M7 did not print its counts");
+        out.median[i] = std::strtoul(median.c_str(), nullptr, 10);
+        out.most[i] = std::strtoul(most.c_str(), nullptr, 10);
+    }
+    return out;
+}
+/// The image beside the program; empty when there is none.
+std::string image_for_cortex_m7(const std::filesystem::path& program) {
+    const auto image = program.parent_path() / "quadrant-latency-cortex-m7.elf";
+    return std::filesystem::exists(image) ? image.string() : "";
+}
+
+std::string row(const std::string& name, const std::string& calls, const std::vector<std::string>& columns) {
+    std::string out = fmt::format("{:24}{:>8}", name, calls);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        out += fmt::format("{:>{}}", columns[i], i % 2 == 1 ? 8 : i == 0 ? 10 : i == 2 ? 16 : 12);
+    return out + "\n";
+}
+
+} // namespace
 
 std::string bound(const std::string& program) {
     const scratch folder;
-    const std::string command = fmt::format(
-        "LD_BIND_NOW=1 valgrind --tool=callgrind '--toggle-collect=*measured_call*' '--dump-after=*measured_call<*' "
-        "'--callgrind-out-file={0}/out' '{1}' --directed_calls >'{0}/said' 2>&1",
-        folder.path.string(), program);
-    if (std::system("command -v valgrind >/dev/null 2>&1") != 0)
-        throw std::runtime_error("--bound needs valgrind (Debian package valgrind)");
+    const std::string command =
+        fmt::format("LD_BIND_NOW=1 valgrind --tool=callgrind '--toggle-collect=*measured_call*' "
+                    "'--dump-after=*measured_call<*' "
+                    "'--callgrind-out-file={0}/out' '{1}' --directed_calls >'{0}/said' 2>&1",
+                    folder.path.string(), program);
+    if (!is_here("valgrind")) throw std::runtime_error("--bound needs valgrind (Debian package valgrind)");
     if (std::system(command.c_str()) != 0) throw std::runtime_error("callgrind did not run: " + command);
 
     std::size_t calls = 0;
     for (const kind& each : kinds) calls += each.calls;
     const auto counts = counts_in(folder.path, 2 * calls);
-    std::string text =
-        fmt::format("Instructions of one call of the two-axis loop, as this program was compiled, by "
-                    "callgrind (they do not depend on what else runs):\n{:24}{:>8}{:>10}{:>8}{:>16}{:>8}\n",
-                    "", "calls", "typed", "most", "typed in lanes", "most");
-    std::size_t at = 0;
-    std::array<std::size_t, 2> most{};
-    for (const kind& each : kinds) {
-        text += fmt::format("{:24}{:>8}", each.name, each.calls);
-        for (std::size_t form = 0; form < 2; ++form) {
-            const auto begin = counts.begin() + std::ptrdiff_t(form * calls + at);
-            std::vector<std::size_t> sorted(begin, begin + std::ptrdiff_t(each.calls));
-            std::sort(sorted.begin(), sorted.end());
-            text += fmt::format("{:>{}}{:>8}", sorted[sorted.size() / 2], form == 0 ? 10 : 16, sorted.back());
-            if (std::string_view(each.name) != "retune") most[form] = std::max(most[form], sorted.back());
-        }
-        text += '\n';
-        at += each.calls;
+    std::vector<figures> all{of_kinds(counts.data()), of_kinds(counts.data() + calls)};
+
+    std::string without; // the reason why there is no column of the Cortex-M7
+    const std::string image = image_for_cortex_m7(program);
+    if (image.empty())
+        without = "its image was not built (cmake --build BUILD --target latency_cortex_m7; Debian packages "
+                  "gcc-arm-none-eabi, libnewlib-arm-none-eabi, libstdc++-arm-none-eabi-newlib)";
+    else if (!is_here("qemu-system-arm"))
+        without = "no qemu-system-arm (Debian package qemu-system-arm)";
+    else {
+        const std::string run = fmt::format(
+            "timeout 300 qemu-system-arm -M mps2-an500 -icount shift=8 -nographic -semihosting-config "
+            "enable=on,target=native -kernel '{}' </dev/null >'{}/m7' 2>&1",
+            image, folder.path.string());
+        if (std::system(run.c_str()) != 0) throw std::runtime_error("QEMU did not run: " + run);
+        all.push_back(printed((folder.path / "m7").string()));
     }
-    return text +
-           fmt::format(
-               "The most of a sample: {} typed, {} typed in lanes. A retune comes on top of the sample in "
-               "which it is done.\n",
-               most[0], most[1]);
+
+    std::string text = "Instructions of one call of the two-axis loop, as this program was compiled, by "
+                       "callgrind (they do not depend on what else runs)";
+    text += without.empty()
+                ? ",\nand of the typed loop on a Cortex-M7 with double hardware, by QEMU (g++ -O2):\n"
+                : ":\n";
+    std::vector<std::string> heads{"typed", "most", "typed in lanes", "most"};
+    if (without.empty()) heads.insert(heads.end(), {"Cortex-M7", "most"});
+    text += row("", "calls", heads);
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        std::vector<std::string> columns;
+        for (const figures& each : all) {
+            columns.push_back(std::to_string(each.median[i]));
+            columns.push_back(std::to_string(each.most[i]));
+        }
+        text += row(kinds[i].name, std::to_string(kinds[i].calls), columns);
+    }
+    text += fmt::format("The most of a sample: {} typed, {} typed in lanes", all[0].most_of_a_sample(),
+                        all[1].most_of_a_sample());
+    text += without.empty() ? fmt::format(", {} on a Cortex-M7", all[2].most_of_a_sample()) : "";
+    text += ". A retune comes on top of the sample in which it is done.\n";
+    text += without.empty() ? "An instruction is not a cycle: cycles of a Cortex-M7 were not measured.\n"
+                            : "Cortex-M7: SKIPPED: " + without + ".\n";
+    return text;
 }
 
 } // namespace quadrant_latency

@@ -14,11 +14,11 @@ namespace quadrant::inline v0 {
 /// Ports: velocity in, torque or force out with the sign of the velocity (a plant subtracts it, a feedforward
 /// adds it).
 /// State: none but the last good output; `reset` and `settle` clear the fault flag.
-/// At rest a plant needs more than T(w): it asks breakaway(toward) and slip(w), see plant/ball_screw_drive.hpp.
+/// At rest a plant needs more than T(w): it asks breakaway(toward) and slip(w), see plant/ball_screw_drive.hpp
+/// and, for a linear motor, stick_slip.hpp.
 /// Range: static_level >= 0, coulomb >= 0, fall > 0, rise > 0 in either direction, viscous >= 0. With rise >
 /// fall the
-/// level dips below coulomb before it comes back: stick_slip.hpp, which wants a level that only falls, does not
-/// take it.
+/// level dips below coulomb before it comes back.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "asymmetric_stribeck.<side>.<field> = ...: must ..." and for viscous and the period.
 /// Cost: 2 exponentials. The same in both directions: `stribeck`.
@@ -74,6 +74,16 @@ public:
     value breakaway(bool forward) const noexcept { return forward ? forward_.dying : backward_.dying; }
     value slip(argument w) const noexcept { return w < argument() ? backward_(-w) : forward_(w); }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
+    /// The magnitude in one direction, in two: one falls with the speed, one rises.
+    struct two_parts {
+        value falling, rising;
+        gain_of<Out, In, Real> falling_slope, rising_slope; ///< by the speed: <= 0, >= 0
+        gain_of<Out, In, Real> steepest;                    ///< no |slope| of their sum is larger,
+        argument scale;                                     ///< and no |curvature| than steepest / scale
+    };
+    two_parts parts(bool forward, argument speed) const noexcept {
+        return forward ? forward_.parts(speed) : backward_.parts(speed);
+    }
 
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }
@@ -88,6 +98,17 @@ private:
         value operator()(argument speed) const noexcept {
             using std::exp;
             return dying * Real(exp(-Real(speed / fall))) + level * (Real(1) - Real(exp(-Real(speed / rise))));
+        }
+        two_parts parts(argument speed) const noexcept {
+            using std::exp;
+            const value left = dying * Real(exp(-Real(speed / fall))),
+                        missing = level * Real(exp(-Real(speed / rise)));
+            return {left,
+                    level - missing,
+                    -(left / fall),
+                    missing / rise,
+                    dying / fall + level / rise,
+                    fall < rise ? fall : rise};
         }
         value dying, level;
         argument fall, rise;

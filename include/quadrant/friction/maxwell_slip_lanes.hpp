@@ -79,14 +79,13 @@ public:
 
     value operator()(argument v) noexcept {
         const Real level = curve_.slip(v).value(), kept = decayed(Real(attraction_ / level));
-        const wide along_v = repeated<N>(v.value()), left = repeated<N>(kept), zero{};
-        const wide share = share_ * repeated<N>(level), speed = turned_as(along_v, along_v);
+        const wide along_v = repeated<N>(v.value()), speed = turned_as(along_v, along_v), zero{};
+        const detail::spring_law<wide, wide> springs{share_ * repeated<N>(level), repeated<N>(kept)};
         const wide along = turned_as(state_.force, along_v); // positive: bent the way the axis goes
-        const wide reached = along + stiffness_ * speed, beyond = along - share;
+        const wide reached = along + stiffness_ * speed;
         const auto moves = less(zero, speed), slips_on = state_.slips & greater(along, zero);
-        const auto slips = moves & (slips_on | less_equal(share, reached));
-        const wide rest = select(slips_on | greater(beyond, zero), beyond, zero);
-        const wide next = turned_as(select(slips, share + rest * left, reached), along_v);
+        const auto slips = moves & (slips_on | springs.gives_way(reached));
+        const wide next = turned_as(select(slips, springs.slips(along, slips_on), reached), along_v);
         value y = curve_.viscous() * v;
         for (std::size_t k = 0; k < N; ++k) y += value::from_value(part<W>(next, k));
         const auto good = finite(v, y);

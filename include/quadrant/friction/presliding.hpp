@@ -80,19 +80,20 @@ private:
 /// A friction law that remembers where the axis came from: bristles, or elements that stick and slip. after(v,
 /// h) asks and changes nothing, become(next) lets it happen. The force at v = 0 is that of the memory; it does
 /// not fall with v faster than the inertia of the axis resists (mass / h).
-template <class F, class Real>
-concept friction_with_memory = requires(F& changed, const F& f, quantity_of<signal::velocity, Real> v,
+/// Velocity to force, or, of a rotary axis, angular velocity to torque.
+template <class F, class Real, class In = signal::velocity, class Out = signal::force>
+concept friction_with_memory = requires(F& changed, const F& f, quantity_of<In, Real> v,
                                         quantity<si::time, Real> h) {
-    { f.after(v, h).force } -> std::convertible_to<quantity_of<signal::force, Real>>;
-    { f.after(v, h).slope } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
+    { f.after(v, h).force } -> std::convertible_to<quantity_of<Out, Real>>;
+    { f.after(v, h).slope } -> std::convertible_to<gain_of<Out, In, Real>>;
     changed.become(f.after(v, h).next);
     { f.now() } -> std::convertible_to<typename F::state>;
     changed.reset();
 };
 
 /// Where an axis on such a law is after a step.
-template <class State, class Real> struct presliding_outcome {
-    quantity_of<signal::velocity, Real> v{};
+template <class State, class Real, signal_tag In = signal::velocity> struct presliding_outcome {
+    quantity_of<In, Real> v{};
     State friction{};
 };
 
@@ -104,13 +105,17 @@ template <class State, class Real> struct presliding_outcome {
 /// where an element breaks away; to 2e-14 of the speeds in it (float: 3e-7). The derivatives of a dual take one
 /// more. Where several v' solve it, one near v is taken.
 /// Derivation: docs/derivations/presliding.md.
-template <class Real, friction_with_memory<Real> Friction>
-auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
-                quantity_of<signal::force, Real> drive, quantity<si::time, Real> h) noexcept {
-    using velocity = quantity_of<signal::velocity, Real>;
-    using force = quantity_of<signal::force, Real>;
-    using outcome = presliding_outcome<typename Friction::state, Real>;
-    const gain_of<signal::force, signal::velocity, Real> inertia = mass / h;
+/// In and Out: velocity and force, or angular velocity and torque (the mass is a moment of inertia then).
+template <class Real, signal_tag In = signal::velocity, signal_tag Out = signal::force,
+          friction_with_memory<Real, In, Out> Friction>
+auto presliding(
+    const Friction& friction,
+    quantity<unit_quotient<typename Out::unit, unit_quotient<typename In::unit, si::time>>, Real> mass,
+    quantity_of<In, Real> v, quantity_of<Out, Real> drive, quantity<si::time, Real> h) noexcept {
+    using velocity = quantity_of<In, Real>;
+    using force = quantity_of<Out, Real>;
+    using outcome = presliding_outcome<typename Friction::state, Real, In>;
+    const gain_of<Out, In, Real> inertia = mass / h;
     const force push = force(inertia * v) + drive; // what would bring the axis to rest within h, and the drive
     const auto size = [](velocity x) { return x < velocity() ? -x : x; };
 
@@ -130,7 +135,7 @@ auto presliding(const Friction& friction, quantity<si::mass, Real> mass, quantit
     for (int pass = 0; pass < most_passes; ++pass) {
         at = friction.after(x, h);
         const force excess = inertia * x + at.force - push;
-        const gain_of<signal::force, signal::velocity, Real> slope = inertia + at.slope;
+        const gain_of<Out, In, Real> slope = inertia + at.slope;
         const velocity step = excess / slope, next = x - step;
         const bool newton = slope > decltype(slope)() && beyond(next, velocity());
         if (newton && size(step) <= close * (size(x) + size(push / slope))) {

@@ -28,6 +28,22 @@ concept friction_law_with_slope = friction_law<F, Real> &&
     f.fall(v, level).scale;
 };
 
+/// A law that knows directions, and whose level may rise with the speed as well: `asymmetric_stribeck`. Its
+/// slip(v) is a magnitude, too; parts(forward, speed) are a part that falls with the speed and is convex, and
+/// one that rises and is concave.
+template <class F, class Real>
+concept friction_law_by_direction = requires(const F& f, quantity_of<signal::velocity, Real> v, bool forward) {
+    { f.breakaway(forward) } -> std::convertible_to<quantity_of<signal::force, Real>>;
+    { f.slip(v) } -> std::convertible_to<quantity_of<signal::force, Real>>;
+    { f.viscous() } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
+    f.parts(forward, v).falling;
+    f.parts(forward, v).rising;
+    f.parts(forward, v).falling_slope;
+    f.parts(forward, v).rising_slope;
+    f.parts(forward, v).steepest;
+    f.parts(forward, v).scale;
+};
+
 namespace detail {
 /// Relative error that may be left to the velocity of a step.
 template <class Real> inline constexpr double stick_slip_accuracy = 1e-14;
@@ -69,6 +85,43 @@ quantity_of<signal::velocity, Real> fastest_sliding(const Friction& friction,
             if (left <= Real(stick_slip_accuracy<Real>) * (rise * next)) return next < most ? next : most;
         }
         v = next < most ? next : most;
+    }
+    return v;
+}
+/// The fastest v' >= 0 with slope v' + slip(v') = size, where the level may rise: 0 when there is none. From
+/// above, as stick_slip does: the falling part at the speed that is known to be
+/// too fast leaves too much for the rest, whose speed is again too fast, and nearer. That one solves a concave
+/// equation: Newton's method from below. The last pass is Newton's for the whole, once the curvature says that
+/// it is exact.
+template <class Real, class Friction>
+quantity_of<signal::velocity, Real>
+fastest_in_direction(const Friction& friction, const gain_of<signal::force, signal::velocity, Real>& slope,
+                     const quantity_of<signal::force, Real>& size, bool forward) noexcept {
+    using velocity = quantity_of<signal::velocity, Real>;
+    using force = quantity_of<signal::force, Real>;
+    using gain = gain_of<signal::force, signal::velocity, Real>;
+    const Real close = Real(stick_slip_accuracy<Real>);
+    velocity v = size / slope;
+    constexpr int most_passes = 32;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        auto at = friction.parts(forward, v);
+        const gain rise = slope + at.falling_slope + at.rising_slope;
+        const force above = slope * v + at.falling + at.rising - size;
+        if (rise > gain()) {
+            const velocity step = above / rise, next = v - step;
+            const force left = at.steepest * (Real(step / at.scale) * step);
+            if (next > velocity() && (left < force() ? -left : left) <= close * (rise * next)) return next;
+        }
+        const force rest = size - at.falling; // for the mass and the rising part
+        if (!(rest > force())) return velocity();
+        for (int inner = 0; inner < most_passes; ++inner) {
+            const velocity step = (rest - slope * v - at.rising) / (slope + at.rising_slope);
+            v += step;
+            if (!(v > velocity())) v = velocity();
+            if (inner > 0 && step <= close * v) break; // from below: what is left is smaller yet
+            at = friction.parts(forward, v);
+        }
+        if (!(v > velocity())) return velocity();
     }
     return v;
 }
@@ -114,6 +167,23 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
     const bool goes_on = forward ? v > velocity() : v < velocity();
     if (size <= dry || (!goes_on && size <= friction.breakaway())) return velocity();
     return forward ? (size - dry) / slope : -((size - dry) / slope);
+}
+
+/// The same on a law that knows directions: breakaway and level of the direction in which the axis is pushed.
+template <class Real, friction_law_by_direction<Real> Friction>
+requires(!friction_law<Friction, Real>) quantity_of<signal::velocity, Real> stick_slip(
+    const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
+    quantity_of<signal::force, Real> drive, quantity<si::time, Real> h)
+noexcept {
+    using velocity = quantity_of<signal::velocity, Real>;
+    using force = quantity_of<signal::force, Real>;
+    const force push = force(mass * v / h) + drive;
+    const bool forward = push > force(), goes_on = forward ? v > velocity() : v < velocity();
+    const force size = forward ? push : -push;
+    if (!goes_on && size <= friction.breakaway(forward)) return velocity();
+    const velocity speed =
+        detail::fastest_in_direction<Real>(friction, mass / h + friction.viscous(), size, forward);
+    return forward ? speed : -speed;
 }
 
 } // namespace quadrant::inline v0

@@ -5,6 +5,7 @@
 #include "../base/lanes/lane_by_lane.hpp"
 #include "../base/standstill.hpp"
 #include "cubic_weights.hpp"
+#include "cycle_change.hpp"
 #include "fir.hpp"
 
 #include <array>
@@ -92,8 +93,8 @@ public:
         require(p.ahead < LearningTaps, "repetitive.ahead", double(p.ahead),
                 "must be below the taps of learning (" + detail::shortest(double(LearningTaps)) + ")");
         const double least = double(p.ahead + half + 2), cycles = detail::plain(p.cycle) / period.value();
-        require(cycles >= least * (1 - rounding) && cycles <= double(Capacity) * (1 + rounding),
-                "repetitive.cycle", p.cycle,
+        require(detail::cycle_change<number>::fits(cycles, least, double(Capacity)), "repetitive.cycle",
+                p.cycle,
                 "must lie between " + detail::shortest(least * period) +
                     " (look-ahead of learning and smoothing, and two periods) and " +
                     detail::shortest(double(Capacity) * period) + " (capacity)");
@@ -118,8 +119,7 @@ public:
 
     value operator()(argument e) noexcept {
         value early = read(reader_);
-        if (state_.fading > 0)
-            early += Real(double(state_.fading) / double(fade_)) * (read(old_reader_) - early);
+        if (state_.fading > 0) early += Real(cycle_.left(state_.fading)) * (read(old_reader_) - early);
         state_.r.put(early);
         const value m = e + state_.r.ago(given_.ahead);
         state_.m.put(m);
@@ -131,14 +131,13 @@ public:
         state_.next_p = now + 1 == size_p ? 0 : now + 1;
         state_.m.advance();
         state_.r.advance();
-        if (state_.fading > 0 && --state_.fading == 0 && pending_) start(wanted_);
+        if (state_.fading > 0 && --state_.fading == 0 && cycle_.is_pending()) start();
         return out_.keep(y);
     }
     void reset() noexcept {
-        limited_ = pending_ = false;
         state_ = state();
-        periods_ = given_.cycle.value() / number(period_.value());
-        reader_ = old_reader_ = reader(periods_);
+        cycle_.begin(given_.cycle.value() / number(period_.value()));
+        reader_ = old_reader_ = reader(cycle_.periods());
         out_.reset();
     }
     void settle(argument x) noexcept { stand(x, out_.last(), false); }
@@ -147,16 +146,9 @@ public:
     /// Of what repeats, from the next step on; see above.
     void cycle(quantity<si::time, number> d) noexcept {
         if (none(finite(d))) return out_.raise();
-        const number least(double(given_.ahead + half + 2)), most{double(Capacity)};
-        number periods = d.value() / number(period_.value());
-        const double plain = detail::plain(periods);
-        limited_ =
-            plain < detail::plain(least) * (1 - rounding) || plain > detail::plain(most) * (1 + rounding);
-        if (plain < detail::plain(least)) periods = least;
-        if (plain > detail::plain(most)) periods = most;
-        wanted_ = periods;
-        pending_ = state_.fading > 0;
-        if (!pending_) start(periods);
+        if (cycle_.ask(d.value() / number(period_.value()), double(given_.ahead + half + 2), double(Capacity),
+                       state_.fading > 0))
+            start();
     }
     void retune(const repetitive& next) noexcept {
         if (next.period_ != period_ || next.given_.ahead != given_.ahead) return out_.raise();
@@ -164,11 +156,11 @@ public:
         weights_ = next.weights_;
         learning_ = next.learning_;
         smoothing_ = next.smoothing_;
-        reader_ = reader(periods_);
+        reader_ = reader(cycle_.periods());
         cycle(given_.cycle);
     }
     quantity<si::time, number> cycle() const noexcept {
-        return periods_ * quantity<si::time, number>::from_value(number(period_.value()));
+        return cycle_.periods() * quantity<si::time, number>::from_value(number(period_.value()));
     }
 
     /// From e to y, at the cycle that is being faded to.
@@ -189,7 +181,7 @@ public:
         return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <= whole_tolerance;
     }
     bool fading() const noexcept { return state_.fading > 0; }
-    bool limited() const noexcept { return limited_; } ///< the last cycle(d) lay outside the range
+    bool limited() const noexcept { return cycle_.limited(); } ///< the last cycle(d) lay outside the range
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }
     const state& now() const noexcept { return state_; }
@@ -201,7 +193,6 @@ private:
 
     static constexpr double whole_tolerance = ///< of the sum of a Q and weights that let nothing through
         16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
-    static constexpr double rounding = 1e-12; ///< of a cycle that was given as a multiple of the period
     static constexpr std::size_t size_p = Order * Capacity + 2;
 
     /// Which samples of p make r, and how much of each.
@@ -236,15 +227,12 @@ private:
         }
         return all;
     }
-    void start(number periods) noexcept {
-        pending_ = false;
-        if (detail::plain(periods) == detail::plain(periods_)) return;
+    void start() noexcept {
+        const std::size_t steps = cycle_.start(given_.fade.value(), period_.value());
+        if (steps == 0) return;
+        state_.fading = steps;
         old_reader_ = reader_;
-        periods_ = periods;
-        reader_ = reader(periods);
-        const double steps =
-            detail::plain(given_.fade) > 0 ? given_.fade.value() / period_.value() : detail::plain(periods);
-        fade_ = state_.fading = std::size_t(std::ceil(steps));
+        reader_ = reader(cycle_.periods());
     }
     /// What a memory at rest holds: m = e + r, r, and its output.
     struct standing {
@@ -270,7 +258,7 @@ private:
         if (none(finite(now.m, p, now.r, now.y))) return out_.raise();
         state_.m.x.fill(now.m), state_.p.fill(p), state_.r.x.fill(now.r);
         state_.fading = 0;
-        if (pending_) start(wanted_);
+        if (cycle_.is_pending()) start();
         state_.fading = 0; // nothing to fade: both cycles read the same
         out_.reset(now.y);
     }
@@ -286,10 +274,8 @@ private:
     std::array<Real, Order> weights_{};
     detail::fir_taps<Real, LearningTaps> learning_{};
     detail::fir_taps<Real, SmoothingTaps> smoothing_{};
-    number periods_{0}, wanted_{0};
+    detail::cycle_change<number> cycle_;
     memory_reader reader_, old_reader_;
-    std::size_t fade_ = 1;
-    bool pending_ = false, limited_ = false;
     state state_;
     held_output<value> out_;
 };

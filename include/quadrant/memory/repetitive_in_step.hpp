@@ -164,10 +164,9 @@ public:
         return out_.keep(value::from_value(y));
     }
     void reset() noexcept {
-        limited_ = pending_ = false;
         state_ = state();
-        periods_ = given_.cycle.value() / Real(period_.value());
-        reader_ = old_reader_ = reader(periods_);
+        cycle_.begin(given_.cycle.value() / Real(period_.value()));
+        reader_ = old_reader_ = reader(cycle_.periods());
         out_.reset();
     }
     void settle(argument x) noexcept { stand(x.value(), out_.last().value(), false); }
@@ -176,13 +175,9 @@ public:
     /// Of what repeats in each lane, from the next step on; see `repetitive`.
     void cycle(quantity<si::time, Real> d) noexcept {
         if (!all(d.value().finite_mask())) return out_.raise();
-        Real periods = d.value() / Real(period_.value());
-        const Real least(double(given_.ahead + one::half + 2)), most{double(Capacity)};
-        limited_ = any(less(periods, least * Real(1 - one::rounding))) ||
-                   any(less(most * Real(1 + one::rounding), periods));
-        wanted_ = limited_to(periods, least, most);
-        pending_ = state_.fading > 0;
-        if (!pending_) start(wanted_);
+        if (cycle_.ask(d.value() / Real(period_.value()), double(given_.ahead + one::half + 2),
+                       double(Capacity), state_.fading > 0))
+            start();
     }
     void retune(const repetitive& next) noexcept {
         if (next.period_ != period_ || next.given_.ahead != given_.ahead) return out_.raise();
@@ -190,15 +185,17 @@ public:
         learning_ = next.learning_;
         smoothing_ = next.smoothing_;
         alike_ = next.alike_;
-        reader_ = reader(periods_);
+        reader_ = reader(cycle_.periods());
         cycle(given_.cycle);
     }
     quantity<si::time, Real> cycle() const noexcept {
-        return quantity<si::time, Real>::from_value(periods_ * Real(period_.value()));
+        return quantity<si::time, Real>::from_value(cycle_.periods() * Real(period_.value()));
     }
 
     bool fading() const noexcept { return state_.fading > 0; }
-    bool limited() const noexcept { return limited_; } ///< the last cycle(d) lay outside the range in some lane
+    bool limited() const noexcept {
+        return cycle_.limited();
+    } ///< the last cycle(d) lay outside the range in some lane
     bool faulted() const noexcept { return out_.faulted(); }
     mask_of<Real> faulted_lanes() const noexcept { return out_.faulted_lanes(); }
     const parameters& given() const noexcept { return given_; }
@@ -247,21 +244,17 @@ private:
     }
     /// Out of the way of the samples without a fade.
     [[gnu::noinline]] Real faded(const Real& early) const noexcept {
-        return early + Real(double(state_.fading) / double(fade_)) * (read(old_reader_) - early);
+        return early + Real(cycle_.left(state_.fading)) * (read(old_reader_) - early);
     }
     [[gnu::noinline]] void fade_on() noexcept {
-        if (--state_.fading == 0 && pending_) start(wanted_);
+        if (--state_.fading == 0 && cycle_.is_pending()) start();
     }
-    void start(const Real& periods) noexcept {
-        pending_ = false;
-        if (all(equal(periods, periods_))) return;
+    void start() noexcept {
+        const std::size_t steps = cycle_.start(given_.fade.value(), period_.value());
+        if (steps == 0) return;
+        state_.fading = steps;
         old_reader_ = reader_;
-        periods_ = periods;
-        reader_ = reader(periods);
-        double longest = 0;
-        for (std::size_t i = 0; i < W; ++i) longest = periods[i] > longest ? periods[i] : longest;
-        const double steps = given_.fade.value() > 0 ? given_.fade.value() / period_.value() : longest;
-        fade_ = state_.fading = std::size_t(std::ceil(steps));
+        reader_ = reader(cycle_.periods());
     }
     /// Each lane as one memory is that was settled; see there.
     void stand(const Real& x, const Real& y, bool has_output) noexcept {
@@ -283,7 +276,7 @@ private:
         state_.r.fill(to_r);
         for (std::size_t i = 0; i < state_.p.size(); i += W) p.write(&state_.p[i]);
         state_.fading = 0;
-        if (pending_) start(wanted_);
+        if (cycle_.is_pending()) start();
         state_.fading = 0; // nothing to fade: both cycles read the same
         out_.reset(value::from_value(to_y));
     }
@@ -297,10 +290,9 @@ private:
     duration period_;
     taps_of_r learning_{};
     taps_of_m smoothing_{};
-    Real periods_{0}, wanted_{0};
+    detail::cycle_change<Real> cycle_;
     memory_reader reader_, old_reader_;
-    std::size_t fade_ = 1;
-    bool pending_ = false, limited_ = false, alike_ = true;
+    bool alike_ = true;
     state state_;
     held_output<value> out_;
 };

@@ -18,9 +18,9 @@ namespace quadrant::inline v0 {
 ///   M dv/dt = kf u(t - delay) + external - friction(v), dx/dt = v; reading = encoder rounding of x
 /// u[k] is held for one period, starting `delay` after sample k; the delay does not include the hold.
 /// Source: docs/formats.md (Timing); [Jamaludin2008] eq. (2.2) with friction; stick by friction/stick_slip.hpp,
-/// or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`): friction/presliding.hpp.
-/// Load: what a motor force meets on its way to the mass, as cogging and ripple in `axis_load`; asked at x + v
-/// h/2 of each sub-step h. Default none.
+/// by direction too (`asymmetric_stribeck`), or by a friction that remembers (`dahl`, `lugre`, `maxwell_slip`):
+/// friction/presliding.hpp. Load: what a motor force meets on its way to the mass, as cogging and ripple in
+/// `axis_load`; asked at x + v h/2 of each sub-step h. Default none.
 /// Ports: command u[k] [V] in, encoder reading [m] at sample k+1 out; positive command, force and motion agree.
 ///   A second argument [N] is an external force held over the period.
 /// State: position, velocity, past commands, what the friction remembers. `reset`: at rest at zero;
@@ -36,8 +36,9 @@ namespace quadrant::inline v0 {
 /// boxes: `table_axis`.
 template <class Friction = coulomb_viscous<>, std::size_t Capacity = 32, class Real = double,
           class Load = no_load>
-requires(friction_law<Friction, Real> || friction_with_memory<Friction, Real>) && motor_load<Load, Real> &&
-    (Capacity > 0) class linear_motor {
+requires(friction_law<Friction, Real> || friction_law_by_direction<Friction, Real> ||
+         friction_with_memory<Friction, Real>) &&
+    motor_load<Load, Real> && (Capacity > 0) class linear_motor {
     static constexpr bool loaded = !std::same_as<Load, no_load>;
 
 public:
