@@ -23,6 +23,8 @@ struct position_link {
     std::vector<double> force{}, motor_direction{};
     double force_band_Hz = 0; ///< to which force and difference are smoothed; 0: they are not
     double force_doubt = 0;   ///< relative, how well the owner knows force constant and mass
+    double motor_mass = 0;    ///< whose inertia is off the force [kg]
+    double compliance = 0;    ///< 1 / stiffness, as described; 0: not known [m/N]
 
     std::size_t rows() const { return first.size(); }
     double travel() const {

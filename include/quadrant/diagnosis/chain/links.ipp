@@ -127,7 +127,8 @@ QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_descriptio
     const auto acting = zero_phase(held_later(log.command, l.period, late), l.force_band_Hz, l.period);
     const auto smooth = zero_phase(l.first, l.force_band_Hz, l.period);
     const auto velocity = derivative(smooth, l.period), acceleration = derivative(velocity, l.period);
-    const double mass = axis.transmission.motor_mass_kg.value_or(0);
+    const double mass = l.motor_mass = axis.transmission.motor_mass_kg.value_or(0);
+    l.compliance = d.described.compliance;
     l.force_doubt = std::hypot(axis.tolerance.of("force_constant"), mass > 0 ? axis.tolerance.of("mass") : 0);
     std::vector<double> sign(l.rows());
     l.force.resize(l.rows());

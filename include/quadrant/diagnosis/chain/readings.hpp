@@ -21,10 +21,16 @@ public:
         if (band > 0) noise_ = std::max(noise_ * std::sqrt(2 * band * link_.period), 0.1 * link_.count());
         for (double v : velocity_) speed_ = std::max(speed_, std::abs(v));
         choose_rows();
+        if (band > 0) round_again();
+        noise_ = noise_with(link_.compliance);
     }
 
     const position_link& of() const { return link_; }
+    /// Noise and rounding of the difference, in the band to which it is smoothed [m].
     double noise() const { return noise_; }
+    /// The same behind a transmission of this compliance [m/N]: the force that winds it up is found with the
+    /// acceleration of the motor's reading, so that the rounding of that reading is in it twice.
+    double noise_with(double compliance) const;
     double travel() const { return travel_; }
     double middle() const { return middle_; }
     double speed() const { return speed_; }
@@ -62,12 +68,15 @@ public:
 
 private:
     void choose_rows();
+    void round_again();
     std::vector<Eigen::VectorXd> columns_of(const link_model& m, term t, std::span<const double> driven) const;
 
     position_link link_;
     double noise_, travel_, middle_, speed_ = 0;
     std::vector<double> first_, last_, velocity_;
     std::vector<std::size_t> rows_;
+    /// What rounding once more does to the difference and to the force, at each row that counts [m], [N].
+    std::vector<double> rounded_, rounded_force_;
 };
 
 } // namespace quadrant::inline v0::diagnosis::chain

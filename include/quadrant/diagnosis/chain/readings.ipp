@@ -53,6 +53,34 @@ QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
     }
 }
 
+/// Where a coarse reading moves slowly its rounding is a slow wave, which no smoothing takes off: so the smooth
+/// motion is rounded as the readings are and smoothed again. What that changes is what rounding has changed.
+QUADRANT_DIAGNOSIS_DECL void readings::round_again() {
+    const double band = link_.force_band_Hz;
+    const auto changed = [&](const std::vector<double>& smooth, double count) {
+        std::vector<double> out(smooth.size(), 0.0);
+        if (!(count > 0)) return out;
+        for (std::size_t k = 0; k < out.size(); ++k)
+            out[k] = count * std::round(smooth[k] / count) - smooth[k];
+        return zero_phase(out, band, link_.period);
+    };
+    const auto first = changed(first_, link_.first_count), last = changed(last_, link_.last_count);
+    const auto acceleration = derivative(derivative(first, link_.period), link_.period);
+    for (std::size_t k : rows_) {
+        rounded_.push_back(last[k] - first[k]);
+        rounded_force_.push_back(-link_.motor_mass * acceleration[k]);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL double readings::noise_with(double compliance) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < rounded_.size(); ++i) {
+        const double e = rounded_[i] + compliance * rounded_force_[i];
+        sum += e * e;
+    }
+    return std::max(noise_, std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, rounded_.size()))));
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<Eigen::VectorXd>
 readings::columns_of(const link_model& m, term t, std::span<const double> driven) const {
     const auto by_row = [&](auto value) {

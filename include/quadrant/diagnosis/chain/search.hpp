@@ -67,6 +67,12 @@ private:
     /// A model with one term of the best, its values that are no columns as found.
     fitted joined(const fitted& from, const fitted& best, term t) const;
     void weigh(const answer& out, finding& f) const;
+    /// Whether a term is a function of the place alone.
+    static bool of_place(term t) {
+        return t == term::smooth || t == term::cyclic || t == term::scale || t == term::pitch;
+    }
+    /// Energy of the largest term of that kind in a model [m^2].
+    static double largest_of_place(const fitted& f);
 
     const readings& r_;
     link_model described_;

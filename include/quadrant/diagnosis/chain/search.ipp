@@ -142,6 +142,16 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::joined(const fitted& from, const fitted& 
     return fit_columns(r_, m);
 }
 
+QUADRANT_DIAGNOSIS_DECL double seeker::largest_of_place(const fitted& f) {
+    double out = 0;
+    for (term t : f.model.freed) {
+        if (!of_place(t)) continue;
+        const auto part = f.part(t);
+        out = std::max(out, (part.array() - part.mean()).square().mean());
+    }
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const {
     const fitted without = without_term(r_, out.best, f.what, described_);
     const double explained = std::max(energy(without) - energy(out.best), 1e-300);
@@ -165,9 +175,11 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
     }
     double known = 1 - detail::by_chance(suspects_.size(), std::sqrt(left / explained));
     // What is left along the travel is a curve that none of these names stands for.
-    const bool of_place = f.what == term::smooth || f.what == term::cyclic || f.what == term::scale;
-    if (of_place && !out.at_floor && left_along(r_, out.best) > law_error * explained)
+    const double along = left_along(r_, out.best);
+    if (of_place(f.what) && !out.at_floor && along > law_error * law_error * explained && along > left / 2)
         known = std::min(known, 0.45);
+    // Nor is any curve known to more than five per cent of another one that lies under it.
+    if (of_place(f.what) && explained < law_error * law_error * largest_of_place(out.best)) known = std::min(known, 0.45);
     f.probability = known / sum;
     f.group_probability = known * same / sum;
 }

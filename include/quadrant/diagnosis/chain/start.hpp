@@ -44,9 +44,15 @@ QUADRANT_DIAGNOSIS_DECL bool sudden(const readings& r, const fitted& f);
 /// Jumps, one after the other, while each pays.
 QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from, double margin);
 
-/// A model with one term more, fitted; the model itself where the term cannot join. `margin`: what each jump
-/// has to pay.
+/// Whether a model can be: no play is narrower than nothing, no spring gives way against its load, and no
+/// friction drives the motor. A fit that needs such a value imitates another term.
+QUADRANT_DIAGNOSIS_DECL bool possible(const fitted& f);
+
+/// A model with one term more, fitted; the model itself where the term cannot join, or where the values would
+/// not be possible(). `margin`: what each jump has to pay.
 QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, term t, double margin);
+/// The same, whatever the values.
+QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& from, term t, double margin);
 
 /// A model without one of its terms, the others fitted again.
 QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& from, term t,

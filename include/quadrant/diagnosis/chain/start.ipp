@@ -25,7 +25,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r, bool of_sc
 
 QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double turn) {
     for (int h = 1; turn > 0 && h <= 6; ++h)
-        if (std::abs(r.travel() * (1 / p - h / turn)) < 1.5) return true;
+        if (std::abs(r.travel() * (1 / p - h / turn)) < 0.5) return true;
     return false;
 }
 
@@ -93,7 +93,26 @@ QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from,
     return best;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool possible(const fitted& f) {
+    const link_model& m = f.model;
+    double play = m.play, compliance = m.compliance, friction = 0;
+    for (std::size_t j = 0; j < f.of.size(); ++j) {
+        const double value = f.values[static_cast<Eigen::Index>(j)];
+        if (f.of[j] == term::play && f.of[j - 1] != term::play) play += value;
+        if (f.of[j] == term::spring) compliance += value;
+        if (f.of[j] == term::motor_friction) friction += value;
+    }
+    friction += m.motor_coulomb * compliance;
+    return !(m.has(term::play) && play <= 0) && !(m.has(term::spring) && compliance <= 0) &&
+           !(m.has(term::motor_friction) && friction < 0);
+}
+
 QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, term t, double margin) {
+    fitted out = begun_with_term(r, from, t, margin);
+    return possible(out) ? out : from;
+}
+
+QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& from, term t, double margin) {
     link_model m = from.model;
     const auto freed = [&](link_model& x) {
         if (!x.has(t)) x.freed.push_back(t);

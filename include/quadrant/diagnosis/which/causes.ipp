@@ -444,13 +444,12 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
-/// Whether the record leaves the frequency or the period of a cause open: its interval is ten times as wide as
-/// the value.
+/// Whether the record leaves the frequency or the period of a cause open: its interval is as wide to either
+/// side as the value, so that none of a shorter period is told from it.
 inline bool is_undetermined(const std::vector<parameter_estimate>& values) {
-    constexpr double wide = 10;
     return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
         const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
-        return cycle && p.values[0].high - p.values[0].low > 2 * wide * p.values[0].value;
+        return cycle && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
     });
 }
 

@@ -318,9 +318,13 @@ QUADRANT_DIAGNOSIS_DECL bool search::at_noise(const candidate& c) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::near_its_laws(const candidate& c) const {
-    const double taken = std::max(0.0, square(held_out_force(calibrated_)) - square(held_out_force(c)));
+    // A path is fitted whole: a motion that alone shows a cause is not to be lost.
+    const auto left = [&](const candidate& m) {
+        return record_.closed() ? rms(residual(m)) : held_out_force(m);
+    };
+    const double taken = std::max(0.0, square(left(calibrated_)) - square(left(c)));
     const double laws = law_error * std::hypot(friction_level(c.fit.plant), std::sqrt(taken));
-    return held_out_force(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
+    return left(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
 }
 
 QUADRANT_DIAGNOSIS_DECL const std::vector<double>& search::tolerance_cloud() const {
