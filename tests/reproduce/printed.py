@@ -5,7 +5,8 @@
 printed.py REPRODUCTION.md [SOURCES]
 
 Counts the list: of every number either ours is there, or a reason. Where SOURCES (the folder of the three texts) is there: every
-number in the list is in the text of its source letter for letter, and every number in the tables of the text is in the list.
+number in the list is in the text of its source letter for letter, every number in the tables of the text is in the list, and every
+figure, table and equation of the thesis is among the parts.
 """
 import pathlib
 import re
@@ -52,6 +53,36 @@ def count_faults(listed):
         for table, wanted in cells.items():
             if tables.get((source, table), 0) != wanted:
                 yield f"{source} Table {table}: {tables.get((source, table), 0)} numbers in the list, {wanted} in the table"
+
+
+def numbers_named(text, what):
+    """Of "Figs. 2.7 to 2.10 and B.1" or "eqs. (2.3-2.21)": every number, as (letter or chapter, number)."""
+    found = set()
+    for begin, end in re.findall(what, text):
+        chapter, first = begin.split(".")
+        last = int(end.split(".")[1]) if end else int(first)
+        found |= {(chapter, number) for number in range(int(first), last + 1)}
+    return found
+
+
+def part_faults(path, folder):
+    """Every figure, table and equation of the thesis that its text names is a part in the list."""
+    thesis = text_of(folder, SOURCE_FILES["[Jamaludin2008]"])
+    if not thesis:
+        return
+    parts = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("### [Yeung2006]")[0]
+    parts = "\n".join(line.split("|")[1] for line in parts.splitlines() if line.startswith("| "))
+    wanted = {("figure", *each) for each in numbers_named(thesis, r"Fig(?:ure|\.) ?([1-5B-D]\.\d+)()\b")}
+    wanted |= {("table", *each) for each in numbers_named(thesis, r"Table ([1-5]\.\d+)()\b")}
+    wanted |= {("equation", *each) for each in numbers_named(thesis, r"\(([2-5]\.\d+)()\)")}
+    bare = re.sub(r"\([^)]*\)|(?:Section|section|Table) [\d.]+", "", parts)
+    listed = {("figure", *each) for each in numbers_named(bare, r"([1-5B-D]\.\d+)(?: to ([1-5B-D]\.\d+))?")}
+    listed |= {("table", *each) for each in numbers_named(parts, r"Table ([1-5]\.\d+)()")}
+    listed |= {("equation", *each) for each in numbers_named(parts, r"\(([2-5]\.\d+)(?:-([2-5]\.\d+))?\)")}
+    for kind, chapter, number in sorted(wanted - listed):
+        yield f"[Jamaludin2008]: {kind} {chapter}.{number} is not among the parts"
+    if len(wanted) < 200:
+        yield f"[Jamaludin2008]: only {len(wanted)} figures, tables and equations found in the text"
 
 
 def text_of(folder, pattern):
@@ -103,6 +134,7 @@ def main():
     whole = len(sys.argv) > 2 and pathlib.Path(sys.argv[2]).is_dir()
     if whole:
         faults += text_faults(listed, sys.argv[2])
+        faults += part_faults(sys.argv[1], sys.argv[2])
     for fault in faults[:40]:
         print("FAILED:", fault)
     cannot = sum(1 for row in listed if row[6].startswith("cannot"))

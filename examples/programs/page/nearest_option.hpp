@@ -7,7 +7,8 @@
 /// What a mistyped command line may have meant.
 namespace quadrant_page {
 
-/// "there is no --jsn; did you mean --json?" for the first word that names no subcommand or option; empty when every word does.
+/// "there is no --jsn; did you mean --json?" for the first word that names no subcommand or option; empty when
+/// every word does.
 inline std::string nearest_option(const CLI::App& program, int argc, const char* const* argv) {
     using quadrant::diagnosis::detail::suggestion;
     const CLI::App* command = &program;

@@ -20,8 +20,8 @@ inline imported_log checked(imported_log imported) {
     return imported;
 }
 
-/// A log from its text, as our own reader has it, or by the names and units of its columns: `through(map, text)`
-/// then imports it. Throws the refusal of our own reader where the columns have our names in SI.
+/// A log from its text, as our own reader has it, or by the names and units of its columns: `through(map,
+/// text)` then imports it. Throws the refusal of our own reader where the columns have our names in SI.
 template <class Import>
 machine_log log_of_text(const std::string& text, const std::string& name, const Import& through) {
     std::optional<bad_input> refused;

@@ -158,10 +158,10 @@ struct one_by_one {
 /// seed, generation and child. Parents blend, a child lies up to `blend` of their distance beyond them
 /// [Eshelman1993]. It has converged when mean() and best() agree.
 /// Source: [LowKeck2003]: real-coded, reproduction by fitness, crossover, mutation.
-/// A cost that depends on chance, such as that of one machine of many or of an experiment, is a
-/// `cost(values, draw)`: the same number `draw` is the same machine. Each generation has draws of its own, or
-/// the search tunes to one draw. The least of many costs is mostly a lucky one: what is to live on is tried again
-/// until those at the head have had `trials` each, and once more in each generation; its cost is the mean.
+/// A cost that depends on chance, such as that of one machine of many or of an experiment, is a `cost(values,
+/// draw)`: the same number `draw` is the same machine. Each generation has draws of its own, or the search
+/// tunes to one draw. The least of many costs is mostly a lucky one: what is to live on is tried again until
+/// those at the head have had `trials` each, and once more in each generation; its cost is the mean.
 /// `each(n, work)` runs work(0) ... work(n - 1), in any order, on any threads; cost is then called from those.
 /// Throws for genes without a range, options out of theirs, and a state of another size.
 template <class Cost, class Tell, class Each = one_by_one>
