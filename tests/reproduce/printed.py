@@ -6,7 +6,7 @@ printed.py REPRODUCTION.md [SOURCES]
 
 Counts the list: of every number either ours is there, or a reason. Where SOURCES (the folder of the three texts) is there: every
 number in the list is in the text of its source letter for letter, every number in the tables of the text is in the list, and every
-figure, table and equation of the thesis is among the parts.
+figure, table and equation of the texts is among the parts.
 """
 import pathlib
 import re
@@ -65,24 +65,46 @@ def numbers_named(text, what):
     return found
 
 
+def parts_of(path, source):
+    """The places of the parts of one source, a line each."""
+    listed = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("\n## ")[0]
+    section = next(each for each in listed.split("\n### ") if each.startswith(source))
+    return "\n".join(line.split("|")[1] for line in section.splitlines() if line.startswith("| "))
+
+
+def without_others(parts):
+    """Numbers of figures alone: no equations, sections and tables."""
+    return re.sub(r"\([^)]*\)|(?:[Ss]ection|Tables?) [\d.]+(?:, \d+)*", "", parts)
+
+
 def part_faults(path, folder):
-    """Every figure, table and equation of the thesis that its text names is a part in the list."""
-    thesis = text_of(folder, SOURCE_FILES["[Jamaludin2008]"])
-    if not thesis:
-        return
-    parts = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("### [Yeung2006]")[0]
-    parts = "\n".join(line.split("|")[1] for line in parts.splitlines() if line.startswith("| "))
-    wanted = {("figure", *each) for each in numbers_named(thesis, r"Fig(?:ure|\.) ?([1-5B-D]\.\d+)()\b")}
-    wanted |= {("table", *each) for each in numbers_named(thesis, r"Table ([1-5]\.\d+)()\b")}
-    wanted |= {("equation", *each) for each in numbers_named(thesis, r"\(([2-5]\.\d+)()\)")}
-    bare = re.sub(r"\([^)]*\)|(?:Section|section|Table) [\d.]+", "", parts)
-    listed = {("figure", *each) for each in numbers_named(bare, r"([1-5B-D]\.\d+)(?: to ([1-5B-D]\.\d+))?")}
-    listed |= {("table", *each) for each in numbers_named(parts, r"Table ([1-5]\.\d+)()")}
-    listed |= {("equation", *each) for each in numbers_named(parts, r"\(([2-5]\.\d+)(?:-([2-5]\.\d+))?\)")}
-    for kind, chapter, number in sorted(wanted - listed):
-        yield f"[Jamaludin2008]: {kind} {chapter}.{number} is not among the parts"
-    if len(wanted) < 200:
-        yield f"[Jamaludin2008]: only {len(wanted)} figures, tables and equations found in the text"
+    """Every figure, table and equation that the texts number is a part in the list."""
+    wanted, listed = set(), set()
+    for source, pattern in SOURCE_FILES.items():
+        text, parts = text_of(folder, pattern), parts_of(path, source)
+        if not text:
+            continue
+        add = lambda to, kind, numbers: to.update((source, kind, *each) for each in numbers)
+        if source == "[Jamaludin2008]":
+            add(wanted, "figure", numbers_named(text, r"Fig(?:ure|\.) ?([1-5B-D]\.\d+)()\b"))
+            add(wanted, "table", numbers_named(text, r"Table ([1-5]\.\d+)()\b"))
+            add(wanted, "equation", numbers_named(text, r"\(([2-5]\.\d+)()\)"))
+            add(listed, "figure", numbers_named(without_others(parts), r"([1-5B-D]\.\d+)(?: to ([1-5B-D]\.\d+))?"))
+            add(listed, "table", numbers_named(parts, r"Table ([1-5]\.\d+)()"))
+            add(listed, "equation", numbers_named(parts, r"\(([2-5]\.\d+)(?:-([2-5]\.\d+))?\)"))
+            continue
+        one = lambda found: {("", n) for begin, end in found for n in range(int(begin), int(end or begin) + 1)}
+        add(wanted, "figure", one(re.findall(r"Fig\. ?(\d+)()\b", text)))
+        add(wanted, "equation", one(re.findall(r"\((\d{1,2})()\)", text)))
+        add(wanted, "table", one(re.findall(r"Table (\d+)()\b", text)))
+        add(listed, "figure", one(re.findall(r"(\d+)(?: to (\d+))?", without_others(parts))))
+        add(listed, "equation", one(re.findall(r"\((\d+)(?:-(\d+))?\)", parts)))
+        tables = " ".join(re.findall(r"Tables? ([\d, ]+)", parts))
+        add(listed, "table", one(re.findall(r"(\d+)()", tables)))
+    for source, kind, chapter, number in sorted(wanted - listed):
+        yield f"{source}: {kind} {chapter}{'.' * bool(chapter)}{number} is not among the parts"
+    if len(wanted) < 250:
+        yield f"only {len(wanted)} figures, tables and equations found in the texts"
 
 
 def text_of(folder, pattern):
