@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include <quadrant/diagnosis/check_physics.hpp>
-#include <quadrant/diagnosis/import/own_header.hpp>
+#include "quadrant_gap/log_of_text.hpp"
+
 #include <quadrant/diagnosis/import/read_map.hpp>
 #include <quadrant/diagnosis/import/table_file.hpp>
-#include <quadrant/diagnosis/import_log.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
 #include <nlohmann/json.hpp>
-#include <optional>
 
 /// What was dropped on the page: a machine file, a log, a map, or a table whose columns have to be named first.
 namespace quadrant_web {
@@ -63,32 +60,19 @@ inline nlohmann::json columns_of(const std::string& text, const std::string& nam
 
 /// A log, by our own reader or through a map; with jittering stamps on an even clock.
 inline imported_log imported(const import_map& map, const std::vector<foreign_file>& files) {
-    imported_log out;
     try {
-        out = import_log(map, files);
+        return quadrant_gap::checked(import_log(map, files));
     } catch (const bad_input&) {
-        out = import_log(map, files, {.resample = true}); // or this refusal, which says why
+        // or this refusal, which says why
+        return quadrant_gap::checked(import_log(map, files, {.resample = true}));
     }
-    check_physics(out);
-    out.log.notes.insert(out.log.notes.begin(), out.notes.begin(), out.notes.end());
-    return out;
 }
 
-/// A log from its text alone. Throws the refusal of our own reader where the columns have our names in SI.
+/// A log from its text alone.
 inline machine_log read_dropped_log(const std::string& text, const std::string& name) {
-    std::optional<bad_input> refused;
-    try {
-        return detail::log_reader(text, name).read();
-    } catch (const bad_input& fault) {
-        refused = fault;
-    }
-    std::optional<import_map> map;
-    try {
-        map = map_of_header(text, name);
-    } catch (const bad_input&) {
-        throw *refused;
-    }
-    return imported(*map, {{text, name}}).log;
+    return quadrant_gap::log_of_text(text, name, [&](const import_map& map, const std::string& table) {
+        return imported(map, {{table, name}});
+    });
 }
 
 /// The schema that a JSON text names; empty: none, or no JSON.

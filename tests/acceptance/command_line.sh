@@ -19,8 +19,9 @@ says() { # WORDS PROGRAM ARGUMENTS...: exit code 2 and these words
     grep -qF -- "$words" said.txt || fail "does not say '$words': $(cat said.txt)"
     echo "ok: $words"
 }
-says 'diagnos; did you mean diagnose?' "$program" diagnos --log l.csv
-says '--hold-out; did you mean --holdout?' "$program" diagnose --machine m.json --log l.csv --hold-out h.csv
+says 'there is no diagnos; did you mean diagnose?' "$program" diagnos --log l.csv
+says '--hold-out; did you mean --holdout?' "$program" diagnose --log l.csv --hold-out h.csv
+! grep -q 'is required' said.txt || fail "asks for what has another name: $(cat said.txt)"
 says '--jsn; did you mean --json?' "$program" simulate --jsn=x.json
 says '--period; did you mean --period_us?' "$latency" --period 125
 [ ! -x "$cnc" ] || says '--report_; did you mean --report?' "$cnc" run --report_ x.html

@@ -32,7 +32,19 @@ struct backwards {
 };
 bool same(const genetic_state& a, const genetic_state& b) {
     return a.population == b.population && a.cost == b.cost && a.generation == b.generation &&
-           a.simulations == b.simulations;
+           a.simulations == b.simulations && a.trials == b.trials && a.draws == b.draws;
+}
+/// A bowl around 1, and what one machine of many adds: waves whose phase is its own.
+double bowl(const std::vector<double>& x) {
+    double f = 0;
+    for (const double each : x) f += (each - 1) * (each - 1);
+    return f;
+}
+double by_chance(const std::vector<double>& x, std::uint64_t draw) {
+    quadrant::analysis::detail::child_random phase(draw, 0, 0);
+    double f = bowl(x);
+    for (const double each : x) f += 2 * std::sin(1.5 * each + 2 * std::numbers::pi * phase.uniform());
+    return f;
 }
 template <class Make> std::string refused(Make&& make) {
     try {
@@ -78,6 +90,57 @@ TEST_CASE("genetic: the best is never lost, no simulation too many, and every ge
     CHECK(found.simulations == calls);
     CHECK(calls == 40 + 25 * 38); // 25 further generations of 38 fit into 1000
     CHECK(generations == 26);
+}
+TEST_CASE(
+    "genetic: on a cost of chance it ends nearer to what holds for all draws than a search that keeps one "
+    "draw, for the same number of simulations") {
+    double drawn = 0, kept = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const auto many = tune_genetic(box, by_chance, 3000, {.seed = seed}, go_on);
+        const auto one = tune_genetic(
+            box, [&](const std::vector<double>& x) { return by_chance(x, 1000 + seed); }, 3000, {.seed = seed},
+            go_on);
+        drawn += bowl(best_of(many, box)) / 10, kept += bowl(best_of(one, box)) / 10;
+    }
+    CAPTURE(drawn);
+    CAPTURE(kept);
+    CHECK(drawn < 0.7 * kept);
+}
+TEST_CASE(
+    "genetic: on a cost of chance one generation has one draw, those at the head have had their trials, and "
+    "each is counted") {
+    std::uint64_t calls = 0, generation_began = 0;
+    std::vector<std::uint64_t> draws;
+    const auto counted = [&](const std::vector<double>& x, std::uint64_t draw) {
+        draws.push_back(draw);
+        return ++calls, by_chance(x, draw);
+    };
+    const auto found = tune_genetic(box, counted, 2000, {.trials = 5}, [&](const genetic_state& s) {
+        for (std::size_t k = 0; k < 40; ++k)
+            CHECK(draws[generation_began + k] == draws[generation_began]); // all of a generation
+        if (generation_began > 0) CHECK(draws[generation_began] > draws[generation_began - 1]);
+        CHECK(s.simulations == calls);
+        if (s.simulations < 1990) // a search that ends has no trials left
+            for (std::size_t k = 0; k < 2; ++k) CHECK(s.trials[k] >= 5);
+        generation_began = calls;
+        return true;
+    });
+    CHECK(calls <= 2000);
+    CHECK(found.trials.front() >= 5);
+}
+TEST_CASE(
+    "genetic: on a cost of chance the search is the same in any order of work, and resumed from its text") {
+    const auto whole = tune_genetic(box, by_chance, 1500, {.seed = 3}, go_on);
+    CHECK(same(whole, tune_genetic(box, by_chance, 1500, {.seed = 3}, go_on, {}, backwards())));
+    const auto part = tune_genetic(box, by_chance, 1500, {.seed = 3},
+                                   [](const genetic_state& s) { return s.generation < 6; });
+    CHECK(same(tune_genetic(box, by_chance, 1500, {.seed = 3}, go_on, read_genetic(written(part))), whole));
+    const auto half = [](const std::vector<double>& x, std::uint64_t draw) {
+        return x[0] < 0 && draw % 3 == 1 ? std::nan("") : by_chance(x, draw); // fails now and then
+    };
+    const auto careful = tune_genetic(box, half, 3000, {}, go_on);
+    CHECK(std::isfinite(careful.best()));
+    CHECK(best_of(careful, box)[0] >= 0);
 }
 TEST_CASE("genetic: loops that cannot be simulated die out") {
     const auto half = [](const std::vector<double>& x) {
@@ -145,6 +208,7 @@ TEST_CASE("genetic: refuses ranges, options and texts that are none") {
     CHECK(with(box, {.population = 3}) == "genetic_options.population = 3: must be 4 or more");
     CHECK(with(box, {.population = 4, .elite = 4}) ==
           "genetic_options.elite = 4: must be below the population (4)");
+    CHECK(with(box, {.trials = 0}) == "genetic_options.trials = 0: must be 1 or more");
     CHECK(with(box, {.mutation = 1.5}) == "genetic_options.mutation = 1.5: must lie between 0 and 1");
     const auto state = tune_genetic(box, many_valleys, 100, {}, go_on);
     CHECK(refused([&] {

@@ -75,6 +75,11 @@ REFERENCE = {
 }
 
 
+# Never worse than trials at random places, on machines that neither search has seen.
+NEVER_WORSE = [("stage.tuning.ga", "stage.tuning.random", quantity)
+               for quantity in ("fitness_on_unseen_seed_1", "fitness_on_unseen_seed_2", "fitness_on_unseen", "fitness_on_unseen_worst")]
+
+
 def tolerance(identifier):
     return 0.02 if identifier.startswith(("thesis.loop", "thesis.repetitive", "thesis.frf")) else 0.10
 
@@ -109,6 +114,10 @@ def faults(rows):
                 yield f"{identifier} {quantity}: no row"
             elif found[identifier, quantity]["simulated"] is None:
                 yield f"{identifier} {quantity}: no figure"
+    for one, other, quantity in NEVER_WORSE:
+        costs = [found.get((identifier, quantity), {}).get("simulated") for identifier in (one, other)]
+        if None in costs or costs[0] > costs[1]:
+            yield f"{one} {quantity}: {costs[0]} beside {costs[1]} of {other}"
     for key, reference in REFERENCE.items():
         if key in found and found[key]["reference_computation"] != reference:
             yield f"{' '.join(key)}: the reference is {reference}, not {found[key]['reference_computation']}"

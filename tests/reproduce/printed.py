@@ -5,7 +5,8 @@
 printed.py REPRODUCTION.md [SOURCES]
 
 Counts the list: of every number either ours is there, or a reason. Where SOURCES (the folder of the three texts) is there: every
-number in the list is in the text of its source letter for letter, and every number in the tables of the text is in the list.
+number in the list is in the text of its source letter for letter, every number in the tables of the text is in the list, and every
+figure, table and equation of the texts is among the parts.
 """
 import pathlib
 import re
@@ -52,6 +53,58 @@ def count_faults(listed):
         for table, wanted in cells.items():
             if tables.get((source, table), 0) != wanted:
                 yield f"{source} Table {table}: {tables.get((source, table), 0)} numbers in the list, {wanted} in the table"
+
+
+def numbers_named(text, what):
+    """Of "Figs. 2.7 to 2.10 and B.1" or "eqs. (2.3-2.21)": every number, as (letter or chapter, number)."""
+    found = set()
+    for begin, end in re.findall(what, text):
+        chapter, first = begin.split(".")
+        last = int(end.split(".")[1]) if end else int(first)
+        found |= {(chapter, number) for number in range(int(first), last + 1)}
+    return found
+
+
+def parts_of(path, source):
+    """The places of the parts of one source, a line each."""
+    listed = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("\n## ")[0]
+    section = next(each for each in listed.split("\n### ") if each.startswith(source))
+    return "\n".join(line.split("|")[1] for line in section.splitlines() if line.startswith("| "))
+
+
+def without_others(parts):
+    """Numbers of figures alone: no equations, sections and tables."""
+    return re.sub(r"\([^)]*\)|(?:[Ss]ection|Tables?) [\d.]+(?:, \d+)*", "", parts)
+
+
+def part_faults(path, folder):
+    """Every figure, table and equation that the texts number is a part in the list."""
+    wanted, listed = set(), set()
+    for source, pattern in SOURCE_FILES.items():
+        text, parts = text_of(folder, pattern), parts_of(path, source)
+        if not text:
+            continue
+        add = lambda to, kind, numbers: to.update((source, kind, *each) for each in numbers)
+        if source == "[Jamaludin2008]":
+            add(wanted, "figure", numbers_named(text, r"Fig(?:ure|\.) ?([1-5B-D]\.\d+)()\b"))
+            add(wanted, "table", numbers_named(text, r"Table ([1-5]\.\d+)()\b"))
+            add(wanted, "equation", numbers_named(text, r"\(([2-5]\.\d+)()\)"))
+            add(listed, "figure", numbers_named(without_others(parts), r"([1-5B-D]\.\d+)(?: to ([1-5B-D]\.\d+))?"))
+            add(listed, "table", numbers_named(parts, r"Table ([1-5]\.\d+)()"))
+            add(listed, "equation", numbers_named(parts, r"\(([2-5]\.\d+)(?:-([2-5]\.\d+))?\)"))
+            continue
+        one = lambda found: {("", n) for begin, end in found for n in range(int(begin), int(end or begin) + 1)}
+        add(wanted, "figure", one(re.findall(r"Fig\. ?(\d+)()\b", text)))
+        add(wanted, "equation", one(re.findall(r"\((\d{1,2})()\)", text)))
+        add(wanted, "table", one(re.findall(r"Table (\d+)()\b", text)))
+        add(listed, "figure", one(re.findall(r"(\d+)(?: to (\d+))?", without_others(parts))))
+        add(listed, "equation", one(re.findall(r"\((\d+)(?:-(\d+))?\)", parts)))
+        tables = " ".join(re.findall(r"Tables? ([\d, ]+)", parts))
+        add(listed, "table", one(re.findall(r"(\d+)()", tables)))
+    for source, kind, chapter, number in sorted(wanted - listed):
+        yield f"{source}: {kind} {chapter}{'.' * bool(chapter)}{number} is not among the parts"
+    if len(wanted) < 250:
+        yield f"only {len(wanted)} figures, tables and equations found in the texts"
 
 
 def text_of(folder, pattern):
@@ -103,6 +156,7 @@ def main():
     whole = len(sys.argv) > 2 and pathlib.Path(sys.argv[2]).is_dir()
     if whole:
         faults += text_faults(listed, sys.argv[2])
+        faults += part_faults(sys.argv[1], sys.argv[2])
     for fault in faults[:40]:
         print("FAILED:", fault)
     cannot = sum(1 for row in listed if row[6].startswith("cannot"))

@@ -7,13 +7,14 @@
 /// What a mistyped command line may have meant.
 namespace quadrant_page {
 
-/// "did you mean --json?" for the first word that names no subcommand or option; empty when every word does.
+/// "there is no --jsn; did you mean --json?" for the first word that names no subcommand or option; empty when
+/// every word does.
 inline std::string nearest_option(const CLI::App& program, int argc, const char* const* argv) {
     using quadrant::diagnosis::detail::suggestion;
     const CLI::App* command = &program;
     const auto ask = [](const std::string& word, const std::vector<std::string>& names) {
         const std::string text = suggestion(word, names);
-        return text.empty() ? text : fmt::format("{}{}", word, text);
+        return text.empty() ? text : fmt::format("there is no {}{}", word, text);
     };
     const auto subcommands = program.get_subcommands([](const CLI::App*) { return true; });
     for (int k = 1; k < argc; ++k) {
@@ -36,13 +37,14 @@ inline std::string nearest_option(const CLI::App& program, int argc, const char*
     return "";
 }
 
-/// Prints what CLI11 has to say, with what may have been meant; `refused` is the exit code of a wrong command
-/// line.
+/// Prints what may have been meant, or else what CLI11 has to say: after a mistyped word it asks for what was
+/// given under a wrong name. `refused` is the exit code of a wrong command line.
 inline int said(const CLI::App& program, const CLI::ParseError& fault, int argc, const char* const* argv,
                 int refused) {
-    if (program.exit(fault) == 0) return 0;
-    if (const auto hint = nearest_option(program, argc, argv); !hint.empty())
-        std::fprintf(stderr, "%s: %s\n", program.get_name().c_str(), hint.c_str());
+    const auto hint = fault.get_exit_code() == 0 ? "" : nearest_option(program, argc, argv);
+    if (hint.empty()) return program.exit(fault) == 0 ? 0 : refused;
+    std::fprintf(stderr, "%s: %s\nRun with --help for more information.\n", program.get_name().c_str(),
+                 hint.c_str());
     return refused;
 }
 

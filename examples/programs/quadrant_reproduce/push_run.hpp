@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "observer_slots.hpp"
-
-#include <quadrant/friction/coulomb_viscous.hpp>
+#include "one_axis.hpp"
 
 #include <complex>
 #include <vector>
@@ -50,31 +49,30 @@ private:
     std::vector<std::pair<double, double>> sines_;
     cutting_force<15> cutter_;
 };
-/// Runs loop and motor from 0 to `end`; from `counts` on it goes into the rms.
-template <class Loop, class Motor>
-push_result run_push(Loop loop, Motor motor, const push& p, double counts, double end) {
+/// Runs the axis from 0 to `end`; from `counts` on it goes into the rms.
+template <class Axis> push_result run_push(Axis axis, const push& p, double counts, double end) {
     pushing force(p);
-    using motion = typename Loop::motion;
+    using motion = typename Axis::motion;
     const double amplitude = p.tracking ? 0.03 : 0, w = 0.1 / 0.03, T = period.value();
     push_result out;
     std::complex<double> sum = 0;
     double squares = 0, samples = 0;
-    auto before = motor.now().v;
+    auto before = axis.now().v;
     for (long k = 0; double(k) * T < end; ++k) {
         const double t = double(k) * T;
         const motion r{amplitude * (1 - std::cos(w * t)) * 1_m, amplitude * w * std::sin(w * t) * 1_mps,
                        amplitude * w * w * std::cos(w * t) * 1_mps2};
-        const double error = 1e6 * (r.position - motor.now().x).value();
-        if (!(std::abs(error) < 2000) || motor.faulted() || loop.limited()) return {.diverged = true};
+        const double error = 1e6 * (r.position - axis.now().x).value();
+        if (!(std::abs(error) < 2000) || axis.stopped()) return {.diverged = true};
         const auto pushes = force.at(t);
         out.time.push_back(t), out.error.push_back(error), out.force.push_back(pushes.value());
         if (t >= counts) {
             squares += error * error, samples += 1;
             sum += error * std::polar(1.0, -2 * pi_ * milling_harmonics::fundamental.value() * t);
         }
-        loop.box.disturbance.sense((motor.now().v - before) / period);
-        before = motor.now().v;
-        motor(loop(r, std::round(motor.now().x.value() / 250e-9) * 250_nm), pushes);
+        axis.disturbance().sense((axis.now().v - before) / period);
+        before = axis.now().v;
+        axis.step(r, r, pushes);
     }
     out.rms = std::sqrt(squares / samples);
     out.first = 2 * std::abs(sum) / samples;
@@ -84,38 +82,34 @@ push_result run_push(Loop loop, Motor motor, const push& p, double counts, doubl
 
 /// At rest the plant is linear, as the thesis analyses it: pre-sliding friction would hold the table. While
 /// tracking it is on GMS friction, which is fed forward.
-template <class Slot> push_result pushed(const push& p, typename Slot::parameters slot = {}) {
+template <class Slot, template <class, class> class Axis = one_axis>
+push_result pushed(const push& p, typename Slot::parameters slot = {}) {
     const axis& a = slot.of;
-    const quantity<si::mass> mass = a.kf / a.B;
     if (p.tracking) {
         using boxes = milling_axis_boxes<gms_model::box, Slot>;
-        auto c = controller_of<boxes>(a);
-        c.friction = gms_model::of(a);
+        using motor = linear_motor<maxwell_slip<4>>;
+        const quantity<si::mass> mass = a.kf / a.B;
+        one_axis_parameters<boxes, motor> is{
+            controller_of<boxes>(a),
+            {.mass = mass,
+             .force_constant = a.kf,
+             .friction = gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0)),
+             .delay = 0.4_ms,
+             .substeps = 10},
+            250_nm};
+        is.controller.friction = gms_model::of(a);
         slot.of.A = a.A_gms; // beside GMS friction
-        c.disturbance = slot;
-        linear_motor<maxwell_slip<4>>::parameters m{
-            .mass = mass,
-            .force_constant = a.kf,
-            .friction = gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0)),
-            .delay = 0.4_ms,
-            .substeps = 10};
-        m.friction.curve.viscous += a.A_gms * mass;
+        is.controller.disturbance = slot;
+        is.motor.friction.curve.viscous += a.A_gms * mass;
         const double cycle = 2 * pi_ * 0.03 / 0.1;
-        return detail::run_push(milling_axis<boxes>{.box = {c, period}},
-                                linear_motor<maxwell_slip<4>>(m, period), p, cycle, 2 * cycle);
+        return detail::run_push(Axis<boxes, motor>(is), p, cycle, 2 * cycle);
     }
     using boxes = milling_axis_boxes<absent<signal::velocity, signal::voltage>, Slot>;
-    auto c = controller_of<boxes>(a);
-    c.plant_pole = a.A;
-    c.disturbance = slot;
-    return detail::run_push(milling_axis<boxes>{.box = {c, period}},
-                            linear_motor<coulomb_viscous<>>({.mass = mass,
-                                                             .force_constant = a.kf,
-                                                             .friction = {.viscous = a.A * mass},
-                                                             .delay = 0.4_ms,
-                                                             .substeps = 10},
-                                                            period),
-                            p, p.seconds / 2, p.seconds);
+    using motor = linear_motor<coulomb_viscous<>>;
+    one_axis_parameters<boxes, motor> is{controller_of<boxes>(a), linear_machine(a, 0.4_ms, 10), 250_nm};
+    is.controller.plant_pole = a.A;
+    is.controller.disturbance = slot;
+    return detail::run_push(Axis<boxes, motor>(is), p, p.seconds / 2, p.seconds);
 }
 
 } // namespace thesis

@@ -4,6 +4,7 @@
 #include "parts.hpp"
 
 #include "quadrant_gap/comparison_report.hpp"
+#include "quadrant_gap/log_of_text.hpp"
 #include "quadrant_gap/make_match.hpp"
 #include "quadrant_gap/report.hpp"
 #include "quadrant_gap/settings.hpp"
@@ -17,13 +18,11 @@
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/forecast.hpp>
-#include <quadrant/diagnosis/import/own_header.hpp>
 #include <quadrant/diagnosis/import/read_map.hpp>
 #include <quadrant/diagnosis/import/table_file.hpp>
 #include <quadrant/diagnosis/import_log.hpp>
 #include <quadrant/diagnosis/init.hpp>
 #include <quadrant/diagnosis/read_diagnosis.hpp>
-#include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 #include <quadrant/diagnosis/text/output_file.hpp>
@@ -69,34 +68,19 @@ std::string csv_of(const std::vector<std::pair<std::string, array>>& columns) {
 }
 
 /// Text of a log, as our own reader has it, or by its names with units; a MAT-file as a table.
-machine_log log_of_text(const std::string& bytes, const std::string& name) {
-    const std::string text = text_of_table_file(bytes, name);
-    std::optional<bad_input> refused;
-    try {
-        return detail::log_reader(text, name).read();
-    } catch (const bad_input& fault) {
-        refused = fault;
-    }
-    std::optional<import_map> map;
-    try {
-        map = map_of_header(text, name);
-    } catch (const bad_input&) {
-        throw *refused;
-    }
-    auto imported = import_log(*map, text, name);
-    check_physics(imported);
-    imported.log.notes.insert(imported.log.notes.begin(), imported.notes.begin(), imported.notes.end());
-    return std::move(imported.log);
+machine_log log_of_file(const std::string& bytes, const std::string& name) {
+    return quadrant_gap::log_of_text(text_of_table_file(bytes, name), name,
+                                     [&](const import_map& map, const std::string& table) {
+                                         return quadrant_gap::checked(import_log(map, table, name));
+                                     });
 }
 
 machine_log mapped_log(const std::string& map, const std::string& map_name,
                        const std::vector<std::pair<std::string, std::string>>& files, bool resample) {
     std::vector<foreign_file> tables;
     for (const auto& [bytes, name] : files) tables.push_back({text_of_table_file(bytes, name), name});
-    auto imported = import_log(read_import_map(map, map_name), tables, {.resample = resample});
-    check_physics(imported);
-    imported.log.notes.insert(imported.log.notes.begin(), imported.notes.begin(), imported.notes.end());
-    return std::move(imported.log);
+    return quadrant_gap::checked(import_log(read_import_map(map, map_name), tables, {.resample = resample}))
+        .log;
 }
 
 /// What the axes of a log are asked to do, as a planned motion.
@@ -216,7 +200,7 @@ void add_logs(py::module_& m) {
         "write", [](const std::string& path, const std::string& text) { write_aside(path, text); },
         py::arg("path"), py::arg("text"), release());
     m.def("csv_of", &csv_of, py::arg("columns"));
-    m.def("read_log", &log_of_text, py::arg("text"), py::arg("name"), release());
+    m.def("read_log", &log_of_file, py::arg("text"), py::arg("name"), release());
     m.def("map_log", &mapped_log, py::arg("map"), py::arg("map_name"), py::arg("files"), py::arg("resample"),
           release());
     m.def(

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,14 +40,16 @@ struct genetic_options {
     double blend = 0.5;         ///< how far beyond its parents a child may lie, of their distance; >= 0
     double mutation = 0.2;      ///< chance of each gene; 0 ... 1
     double width = 0.1;         ///< standard deviation of a mutation, of the gene's range; > 0
+    std::uint64_t trials = 4;   ///< where the cost is a draw: before one may live on; 1 or more
     std::uint64_t seed = 1;
 };
 
 /// All that a search knows: run on from it, or from what read_genetic makes of its text.
 struct genetic_state {
-    std::vector<std::vector<double>> population; ///< shares 0 ... 1, best first
-    std::vector<double> cost;                    ///< of each; infinite: could not be simulated
-    std::uint64_t generation = 0, simulations = 0;
+    std::vector<std::vector<double>> population; ///< shares 0 ... 1, least cost first
+    std::vector<double> cost;                    ///< of each, the mean of its trials; infinite: it failed
+    std::vector<std::uint64_t> trials;           ///< of each; one, unless the cost is a draw
+    std::uint64_t generation = 0, simulations = 0, draws = 0;
 
     double best() const { return cost.front(); }
     double mean() const { ///< of those that could be simulated
@@ -124,6 +127,20 @@ inline std::vector<double> child(const genetic_state& s, const genetic_options& 
     }
     return out;
 }
+
+/// Least cost first; of equal costs the earlier.
+inline void sort(genetic_state& s) {
+    std::vector<std::size_t> order(s.cost.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return s.cost[a] < s.cost[b]; });
+    genetic_state sorted = s;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        sorted.population[k] = std::move(s.population[order[k]]);
+        sorted.cost[k] = s.cost[order[k]], sorted.trials[k] = s.trials[order[k]];
+    }
+    s = std::move(sorted);
+}
 } // namespace detail
 
 /// Work one after the other; for several threads hand over something like it, such as one that asks a pool.
@@ -141,6 +158,10 @@ struct one_by_one {
 /// seed, generation and child. Parents blend, a child lies up to `blend` of their distance beyond them
 /// [Eshelman1993]. It has converged when mean() and best() agree.
 /// Source: [LowKeck2003]: real-coded, reproduction by fitness, crossover, mutation.
+/// A cost that depends on chance, such as that of one machine of many or of an experiment, is a `cost(values,
+/// draw)`: the same number `draw` is the same machine. Each generation has draws of its own, or the search
+/// tunes to one draw. The least of many costs is mostly a lucky one: what is to live on is tried again until
+/// those at the head have had `trials` each, and once more in each generation; its cost is the mean.
 /// `each(n, work)` runs work(0) ... work(n - 1), in any order, on any threads; cost is then called from those.
 /// Throws for genes without a range, options out of theirs, and a state of another size.
 template <class Cost, class Tell, class Each = one_by_one>
@@ -162,32 +183,52 @@ genetic_state tune_genetic(const std::vector<gene>& genes, const Cost& cost, std
             "must lie between 0 and 1");
     require_not_negative("genetic_options.blend", o.blend);
     require_positive("genetic_options.width", o.width);
+    require(o.trials >= 1, "genetic_options.trials", double(o.trials), "must be 1 or more");
     for (const auto& one : s.population)
         require(one.size() == genes.size() && s.cost.size() == o.population &&
-                    s.population.size() == o.population,
+                    s.population.size() == o.population && s.trials.size() == o.population,
                 "tune_genetic.state", double(one.size()), "must be of these genes and this population");
+    constexpr bool is_draw = std::is_invocable_v<const Cost&, const std::vector<double>&, std::uint64_t>;
+    const auto tried = [&](const std::vector<double>& shares, std::uint64_t draw) {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < genes.size(); ++i) values.push_back(genes[i].at(shares[i]));
+        double c;
+        if constexpr (is_draw)
+            c = cost(values, draw);
+        else
+            c = cost(values);
+        return std::isfinite(c) ? c : HUGE_VAL;
+    };
     for (;;) {
-        const std::size_t kept = s.population.empty() ? 0 : o.elite, born = o.population - kept;
-        if (s.simulations + born > simulations) return s;
+        const std::size_t kept = s.population.empty() ? 0 : o.elite, known = is_draw ? 0 : kept;
+        if (s.simulations + o.population - known > simulations) return s;
         genetic_state next;
-        next.generation = s.generation + 1, next.simulations = s.simulations + born;
-        std::vector<std::vector<double>> people(o.population);
-        std::vector<double> costs(o.population);
-        for (std::size_t k = 0; k < kept; ++k) people[k] = s.population[k], costs[k] = s.cost[k];
-        each(born, [&](std::size_t k) {
-            auto one = detail::child(s, o, genes.size(), {o.seed, s.generation, k});
-            std::vector<double> values;
-            for (std::size_t i = 0; i < genes.size(); ++i) values.push_back(genes[i].at(one[i]));
-            const double c = cost(values);
-            costs[kept + k] = std::isfinite(c) ? c : HUGE_VAL;
-            people[kept + k] = std::move(one);
+        next.generation = s.generation + 1, next.simulations = s.simulations + o.population - known;
+        next.population.resize(o.population), next.cost.resize(o.population);
+        next.trials.resize(o.population, 0);
+        for (std::size_t k = 0; k < kept; ++k)
+            next.population[k] = s.population[k], next.cost[k] = s.cost[k], next.trials[k] = s.trials[k];
+        const auto once_more = [&](std::size_t k, std::uint64_t draw) {
+            const double c = tried(next.population[k], draw), sum = next.cost[k] * double(next.trials[k]) + c;
+            next.cost[k] = sum / double(++next.trials[k]);
+        };
+        each(o.population - known, [&](std::size_t n) {
+            const std::size_t k = known + n;
+            if (k >= kept)
+                next.population[k] = detail::child(s, o, genes.size(), {o.seed, s.generation, k - kept});
+            once_more(k, s.draws);
         });
-        std::vector<std::size_t> order(o.population);
-        for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-        for (const std::size_t k : order)
-            next.population.push_back(std::move(people[k])), next.cost.push_back(costs[k]);
+        next.draws = s.draws + 1;
+        detail::sort(next);
+        while (is_draw) {
+            std::vector<std::size_t> doubtful;
+            for (std::size_t k = 0; k < std::max<std::size_t>(o.elite, 1); ++k)
+                if (next.trials[k] < o.trials && std::isfinite(next.cost[k])) doubtful.push_back(k);
+            if (doubtful.empty() || next.simulations + doubtful.size() > simulations) break;
+            each(doubtful.size(), [&](std::size_t n) { once_more(doubtful[n], next.draws); });
+            next.simulations += doubtful.size(), ++next.draws;
+            detail::sort(next);
+        }
         s = std::move(next);
         if (!tell(static_cast<const genetic_state&>(s))) return s;
     }
@@ -200,10 +241,10 @@ inline std::string written(const genetic_state& s) {
         char text[32];
         out.append(text, std::to_chars(text, text + sizeof text, number).ptr).append(1, '\n');
     };
-    add(s.generation), add(s.simulations), add(std::uint64_t(s.population.size()));
+    add(s.generation), add(s.simulations), add(s.draws), add(std::uint64_t(s.population.size()));
     add(std::uint64_t(s.population.empty() ? 0 : s.population.front().size()));
     for (std::size_t k = 0; k < s.population.size(); ++k) {
-        add(s.cost[k]);
+        add(s.cost[k]), add(s.trials[k]);
         for (const double x : s.population[k]) add(x);
     }
     return out;
@@ -220,12 +261,12 @@ inline genetic_state read_genetic(const std::string& text) {
     };
     genetic_state s;
     std::uint64_t people = 0, genes = 0;
-    next(s.generation), next(s.simulations), next(people), next(genes);
+    next(s.generation), next(s.simulations), next(s.draws), next(people), next(genes);
     require(people <= text.size() && genes <= text.size(), "read_genetic.population", double(people),
             "must be no more than there are numbers (" + quadrant::detail::shortest(double(text.size())) + ")");
     for (std::uint64_t k = 0; k < people; ++k) {
-        s.cost.emplace_back();
-        next(s.cost.back());
+        s.cost.emplace_back(), s.trials.emplace_back();
+        next(s.cost.back()), next(s.trials.back());
         s.population.emplace_back();
         for (std::uint64_t i = 0; i < genes; ++i)
             s.population.back().emplace_back(), next(s.population.back().back());

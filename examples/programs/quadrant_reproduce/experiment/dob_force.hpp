@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../friction_run.hpp"
+#include "../one_axis.hpp"
 #include "../row.hpp"
-
-#include <quadrant/friction/coulomb_viscous.hpp>
 
 #include <cmath>
 #include <complex>
@@ -12,33 +11,25 @@ namespace quadrant_reproduce {
 
 /// Amplitude [um] of the error that a sinusoidal push of 1 V leaves on the resting, linear axis; nothing when
 /// it diverges.
-template <class Observer>
+template <class Observer, template <class, class> class Axis = thesis::one_axis>
 std::optional<double> error_under_push(const thesis::axis& a, typename Observer::box::parameters observer,
                                        double hertz) {
     using namespace quadrant;
     using namespace quadrant::literals;
-    using loop_type = milling_axis<milling_axis_boxes<thesis::no_friction_model::box, typename Observer::box>>;
-    using motor_type = linear_motor<coulomb_viscous<>>;
-    auto controller = thesis::controller_of<decltype(loop_type::box)>(a);
+    using boxes = milling_axis_boxes<thesis::no_friction_model::box, typename Observer::box>;
+    using motor = linear_motor<coulomb_viscous<>>;
+    auto controller = thesis::controller_of<boxes>(a);
     controller.plant_pole = a.A; // friction in it
     controller.disturbance = observer;
-    loop_type loop{.box = {controller, thesis::period}};
-    const quantity<si::mass> mass = a.kf / a.B;
-    motor_type motor({.mass = mass,
-                      .force_constant = a.kf,
-                      .friction = {.viscous = a.A * mass},
-                      .delay = a.delay - 0.5 * thesis::period}, // the hold is the rest of Td
-                     thesis::period);
-    const typename loop_type::motion rest{};
-    quantity<si::length> measured{};
+    Axis<boxes, motor> axis({controller, thesis::linear_machine(a, a.delay - 0.5 * thesis::period, 10)});
+    const typename Axis<boxes, motor>::motion rest{}; // the hold is the rest of Td
     std::complex<double> sum = 0;
     const int second = 2000, settles = 2 * second;
     for (int k = 0; k < settles + second; ++k) {
         const double angle = 2 * thesis::pi_ * hertz * k * thesis::period.value();
-        if (k >= settles) sum += motor.now().x.value() * std::polar(2.0 / second, -angle);
-        measured = motor(loop(rest, measured), a.kf * (std::sin(angle) * 1_V));
-        if (motor.faulted() || loop.faulted() || loop.limited() || !(std::abs(measured.value()) < 0.01))
-            return std::nullopt;
+        if (k >= settles) sum += axis.now().x.value() * std::polar(2.0 / second, -angle);
+        axis.step(rest, rest, a.kf * (std::sin(angle) * 1_V));
+        if (axis.stopped() || !(std::abs(axis.now().x.value()) < 0.01)) return std::nullopt;
     }
     return 1e6 * std::abs(sum);
 }

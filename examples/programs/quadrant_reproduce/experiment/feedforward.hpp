@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../friction_run.hpp"
+#include "../one_axis.hpp"
 #include "../row.hpp"
-
-#include <quadrant/friction/coulomb_viscous.hpp>
 
 #include <cmath>
 
@@ -17,39 +16,37 @@ struct feedforward_run {
     line error;
     double largest = 0;
 };
-inline feedforward_run follow_sinusoid(const thesis::axis& a, fed how, const std::string& name) {
+template <template <class, class> class Axis = thesis::one_axis>
+feedforward_run follow_sinusoid(const thesis::axis& a, fed how, const std::string& name) {
     using namespace quadrant;
     using namespace quadrant::literals;
-    using loop_type = milling_axis<milling_axis_boxes<>>;
-    auto p = thesis::controller_of<milling_axis_boxes<>>(a);
+    using boxes = milling_axis_boxes<>;
+    using motor = linear_motor<coulomb_viscous<>>;
+    auto p = thesis::controller_of<boxes>(a);
     p.plant_pole = a.A; // friction in it
-    loop_type loop{.box = {p, thesis::period}};
-    milling_axis_boxes<> bare(p, thesis::period); // P and PI alone, nothing fed forward
-    const quantity<si::mass> mass = a.kf / a.B;
-    linear_motor<coulomb_viscous<>> motor({.mass = mass,
-                                           .force_constant = a.kf,
-                                           .friction = {.viscous = a.A * mass},
-                                           .delay = a.delay - 0.5 * thesis::period,
-                                           .substeps = 10},
-                                          thesis::period);
+    const auto machine = thesis::linear_machine(a, a.delay - 0.5 * thesis::period, 10);
+    Axis<boxes, motor> axis({p, machine});
+    boxes bare(p, thesis::period); // P and PI alone, nothing fed forward
+    motor bare_motor(machine, thesis::period);
     const double w = 2 * thesis::pi_ * 10, size = 1e-3, T = thesis::period.value();
     const auto motion = [&](double t) {
-        return loop_type::motion{size * (1 - std::cos(w * t)) * 1_m, size * w * std::sin(w * t) * 1_mps,
-                                 size * w * w * std::cos(w * t) * 1_mps2};
+        return typename Axis<boxes, motor>::motion{size * (1 - std::cos(w * t)) * 1_m,
+                                                   size * w * std::sin(w * t) * 1_mps,
+                                                   size * w * w * std::cos(w * t) * 1_mps2};
     };
     feedforward_run out{.error = {.name = name, .x = {}, .y = {}}};
     for (int k = 0; k < 4000; ++k) {
         const double t = k * T;
         auto now = motion(t), ahead = motion(how == fed::model_in_advance ? t + a.delay.value() : t);
-        const double error = 1e3 * (now.position.value() - motor.now().x.value());
+        const auto at = how == fed::nothing ? bare_motor.now().x : axis.now().x;
+        const double error = 1e3 * (now.position.value() - at.value());
         if (t < 1) out.error.x.push_back(t), out.error.y.push_back(error);
         if (t >= 1) out.largest = std::max(out.largest, std::abs(error));
-        const auto reading = motor.now().x;
         if (how == fed::nothing)
-            motor(bare.velocity_loop(bare.position_loop(now.position - reading) -
-                                     bare.measured_notch(bare.measured_velocity(reading))));
+            bare_motor(bare.velocity_loop(bare.position_loop(now.position - at) -
+                                          bare.measured_notch(bare.measured_velocity(at))));
         else
-            motor(loop(now, ahead, reading));
+            axis.step(now, ahead);
     }
     return out;
 }

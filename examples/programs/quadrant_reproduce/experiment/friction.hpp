@@ -133,7 +133,7 @@ inline experiment friction() {
         {of(y, ".gms"),
          [=] {
              return friction_case<gms_model, no_observer>(y, of(y, ".gms"), "GMS",
-                                                          {1.3, 0.41, late, counts, 50}, 20);
+                                                          {1.3, 0.41, late, counts, 50}, 12);
          }},
     };
     return e;

@@ -38,8 +38,8 @@ inline double stage_cost(const std::vector<double>& genes, double heavier = 0) {
     }
     return cost.value();
 }
-/// Mean cost on machines spread over +-1 % of the mass, `first` the number of the first: one alone,
-/// or five, let a search learn where the counts of their encoders happen to lie.
+/// Mean cost on machines spread over +-1 % of the mass, `first` the number of the first: where the counts of
+/// their encoders happen to lie is chance.
 inline double stage_cost_on(int first, int machines, const std::vector<double>& genes) {
     double sum = 0;
     for (int k = first; k < first + machines; ++k) {
@@ -48,17 +48,23 @@ inline double stage_cost_on(int first, int machines, const std::vector<double>& 
     }
     return sum / machines;
 }
-inline constexpr int stage_machines = 15, stage_unseen = 40;
-inline double stage_searched_cost(const std::vector<double>& genes) {
-    return stage_cost_on(0, stage_machines, genes);
-}
-/// What is left of it on machines that no search has seen.
-inline double stage_judged(const std::vector<double>& genes) { return stage_cost_on(100, stage_unseen, genes); }
+/// What each search may spend, and what judges it: machines that no search has seen.
+inline constexpr int stage_simulations = 3750;
+inline double stage_judged(const std::vector<double>& genes) { return stage_cost_on(100'000, 100, genes); }
 
-/// Each search is made twice, with other random numbers, and may try so often; fifteen simulations are a trial.
+/// A search that keeps its machines tunes to their counts: fifteen of them, so that a trial says something.
+inline constexpr int stage_kept = 15, stage_kept_trials = stage_simulations / stage_kept;
+inline double stage_cost_on_kept(const std::vector<double>& genes) {
+    return stage_cost_on(0, stage_kept, genes);
+}
+/// The genetic algorithm has others in each generation, and few will do: what lives on has met more.
+inline constexpr int stage_drawn = 5;
+inline double stage_cost_on_drawn(const std::vector<double>& genes, std::uint64_t draw) {
+    return stage_cost_on(1000 + int(draw) * stage_drawn, stage_drawn, genes);
+}
+
+/// Each search is made so often, with other random numbers.
 inline constexpr std::array<std::uint64_t, 2> stage_seeds{1, 2};
-inline constexpr int stage_trials = 250;
-inline int stage_simulations(std::size_t trials) { return static_cast<int>(trials) * stage_machines; }
 inline const char* const stage_tuning_title = "Tuning: the best so far";
 inline picture stage_tuning_picture(line best) {
     return {stage_tuning_title,
@@ -73,7 +79,7 @@ inline row stage_tuning_row(const std::string& id, const std::string& what, doub
                             const std::string& note) {
     return {id, what, "", cost, {}, {}, {}, note};
 }
-/// What one search found, with the least cost so far after each of its trials, or now and then.
+/// What one search found, with the least cost so far after so many simulations.
 struct stage_found {
     std::vector<double> genes{};
     double lowest = HUGE_VAL;
@@ -96,7 +102,7 @@ outcome stage_searches(const std::string& id, const std::string& name, const Sea
         out.pictures = {stage_tuning_picture(std::move(found.best))};
     }
     out.rows.push_back(stage_tuning_row(id, "fitness_on_unseen", mean,
-                                        "mean of both, on 40 machines that were not searched on"));
+                                        "mean of both, on 100 machines that were not searched on"));
     out.rows.push_back(stage_tuning_row(id, "fitness_on_unseen_worst", worst, ""));
     return out;
 }
@@ -106,48 +112,49 @@ inline stage_found stage_tuning_genetic(std::uint64_t seed) {
     quadrant::analysis::genetic_options how;
     how.seed = seed;
     how.population = 20;
-    const auto last = quadrant::analysis::tune_genetic(
-        stage_genes, stage_searched_cost, stage_trials, how, [&](const quadrant::analysis::genetic_state& s) {
-            out.best.x.push_back(stage_simulations(s.simulations));
-            out.best.y.push_back(s.best());
-            return true;
-        });
+    const auto last =
+        quadrant::analysis::tune_genetic(stage_genes, stage_cost_on_drawn, stage_simulations / stage_drawn, how,
+                                         [&](const quadrant::analysis::genetic_state& s) {
+                                             out.best.x.push_back(double(s.simulations) * stage_drawn);
+                                             out.best.y.push_back(s.best());
+                                             return true;
+                                         });
     out.genes = quadrant::analysis::best_of(last, stage_genes);
     out.lowest = last.best();
     return out;
 }
 
-/// As many trials at random places.
+/// Trials at random places.
 inline stage_found stage_tuning_random(std::uint64_t seed) {
     stage_found out;
     quadrant::analysis::detail::child_random random(seed, 0, 0);
-    for (int trial = 0; trial < stage_trials; ++trial) {
+    for (int trial = 0; trial < stage_kept_trials; ++trial) {
         std::vector<double> genes;
         for (const auto& gene : stage_genes) genes.push_back(gene.at(random.uniform()));
-        const double cost = stage_searched_cost(genes);
+        const double cost = stage_cost_on_kept(genes);
         if (cost < out.lowest) out.lowest = cost, out.genes = genes;
-        out.best.x.push_back(stage_simulations(std::size_t(trial) + 1)), out.best.y.push_back(out.lowest);
+        out.best.x.push_back((trial + 1.0) * stage_kept), out.best.y.push_back(out.lowest);
     }
     return out;
 }
 
 #ifdef QUADRANT_NLOPT
-/// As many trials of NLopt's controlled random search.
+/// Trials of NLopt's controlled random search.
 inline stage_found stage_tuning_nlopt(std::uint64_t seed) {
     stage_found out;
     nlopt::srand(seed);
     nlopt::opt method(nlopt::GN_CRS2_LM, unsigned(stage_genes.size()));
     method.set_lower_bounds(0.0);
     method.set_upper_bounds(1.0);
-    method.set_maxeval(stage_trials);
+    method.set_maxeval(stage_kept_trials);
     method.set_min_objective(
         [](const std::vector<double>& share, std::vector<double>&, void* data) {
             std::vector<double> genes;
             for (std::size_t i = 0; i < share.size(); ++i) genes.push_back(stage_genes[i].at(share[i]));
             auto& found = *static_cast<stage_found*>(data);
-            const double cost = std::min(stage_searched_cost(genes), 1e9); // NLopt wants numbers
+            const double cost = std::min(stage_cost_on_kept(genes), 1e9); // NLopt wants numbers
             if (cost < found.lowest) found.lowest = cost, found.genes = genes;
-            found.best.x.push_back(stage_simulations(found.best.x.size() + 1));
+            found.best.x.push_back(double(found.best.x.size() + 1) * stage_kept);
             found.best.y.push_back(found.lowest);
             return cost;
         },
@@ -164,14 +171,13 @@ inline experiment stage_tuning() {
     experiment e{"Tuning the precision stage",
                  stage_source,
                  "Four genes (weight of position and of speed, drift of the Kalman filter, share of the "
-                 "believed friction) tuned on "
-                 "the source's fitness by our genetic algorithm, by as many trials at random places, and by "
-                 "NLopt's controlled "
-                 "random search (GN_CRS2_LM): twice each, 250 trials of 15 machines whose mass differs "
-                 "by up to 1 %, judged "
-                 "on 40 others. On one machine alone, or on five, a search learns where the counts of its "
-                 "encoder lie. The source "
-                 "gives no figures, and what its weights are is not printed.",
+                 "believed friction) tuned on the source's fitness, twice by each method with 3750 simulations "
+                 "of the move; machines differ by up to 1 % of the mass, and each result is evaluated on 100 "
+                 "others. Where the counts of an encoder lie is chance, and a search that keeps its machines "
+                 "tunes to it: trials at random places and NLopt's controlled random search (GN_CRS2_LM) have "
+                 "fifteen machines a trial, always the same. Our genetic algorithm has five others in each "
+                 "generation, and what lives on keeps the mean of all that it has met. The source gives no "
+                 "figures, and what its weights are is not printed.",
                  0.02,
                  {{ga, [=] { return stage_searches(ga, "genetic", stage_tuning_genetic); }},
                   {chance, [=] { return stage_searches(chance, "at random", stage_tuning_random); }}}};
