@@ -6,6 +6,7 @@
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"
+#include "log/thinned.hpp"
 #include "next/blind_spots.hpp"
 #include "next/next_experiment.hpp"
 #include "text/bad_input.hpp"
@@ -334,6 +335,18 @@ inline bool open_by_measured_command(const axis_case& c) {
            !(c.best().fit.plant.backlash > 0);
 }
 
+/// How many rows of a long record are taken as one. A measured command is not replayed, and no cause lies within
+/// a row of it: such a record needs no more rows than its time scale does. A described controller needs its own
+/// period, in which the corrected loop is simulated.
+inline std::size_t rows_in_one(const axis_description& axis, const axis_log& log, double period,
+                               const rules& r) {
+    if (axis.actuator.command_is != command_origin::measured || axis.controller || axis.drive.closes())
+        return 1;
+    const double corner = bandwidth_of(axis, log, period) / record_scales{.corner_Hz = 1}.bandwidth_Hz();
+    return std::clamp<std::size_t>(log.position.size() / r.rows_of_a_look, 1,
+                                   diagnosis::rows_in_one(corner, period));
+}
+
 /// What is left in both logs, in energy [N^2].
 inline double left_in_both(const axis_case& c) {
     return square(c.models.held_out_force(c.best())) + square(c.second_log(c.best()).force);
@@ -408,13 +421,23 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             logged = &transmission->carried;
         }
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
-        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
+        axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
         if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr) {
             const axis_log carried = transmission ? chain::carried_too(*transmission, axis, *found,
                                                                        machine.sample_period_s, holdout->file)
                                                   : *found;
             other = detail::with_neighbour(*holdout, carried, machine.sample_period_s, band);
+        }
+        double period = machine.sample_period_s;
+        if (const std::size_t n = detail::rows_in_one(axis, coupled, period, r); n > 1) {
+            out.notes.push_back(fmt::format("axis {}: {} samples of {:.4g} s are taken as one: the record is "
+                                            "long, its command is measured, "
+                                            "and above {:.3g} Hz the noise of the position hides the forces.",
+                                            axis.name, n, period, 0.6 * band));
+            coupled = thinned(coupled, n);
+            if (other) other = thinned(*other, n);
+            period *= static_cast<double>(n);
         }
         detail::add_own_effects(out.own_effects, axis);
         if (axis.controller && axis.controller->own) // its file's kind is known after all
@@ -434,8 +457,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             both = both_motions(axis, *detail::named(as_read.axes, axis.name),
                                 *detail::named(as_read_too->axes, axis.name), machine.sample_period_s);
         const auto look = [&](held_by how) {
-            return std::make_unique<axis_case>(rigid, both ? *both : coupled, other ? &*other : nullptr,
-                                               machine.sample_period_s, excluded, limits, tell, how);
+            return std::make_unique<axis_case>(rigid, both ? *both : coupled, other ? &*other : nullptr, period,
+                                               excluded, limits, tell, how);
         };
         auto found = look(soft ? held_by::loop : held_by::readings);
         detail::need_blocks(*found, log.file);
@@ -464,8 +487,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         }
         if (!both && detail::hides_what_the_other_shows(*found)) {
             tell("axis " + axis.name + ": again, fitted to the hold-out log");
-            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, machine.sample_period_s,
-                                                         excluded, limits, tell, held_by::readings);
+            auto exchanged = std::make_unique<axis_case>(rigid, *other, &coupled, period, excluded, limits,
+                                                         tell, held_by::readings);
             if (exchanged->at_floor() ||
                 detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
                 exchanged->controller = found->controller; // replayed from the log, as ever
