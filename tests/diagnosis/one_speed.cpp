@@ -133,7 +133,7 @@ TEST_CASE("search: a model without one of its effects has a force, and rivals be
     CHECK(models.plant_without(both, suspect::cogging).cogging.count == 0);
     const auto rest = models.without(both, &suspect::coulomb_friction);
     CHECK(rest.effects == std::vector<const effect*>{&suspect::cogging});
-    const auto other = models.exchanged(both, &suspect::coulomb_friction, &suspect::constant_force);
+    const auto other = models.exchanged(both, &suspect::coulomb_friction, {&suspect::constant_force}).front();
     CHECK(other.total > rest.total + rules{}.margin);
     CHECK(std::abs(other.total - both.total) < 0.1 * (both.total - rest.total)); // one torque under two names
     CHECK(workshop::near(-other.fit.plant.constant_force, both.fit.plant.friction.coulomb, 0.1));

@@ -6,6 +6,7 @@
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"
+#include "log/thinned.hpp"
 #include "next/blind_spots.hpp"
 #include "next/next_experiment.hpp"
 #include "text/bad_input.hpp"
@@ -334,6 +335,18 @@ inline bool open_by_measured_command(const axis_case& c) {
            !(c.best().fit.plant.backlash > 0);
 }
 
+/// How many rows of a long record are taken as one. A measured command is not replayed, and no cause lies within
+/// a row of it: such a record needs no more rows than its time scale does. A described controller needs its own
+/// period, in which the corrected loop is simulated.
+inline std::size_t rows_in_one(const axis_description& axis, const axis_log& log, double period,
+                               const rules& r) {
+    if (axis.actuator.command_is != command_origin::measured || axis.controller || axis.drive.closes())
+        return 1;
+    const double corner = bandwidth_of(axis, log, period) / record_scales{.corner_Hz = 1}.bandwidth_Hz();
+    return std::clamp<std::size_t>(log.position.size() / r.rows_of_a_look, 1,
+                                   diagnosis::rows_in_one(corner, period));
+}
+
 /// What is left in both logs, in energy [N^2].
 inline double left_in_both(const axis_case& c) {
     return square(c.models.held_out_force(c.best())) + square(c.second_log(c.best()).force);
@@ -408,13 +421,23 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             logged = &transmission->carried;
         }
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
-        const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
+        axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
         if (const auto found = holdout ? detail::named(holdout->axes, axis.name) : nullptr) {
             const axis_log carried = transmission ? chain::carried_too(*transmission, axis, *found,
                                                                        machine.sample_period_s, holdout->file)
                                                   : *found;
             other = detail::with_neighbour(*holdout, carried, machine.sample_period_s, band);
+        }
+        double period = machine.sample_period_s;
+        if (const std::size_t n = detail::rows_in_one(axis, coupled, period, r); n > 1) {
+            out.notes.push_back(fmt::format("axis {}: {} samples of {:.4g} s are taken as one: the record is "
+                                            "long, its command is measured, "
+                                            "and above {:.3g} Hz the noise of the position hides the forces.",
+                                            axis.name, n, period, 0.6 * band));
+            coupled = thinned(coupled, n);
+            if (other) other = thinned(*other, n);
+            period *= static_cast<double>(n);
         }
         detail::add_own_effects(out.own_effects, axis);
         if (axis.controller && axis.controller->own) // its file's kind is known after all
@@ -436,8 +459,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         const auto look = [&](held_by how, const axis_case* before, bool exchanged) {
             const axis_log& fitted = exchanged ? *other : both ? *both : coupled;
             const axis_log* const judged = exchanged ? &coupled : other ? &*other : nullptr;
-            return std::make_unique<axis_case>(rigid, fitted, judged, machine.sample_period_s, excluded, limits,
-                                               tell, how, before);
+            return std::make_unique<axis_case>(rigid, fitted, judged, period, excluded, limits, tell, how,
+                                               before);
         };
         // Looks at the forces along the measured motion where the predictions mislead. Returned is why it is
         // judged by them, or nothing.

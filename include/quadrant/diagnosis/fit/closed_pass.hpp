@@ -60,55 +60,79 @@ template <class Real> loop_numbers<Real> side_by_side(const closed_input& in) {
     return out;
 }
 
-/// Plants in the lanes of one number, their drives' loops closed on them, from the first row to the last.
-template <class Real> void closed_group(const closed_input& in) {
+/// Plants in the lanes of one number, their drives' loops closed on them, on their way through the log.
+template <class Real> class closed_group {
     using axis = plant_axes<Real>;
-    constexpr std::size_t width = lane_count<Real>;
-    const double h = in.period / static_cast<double>(in.steps);
-    const auto gathered = [&](const auto& number_of) {
+    static constexpr std::size_t width = lane_count<Real>;
+
+public:
+    explicit closed_group(const closed_input& in)
+        : in_(in), h_(in.period / static_cast<double>(in.steps)),
+          plant_(axis::side_by_side(
+                     in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; }),
+                 side_by_side<Real>(in), Real(h_)) {
+        const closed_input::plant& first = in.plant_of[0];
+        alike_ = std::all_of(in.plant_of, in.plant_of + in.plants, [&](const closed_input::plant& p) {
+            return p.set_point == first.set_point && p.its_velocity == first.its_velocity;
+        });
+    }
+
+    /// The axes stand at the reading of row k, and move with this velocity.
+    void begin(std::size_t k, double velocity) {
+        plant_.begin(Real(in_.position[k]), Real(velocity),
+                     gathered([&](const closed_input::plant& p) { return p.set_point[k * in_.steps]; }));
+    }
+    /// What is between the path and the reading of row k, where the row begins.
+    void compare(std::size_t k) {
+        const auto path = plant_.reading().each();
+        for (std::size_t i = 0; i < width && i < in_.plants; ++i)
+            in_.innovation[i][k] = in_.position[k] - path[i];
+        now_.time = Real(static_cast<double>(k) * in_.period);
+        if (in_.other_acceleration) now_.other_acceleration = Real(in_.other_acceleration[k]);
+    }
+    /// Step j of the record, in row k.
+    void step(std::size_t k, std::size_t j) {
+        const closed_input::plant& first = in_.plant_of[0];
+        if (alike_)
+            plant_(Real(first.set_point[j]), Real(first.its_velocity[j]), in_.off && in_.off[k], now_);
+        else
+            plant_(gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
+                   gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
+                   in_.off && in_.off[k], now_);
+        now_.time = now_.time + Real(h_);
+    }
+
+private:
+    template <class NumberOf> Real gathered(const NumberOf& number_of) const {
         std::array<double, width> out;
         for (std::size_t i = 0; i < width; ++i)
-            out[i] = number_of(in.plant_of[i < in.plants ? i : in.plants - 1]);
+            out[i] = number_of(in_.plant_of[i < in_.plants ? i : in_.plants - 1]);
         return Real(out);
-    };
-    closed_axis<Real, axis> plant(
-        axis::side_by_side(
-            in.plants, [&](std::size_t i) -> const auto& { return in.plant_of[i].axis; }),
-        side_by_side<Real>(in), Real(h));
-    const closed_input::plant& first = in.plant_of[0];
-    const bool alike = std::all_of(in.plant_of, in.plant_of + in.plants, [&](const closed_input::plant& p) {
-        return p.set_point == first.set_point && p.its_velocity == first.its_velocity;
-    });
-    const auto begin = [&](std::size_t k, double velocity) {
-        plant.begin(Real(in.position[k]), Real(velocity),
-                    gathered([&](const closed_input::plant& p) { return p.set_point[k * in.steps]; }));
-    };
-    begin(0, in.velocity);
+    }
+
+    closed_input in_;
+    double h_;
+    closed_axis<Real, axis> plant_;
+    bool alike_ = false;
+    typename axis::surroundings now_{};
+};
+
+/// From the first row to the last. The groups take turns, as in pass().
+template <class Real> void closed_pass(const closed_input& in) {
+    std::vector<closed_group<Real>> groups;
+    for (std::size_t first = 0; first < in.plants; first += lane_count<Real>)
+        groups.emplace_back(in.from(first, lane_count<Real>));
+    for (closed_group<Real>& g : groups) g.begin(0, in.velocity);
     auto anew = in.begins.begin();
-    typename axis::surroundings now{};
     for (std::size_t k = 0; k < in.rows; ++k) {
         if (anew != in.begins.end() && anew->row == k) {
-            begin(k, anew->velocity);
+            for (closed_group<Real>& g : groups) g.begin(k, anew->velocity);
             ++anew;
         }
-        const auto path = plant.reading().each();
-        for (std::size_t i = 0; i < width && i < in.plants; ++i) in.innovation[i][k] = in.position[k] - path[i];
-        now.time = Real(static_cast<double>(k) * in.period);
-        if (in.other_acceleration) now.other_acceleration = Real(in.other_acceleration[k]);
-        for (std::size_t j = k * in.steps; j < (k + 1) * in.steps; ++j) {
-            if (alike)
-                plant(Real(first.set_point[j]), Real(first.its_velocity[j]), in.off && in.off[k], now);
-            else
-                plant(gathered([j](const closed_input::plant& p) { return p.set_point[j]; }),
-                      gathered([j](const closed_input::plant& p) { return p.its_velocity[j]; }),
-                      in.off && in.off[k], now);
-            now.time = now.time + Real(h);
-        }
+        for (closed_group<Real>& g : groups) g.compare(k);
+        for (std::size_t j = k * in.steps; j < (k + 1) * in.steps; ++j)
+            for (closed_group<Real>& g : groups) g.step(k, j);
     }
-}
-template <class Real> void closed_pass(const closed_input& in) {
-    for (std::size_t first = 0; first < in.plants; first += lane_count<Real>)
-        closed_group<Real>(in.from(first, lane_count<Real>));
 }
 
 } // namespace detail

@@ -95,6 +95,49 @@ QUADRANT_DIAGNOSIS_DECL void predictor::run(std::span<const plant_model> plants,
     }
 }
 
+namespace detail {
+
+/// Signals of equal length side by side: the last one again in the lanes that are left over.
+template <class Real> class rows_of_each {
+    static constexpr std::size_t width = lane_count<Real>;
+
+public:
+    explicit rows_of_each(std::span<std::vector<double>> signals) : signals_(std::min(width, signals.size())) {
+        for (std::size_t i = 0; i < width; ++i) of_[i] = signals[std::min(i, signals_ - 1)].data();
+    }
+    Real operator[](std::size_t k) const {
+        if constexpr (width == 1) {
+            return Real(of_[0][k]);
+        } else {
+            std::array<double, width> out;
+            for (std::size_t i = 0; i < width; ++i) out[i] = of_[i][k];
+            return Real(out);
+        }
+    }
+    void set(std::size_t k, const Real& value) {
+        if constexpr (width == 1) {
+            of_[0][k] = value;
+        } else {
+            const auto each = value.each();
+            for (std::size_t i = 0; i < signals_; ++i) of_[i][k] = each[i];
+        }
+    }
+
+private:
+    std::array<double*, width> of_{};
+    std::size_t signals_;
+};
+
+/// use(rows of these signals): at most predictor::abreast, in lanes where there are several.
+template <class Use> void in_lanes(std::span<std::vector<double>> signals, const Use& use) {
+    if (signals.size() == 1)
+        use(rows_of_each<double>(signals), double{});
+    else
+        use(rows_of_each<lanes<predictor::abreast>>(signals), lanes<predictor::abreast>{});
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std::span<const plant_model> plants,
                                                       std::span<const double> u,
                                                       std::span<std::vector<double>> left) const {
@@ -102,26 +145,40 @@ QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std:
     std::vector<std::vector<double>> unused(plants.size());
     pass(plants, u, unused, left.data(), {by.way.data(), 1, 1 / period, heavier});
     for (std::size_t i = 0; i < plants.size(); ++i) {
-        const plant_model& p = plants[i];
-        const double base = p.moving_mass() - p.mode.mass, led_base = heavier * p.moving_mass() - p.mode.mass;
+        const double led_base = heavier * plants[i].moving_mass() - plants[i].mode.mass;
         for (double& x : left[i]) x *= led_base;
-        left[i] = zero_phase(left[i], corner_Hz, period);
-        const auto needed = acceleration_of(p, by.way, period);
+    }
+    const std::size_t n = by.way.size();
+    detail::in_lanes(left, [&]<class Real>(detail::rows_of_each<Real> rows, Real) {
+        std::vector<Real> all(n);
+        for (std::size_t k = 0; k < n; ++k) all[k] = rows[k];
+        all = zero_phase_of<Real>(all, corner_Hz, period);
+        for (std::size_t k = 0; k < n; ++k) rows.set(k, all[k]);
+    });
+    std::vector<double> of_way; // acceleration that the motion needs, where no reading is in error
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        const plant_model& p = plants[i];
+        const double base = p.moving_mass() - p.mode.mass;
+        if (p.cyclic.count > 0 || of_way.empty()) of_way = acceleration_of(p, by.way, period);
+        const auto put = [&](const auto& a_volt) {
+            for (std::size_t k = 1; k + 1 < n; ++k)
+                left[i][k] = by.counts[k] ? by.force_constant / a_volt(k) * (left[i][k] - base * of_way[k]) : 0;
+            if (n > 0) left[i].front() = left[i].back() = 0;
+        };
         // Force that one volt more would make: a weak motor, or friction that takes its share, explains
         // nothing by making all forces small.
-        const auto a_volt = [&](std::size_t k) {
-            const double of_motor = p.force_constant * (1 + p.ripple.at(by.way[k]));
-            const double through = of_motor * u[k] - p.static_force(by.way[k]);
-            const bool against = through * (by.way[k + 1] - by.way[k - 1]) > 0;
-            return of_motor * (1 - (against ? 1 : -1) * p.friction.load);
-        };
-        for (std::size_t k = 0; k < left[i].size(); ++k) {
-            if (k == 0 || k + 1 == left[i].size() || !by.counts[k]) {
-                left[i][k] = 0;
-                continue;
-            }
-            left[i][k] = by.force_constant / a_volt(k) * (left[i][k] - base * needed[k]);
-        }
+        const auto of_motor = [&](std::size_t k) { return p.force_constant * (1 + p.ripple.at(by.way[k])); };
+        if (p.friction.load != 0)
+            put([&](std::size_t k) {
+                const double through = of_motor(k) * u[k] - p.static_force(by.way[k]);
+                const bool against = through * (by.way[k + 1] - by.way[k - 1]) > 0;
+                return of_motor(k) * (1 - (against ? 1 : -1) * p.friction.load);
+            });
+        else if (p.ripple.count > 0)
+            put(of_motor);
+        else
+            put([&](std::size_t) { return p.force_constant; });
+        if (p.cyclic.count > 0) of_way.clear();
     }
 }
 
@@ -138,16 +195,22 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass_led(std::span<const plant_model> pl
     std::vector<std::vector<double>> left(plants.size());
     forces_beside(*led, plants, u, left);
     for (std::size_t i = 0; i < plants.size(); ++i) {
+        innovation[i] = left[i];
         innovation[i].resize(rows());
-        double x = 0, v = 0;
-        for (std::size_t k = 0; k < left[i].size(); ++k) {
-            innovation[i][k] = x;
-            const double a = -left[i][k] / led->mass;
-            v -= l2() * x;
-            x += period * (v + period / 2 * a) - l1() * x;
-            v += period * a;
+    }
+    detail::in_lanes(innovation, [&]<class Real>(detail::rows_of_each<Real> of, Real) {
+        const Real mass(led->mass), step(period), half(period / 2), to_position(l1()), to_velocity(l2());
+        Real x(0), v(0);
+        for (std::size_t k = 0; k < position.size(); ++k) {
+            const Real a = -of[k] / mass;
+            of.set(k, x);
+            v -= to_velocity * x;
+            x += step * (v + half * a) - to_position * x;
+            v += step * a;
         }
-        if (!acceleration) continue;
+    });
+    if (!acceleration) return;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
         acceleration[i] = acceleration_of(plants[i], position, period);
         for (std::size_t k = 1; k + 1 < position.size(); ++k) acceleration[i][k] += left[i][k] / plants[i].mass;
     }

@@ -18,6 +18,8 @@ struct record_scales {
     double least_give = 0; ///< of give(), see axis_log::least_give [m]
     double corner_Hz = 0;  ///< frequency at which the record resolves a hundredth of its force, see scales_of()
 
+    static constexpr double most_cycles_a_row = 0.06; ///< of the corner: 17 rows in a cycle
+
     /// Time constant of the corner [s].
     double response() const { return 1 / (2 * std::numbers::pi * corner_Hz); }
     /// Sixty cycles of the corner: a motion that is proposed takes some of these [s].
@@ -75,11 +77,17 @@ inline record_scales scales_of(const plant_description& plant, const axis_log& l
     const double acceleration = plant.force_constant_N_per_V * std::sqrt(variance) / plant.mass_kg;
     const double noise = detail::reading_noise(log.position, out.count);
     const double resolved = std::sqrt(0.01 * acceleration / noise) / (2 * std::numbers::pi);
-    const double most = 0.06 / period, least = std::min(30 / (n * period), most);
+    const double most = record_scales::most_cycles_a_row / period, least = std::min(30 / (n * period), most);
     out.corner_Hz = std::clamp(resolved, least, most);
     for (double v : derivative(zero_phase(log.position, out.corner_Hz, period), period))
         out.speed = std::max(out.speed, std::abs(v));
     return out;
+}
+
+/// How many rows of a record may become one before the rows limit its time scale; 1: none.
+inline std::size_t rows_in_one(double corner_Hz, double period) {
+    const double n = std::floor(record_scales::most_cycles_a_row / (corner_Hz * period) * (1 + 1e-9));
+    return n > 1 ? static_cast<std::size_t>(n) : 1;
 }
 
 /// Band of the residual force of an axis in this log.

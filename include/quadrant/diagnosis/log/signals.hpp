@@ -27,7 +27,9 @@ inline double quantile(std::vector<double> x, double f) {
 
 /// Low-pass without phase: a second-order Butterworth run forwards and backwards, -3 dB at `corner` in all.
 /// Both ends are continued by point reflection, so that a record that begins in motion has no step.
-inline std::vector<double> zero_phase(std::span<const double> x, double corner_Hz, double period) {
+/// Real: double, or lanes, of several signals side by side.
+template <class Real>
+std::vector<Real> zero_phase_of(std::span<const Real> x, double corner_Hz, double period) {
     const std::size_t n = x.size();
     if (n < 3) return {x.begin(), x.end()};
     const double each_way = corner_Hz / std::pow(std::numbers::sqrt2 - 1, 0.25); // two passes narrow the band
@@ -35,23 +37,28 @@ inline std::vector<double> zero_phase(std::span<const double> x, double corner_H
     const double a0 = 1 + std::numbers::sqrt2 * t + t * t, b = t * t / a0;
     const double a1 = 2 * (t * t - 1) / a0, a2 = (1 - std::numbers::sqrt2 * t + t * t) / a0;
     const auto pad = std::min(n - 1, static_cast<std::size_t>(3 / (each_way * period)) + 1);
-    std::vector<double> y(n + 2 * pad);
+    std::vector<Real> y(n + 2 * pad);
     for (std::size_t i = 0; i < pad; ++i) {
-        y[i] = 2 * x[0] - x[pad - i];
-        y[n + pad + i] = 2 * x[n - 1] - x[n - 2 - i];
+        y[i] = Real(2) * x[0] - x[pad - i];
+        y[n + pad + i] = Real(2) * x[n - 1] - x[n - 2 - i];
     }
     std::copy(x.begin(), x.end(), y.begin() + static_cast<std::ptrdiff_t>(pad));
-    for (int direction = 0; direction < 2; ++direction) {
-        double s1 = y[0] * (1 - b), s2 = y[0] * (b - a2);
-        for (double& v : y) {
-            const double in = v, out = b * in + s1;
-            s1 = 2 * b * in - a1 * out + s2;
-            s2 = b * in - a2 * out;
-            v = out;
+    const Real b0(b), b1(2 * b), c1(a1), c2(a2);
+    const auto run = [&](auto first, auto last) {
+        Real s1 = *first * Real(1 - b), s2 = *first * Real(b - a2);
+        for (; first != last; ++first) {
+            const Real in = *first, out = b0 * in + s1;
+            s1 = b1 * in - c1 * out + s2;
+            s2 = b0 * in - c2 * out;
+            *first = out;
         }
-        std::reverse(y.begin(), y.end());
-    }
+    };
+    run(y.begin(), y.end());
+    run(y.rbegin(), y.rend());
     return {y.begin() + static_cast<std::ptrdiff_t>(pad), y.begin() + static_cast<std::ptrdiff_t>(pad + n)};
+}
+inline std::vector<double> zero_phase(std::span<const double> x, double corner_Hz, double period) {
+    return zero_phase_of<double>(x, corner_Hz, period);
 }
 
 /// Central difference, one-sided at the ends.

@@ -93,16 +93,19 @@ public:
                 if (of == asked) return points;
         }
         auto made = std::make_shared<const followed_set_points>(follow(d, steps, set_point, period));
+        const std::size_t size = 2 * sizeof(double) * std::max<std::size_t>(1, steps * set_point.size());
+        const std::size_t most = std::max(least, affordable / size);
         const std::lock_guard lock(mutex_);
         if (kept_.size() < most)
             kept_.emplace_back(asked, made);
         else
-            kept_[next_++ % most] = {asked, made};
+            kept_[next_++ % kept_.size()] = {asked, made};
         return made;
     }
 
 private:
-    static constexpr std::size_t most = 8; // the models of one pass
+    static constexpr std::size_t least = 8, // the models of one pass
+        affordable = std::size_t{1} << 25;  // bytes
     struct timing {
         interpolation between;
         double set_point_period, delay, loss, clock_slip;

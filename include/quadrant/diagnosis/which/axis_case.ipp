@@ -168,12 +168,15 @@ QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const c
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_case::on_second axis_case::second_log(const candidate& m) const {
-    fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
-    std::vector<double> a;
-    const double choices = second->observer.run(there.plant, there.innovation.rows, &a);
-    fitter(second->observer, second->score).judge(there, choices);
-    return {-there.objective, models.settled(there.ms, second->score, noise),
-            rms(residual_of(*second, there.plant, a))};
+    if (!*m.holdout) {
+        fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
+        std::vector<double> a;
+        const double choices = second->observer.run(there.plant, there.innovation.rows, &a);
+        fitter(second->observer, second->score).judge(there, choices);
+        *m.holdout = {-there.objective, std::move(there.ms), rms(residual_of(*second, there.plant, a))};
+    }
+    const candidate::on_holdout& known = **m.holdout;
+    return {known.score, models.settled(known.ms, second->score, noise), known.force};
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double>

@@ -25,6 +25,13 @@ struct candidate {
     std::shared_ptr<std::optional<double>> held_out_force = std::make_shared<std::optional<double>>();
     /// White noise of the position as it sees it [m], likewise.
     std::shared_ptr<std::optional<double>> noise = std::make_shared<std::optional<double>>();
+    /// How it predicts the hold-out log, likewise.
+    struct on_holdout {
+        double score = 0;                      ///< log-score
+        std::vector<std::vector<double>> ms{}; ///< by channel and block
+        double force = 0;                      ///< residual, rms [N]
+    };
+    std::shared_ptr<std::optional<on_holdout>> holdout = std::make_shared<std::optional<on_holdout>>();
     bool missed = false; ///< the time was up before it was looked at
 
     /// Whether a number of the machine file, calibrated inside the owner's tolerance, ends at its end.

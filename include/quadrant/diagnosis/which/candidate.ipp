@@ -161,6 +161,7 @@ QUADRANT_DIAGNOSIS_DECL void judge(const axis_record& record, candidate& c) {
     cross_validate(c, record.score, record.replayed(), record.closed());
     c.held_out_force = std::make_shared<std::optional<double>>();
     c.noise = std::make_shared<std::optional<double>>();
+    c.holdout = std::make_shared<std::optional<candidate::on_holdout>>();
     if (const auto& innovation = c.fit.innovation.rows; !innovation.empty())
         *c.noise = position_noise(innovation, record.score, record.resolution);
     c.fit.innovation = {};

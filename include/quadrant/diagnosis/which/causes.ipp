@@ -117,16 +117,24 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     const effect* own = c.best().effects[which];
     const candidate without = c.models.without(c.best(), own);
     std::vector<rival> out{{.model = c.best(), .name = own}};
+    std::vector<std::size_t> same;
+    std::vector<const effect*> names;
     for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
         for (const effect* e : model.effects)
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
-                out.push_back({.model = model, .name = e});
                 // The same model by another name is fitted as well as the first, whenever it was met. So are
                 // everyday forces: at one speed, or in one direction, they are the same force.
-                if (!(may_be_one(*e, *own) || (e->everyday && own->everyday)) || c.models.over()) continue;
-                if (auto again = c.models.exchanged(c.best(), own, e); again.total > model.total)
-                    out.back().model = std::move(again);
+                if (may_be_one(*e, *own) || (e->everyday && own->everyday)) {
+                    same.push_back(out.size());
+                    names.push_back(e);
+                }
+                out.push_back({.model = model, .name = e});
             }
+    if (!c.models.over()) {
+        auto again = c.models.exchanged(c.best(), own, names);
+        for (std::size_t i = 0; i < same.size(); ++i)
+            if (again[i].total > out[same[i]].model.total) out[same[i]].model = std::move(again[i]);
+    }
     // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and
     // beside it the name is no longer needed. A polynomial in the velocity comes close to Coulomb friction, but
     // the jump is missing in it.

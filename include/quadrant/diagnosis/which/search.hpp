@@ -68,9 +68,12 @@ public:
     /// A model with one of its effects taken off. The fit begins at the numbers of the others; where the same
     /// names were fitted before, the better of the two is kept.
     candidate without(const candidate& whole, const effect* own) const;
-    /// A model with one of its effects exchanged for another name of the same force; the others keep their
-    /// numbers where the fit begins. Not kept: a fit that begins elsewhere may end elsewhere.
-    candidate exchanged(const candidate& whole, const effect* own, const effect* added) const;
+    /// The same for each of these effects, fitted side by side.
+    std::vector<candidate> without_each(const candidate& whole, const std::vector<const effect*>& each) const;
+    /// A model with one of its effects exchanged for each of these other names of the same force; the others keep
+    /// their numbers where the fits begin. Not kept: a fit that begins elsewhere may end elsewhere.
+    std::vector<candidate> exchanged(const candidate& whole, const effect* own,
+                                     const std::vector<const effect*>& added) const;
 
     /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is
     /// calibration.
@@ -287,9 +290,17 @@ private:
     candidate given_;
     mutable candidate calibrated_; ///< a step of the search may show where its fit stopped short
     mutable std::deque<candidate> tried_;
+    /// A model with one effect less that was fitted from the numbers of another one.
+    struct shorter {
+        std::shared_ptr<std::optional<double>> of; ///< of that one: what copies of it share
+        const effect* own;
+        candidate model;
+    };
+    mutable std::vector<shorter> shorter_{};
     mutable std::set<const effect*> missed_{};
     mutable bool cut_ = false;
-    mutable std::vector<double> cloud_{}; ///< found when it is asked for
+    mutable std::vector<double> cloud_{};            ///< found when it is asked for
+    mutable std::optional<double> floor_of_noise_{}; ///< residual force of a white noise of 1 m [N], likewise
 };
 
 } // namespace quadrant::inline v0::diagnosis

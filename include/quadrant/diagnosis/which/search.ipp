@@ -173,25 +173,56 @@ QUADRANT_DIAGNOSIS_DECL candidate search::taken_off(const candidate& whole, cons
 }
 
 QUADRANT_DIAGNOSIS_DECL candidate search::without(const candidate& whole, const effect* own) const {
-    std::vector<const effect*> others = whole.effects;
-    std::erase(others, own);
-    candidate known = with(others);
-    if (others.empty() || over()) return known;
-    candidate again = taken_off(whole, own);
-    finish(record_, again);
-    if (!(again.total > known.total)) return known;
-    for (candidate& c : tried_)
-        if (same(c, again)) c = again;
-    return again;
+    return without_each(whole, {own}).front();
 }
 
-QUADRANT_DIAGNOSIS_DECL candidate search::exchanged(const candidate& whole, const effect* own,
-                                                    const effect* added) const {
+QUADRANT_DIAGNOSIS_DECL std::vector<candidate>
+search::without_each(const candidate& whole, const std::vector<const effect*>& each) const {
+    std::vector<candidate> out;
+    std::vector<shorter> fresh;
+    const auto others = [&](const effect* own) {
+        candidate c{.effects = whole.effects};
+        std::erase(c.effects, own);
+        return c;
+    };
+    const auto known = [&](const effect* own) {
+        return std::find_if(shorter_.begin(), shorter_.end(), [&](const shorter& s) {
+            return s.of == whole.held_out_force && s.own == own && same(s.model, others(own));
+        });
+    };
+    for (const effect* own : each) {
+        const std::vector<const effect*> left = others(own).effects;
+        out.push_back(with(left));
+        if (!left.empty() && !over() && known(own) == shorter_.end())
+            fresh.push_back({whole.held_out_force, own, taken_off(whole, own)});
+    }
+    std::vector<candidate*> models;
+    for (shorter& s : fresh) models.push_back(&s.model);
+    finish(record_, models);
+    std::move(fresh.begin(), fresh.end(), std::back_inserter(shorter_));
+    for (std::size_t i = 0; i < each.size(); ++i) {
+        const auto again = known(each[i]);
+        if (again == shorter_.end() || !(again->model.total > out[i].total)) continue;
+        out[i] = again->model;
+        out[i].effects = others(each[i]).effects; // in the order of these
+        for (candidate& c : tried_)
+            if (same(c, out[i])) c = out[i];
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<candidate>
+search::exchanged(const candidate& whole, const effect* own, const std::vector<const effect*>& added) const {
     const candidate from = taken_off(whole, own);
-    std::vector<candidate> out{joined(from, added)};
-    sketch_each(from, {0}, out, when_late::go_on);
-    if (std::isfinite(out.front().fit.objective)) finish(record_, out.front());
-    return out.front();
+    std::vector<candidate> out;
+    std::vector<std::size_t> all;
+    for (const effect* e : added) {
+        all.push_back(out.size());
+        out.push_back(joined(from, e));
+    }
+    sketch_each(from, all, out, when_late::go_on);
+    finish_best(all, all.size(), out, when_late::go_on);
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::is_calibration(const candidate& c, const effect* e) const {
@@ -307,7 +338,10 @@ QUADRANT_DIAGNOSIS_DECL bool search::settled(const std::vector<std::vector<doubl
 }
 
 QUADRANT_DIAGNOSIS_DECL double search::floor_force(double noise) const {
-    return force_floor(record_, axis_.plant.mass_kg, noise);
+    if (!floor_of_noise_)
+        floor_of_noise_ = residual_force_floor(axis_.plant.mass_kg, 1, record_.period, record_.bandwidth_Hz,
+                                               record_.reaction);
+    return std::hypot(noise * *floor_of_noise_, record_.command_noise);
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::at_noise(const candidate& c) const {
@@ -426,8 +460,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         const candidate& whole = path.back();
         candidate kept;
         kept.total = -std::numeric_limits<double>::infinity();
-        for (const effect* out : whole.effects)
-            if (auto c = without(whole, out); c.total > kept.total) kept = std::move(c);
+        for (candidate& c : without_each(whole, whole.effects))
+            if (c.total > kept.total) kept = std::move(c);
         if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
         path.push_back(std::move(kept));
     }
@@ -482,7 +516,8 @@ QUADRANT_DIAGNOSIS_DECL bool search::shrinks_in_most_segments(const candidate& m
                                                               const candidate& less) const {
     if (record_.segments < least_segments) return false;
     std::vector<double> floor(record_.segments, 0.0);
-    for (const std::size_t segment : record_.segment) floor[segment] += square(floor_force(more));
+    const double of_row = square(floor_force(more));
+    for (const std::size_t segment : record_.segment) floor[segment] += of_row;
     const auto before = energy_by_segment(less), after = energy_by_segment(more);
     const auto above = [&](const std::vector<double>& energy, std::size_t i) {
         return std::max(0.0, energy[i] - floor[i]);
@@ -563,9 +598,10 @@ QUADRANT_DIAGNOSIS_DECL void search::begin_at(candidate& c, plant_model known) {
 
 QUADRANT_DIAGNOSIS_DECL std::size_t search::effort() const {
     if (!record_.replayed()) return 1;
-    // The valleys of a path are narrow: few steps from a start tell little.
-    const std::size_t affords = rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size());
-    return record_.closed() ? 3 : std::max<std::size_t>(1, affords);
+    const std::size_t affords =
+        std::max<std::size_t>(1, rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
+    // The valleys of a path are narrow: few steps from a start tell little, but three times as many are enough.
+    return record_.closed() ? std::min<std::size_t>(3, affords) : affords;
 }
 
 QUADRANT_DIAGNOSIS_DECL candidate search::as_described(candidate c) {
