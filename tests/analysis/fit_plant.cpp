@@ -14,9 +14,9 @@ using namespace quadrant::literals;
 using namespace quadrant::analysis;
 
 namespace {
-const axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, y{20.0 / 1_s, 8.916_mps2 / 1_V, 0.65_ms};
+const analysis::axis_model<> x{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, y{20.0 / 1_s, 8.916_mps2 / 1_V, 0.65_ms};
 /// The model with a relative error of `spread` on every line, 1 Hz apart.
-measured_frf noisy(const axis_model<>& g, double spread, unsigned seed, double sign = 1) {
+measured_frf noisy(const analysis::axis_model<>& g, double spread, unsigned seed, double sign = 1) {
     std::mt19937 random(seed);
     std::normal_distribution<double> gauss;
     measured_frf out{{}, 100};
@@ -53,7 +53,7 @@ TEST_CASE("fit_plant: the intervals of 95 % hold the truth in 95 of 100 fits") {
     CHECK(surprise == doctest::Approx(1).epsilon(0.05));
 }
 TEST_CASE("fit_plant: long delays are found though the phase turns many times") {
-    const axis_model<> late{5.0 / 1_s, 4.526_mps2 / 1_V, 9.3_ms}; // 2.3 turns at 250 Hz
+    const analysis::axis_model<> late{5.0 / 1_s, 4.526_mps2 / 1_V, 9.3_ms}; // 2.3 turns at 250 Hz
     const auto fit = fit_plant<>(noisy(late, 0.02, 4), {.from = 2_Hz, .to = 250_Hz, .longest_delay = 12_ms});
     CHECK(fit.delay.value.value() == doctest::Approx(9.3e-3).epsilon(0.01).scale(0));
 }

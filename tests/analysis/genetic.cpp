@@ -110,7 +110,7 @@ TEST_CASE("genetic: tunes the cascade of the thesis from margins and tracking er
         double error, gain, phase;
     };
     const auto judge = [&](double kp, double ki, double kv) {
-        const axis_model<> g{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
+        const analysis::axis_model<> g{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms};
         const p_pi_loop loop{g, pi_model<>{kp * 1_V / 1_mps, ki * 1_V / 1_m},
                              in_series{derivative_model{150_Hz}, notch_model{330_Hz, 0.06}}, kv / 1_s};
         const auto m = margins([&](frequency f) { return loop.open_position(f); }, servo);

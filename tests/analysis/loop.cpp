@@ -18,7 +18,7 @@ auto notched(double w2, double b) {
 }
 auto thesis(double A, double B, gain_of<signal::voltage, signal::velocity> kp,
             gain_rate_of<signal::voltage, signal::velocity> ki, notch_model notch) {
-    const axis_model<> g{A / 1_s, B * 1_mps2 / 1_V, 0.65_ms};
+    const analysis::axis_model<> g{A / 1_s, B * 1_mps2 / 1_V, 0.65_ms};
     return p_pi_loop{g, pi_model<>{kp, ki},
                      in_series{derivative_model{hertz(942.5 / (2 * std::numbers::pi))}, notch}, 150.0 / 1_s};
 }

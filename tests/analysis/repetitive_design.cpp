@@ -16,7 +16,7 @@ namespace {
 const duration T = 500_us;
 const frequency spindle = hertz(23.294);
 const auto one = [](frequency) { return complex(1); };
-const p_pi_loop x{axis_model<>{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, pi_model<>{60_V / 1_mps, 450_V / 1_m},
+const p_pi_loop x{analysis::axis_model<>{28.57 / 1_s, 4.526_mps2 / 1_V, 0.65_ms}, pi_model<>{60_V / 1_mps, 450_V / 1_m},
                   in_series{derivative_model{150_Hz}, notch_model{330.03_Hz, 0.0606}}, 150.0 / 1_s};
 const auto closed = [](frequency f) { return x.tracking(f); };
 template <std::size_t Order> auto ideal(const std::array<double, Order>& w, std::size_t harmonics) {
