@@ -15,7 +15,7 @@ using namespace quadrant::literals;
 namespace an = quadrant::analysis;
 
 namespace {
-const axis_model<signal::voltage> plant = vcnc::model(vcnc::x_axis);
+const quadrant::axis_model<signal::voltage> plant = vcnc::model(vcnc::x_axis);
 const an::sampled_axis<> axis{plant, 1_ms};
 
 /// A law on the sampled axis, one period at a time, with a gain that bends for large commands.

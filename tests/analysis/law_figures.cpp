@@ -21,7 +21,7 @@ using namespace quadrant::literals;
 namespace an = quadrant::analysis;
 
 namespace {
-const axis_model<signal::voltage> plant = vcnc::model(vcnc::x_axis);
+const quadrant::axis_model<signal::voltage> plant = vcnc::model(vcnc::x_axis);
 const an::sampled_axis<> axis{plant, 1_ms};
 an::sampled_axis<> stronger(double by) { return {{plant.gain * by, plant.viscous_rate}, 1_ms}; }
 an::contour_options limits() {

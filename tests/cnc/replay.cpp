@@ -2,11 +2,10 @@
 // replayed on the log, gives the logged command.
 #include <doctest/doctest.h>
 
-#include "quadrant_cnc/axis.cpp"
 #include "quadrant_cnc/gap_machine.hpp"
 #include "quadrant_cnc/log_writer.hpp"
 #include "quadrant_cnc/read_cnc.hpp"
-#include "quadrant_cnc/simulate.cpp"
+#include "quadrant_cnc/simulate.hpp"
 
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>

@@ -216,7 +216,7 @@ TEST_CASE("to_json: the same diagnosis gives the same bytes") {
 }
 
 TEST_CASE("to_json: without causes the lists are there and empty") {
-    const auto json = to_json({});
+    const auto json = to_json(diagnosis_result{});
     CHECK(json["verdict"] == "no_gap");
     CHECK(json["axes"].dump() == "{}");
     CHECK(json["causes"].dump() == "[]");

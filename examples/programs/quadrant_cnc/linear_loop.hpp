@@ -12,10 +12,10 @@ namespace quadrant_cnc {
 /// The axis without what has no frequency response: friction but the viscous one, play, steps and noise of the
 /// sensors, limits, converter, and the friction that its law feeds forward.
 inline axis_description linear_part(axis_description a) {
-    if (auto* screw = std::get_if<ball_screw_description>(&a.drive)) {
-        for (friction_side* side : {&screw->forward, &screw->backward}) side->static_Nm = side->coulomb_Nm = 0;
-        screw->backlash_m = 0;
-        screw->current_limit_A.reset();
+    if (auto* on_screw = std::get_if<ball_screw_description>(&a.drive)) {
+        for (friction_side* side : {&on_screw->forward, &on_screw->backward}) side->static_Nm = side->coulomb_Nm = 0;
+        on_screw->backlash_m = 0;
+        on_screw->current_limit_A.reset();
     } else {
         auto& motor = std::get<linear_motor_description>(a.drive);
         motor.coulomb_N = 0;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace quadrant::detail {
+namespace quadrant::inline v0::detail {
 
 /// What repeats in a repetitive memory, in periods, and how another cycle takes over: at once when none is on its way,
 /// else when that fade is done. The one place of this; `repetitive` asks it, alone and in lanes. `Number`: of
@@ -67,4 +67,4 @@ private:
     bool pending_ = false, limited_ = false;
 };
 
-} // namespace quadrant::detail
+} // namespace quadrant::inline v0::detail

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace quadrant::diagnosis {
+namespace quadrant::inline v0::diagnosis {
 
 /// Every n-th row of a log. A reading stays a reading, with its noise and its count; the command, which is held
 /// from each row to the next, becomes its mean over the n rows, which keeps its impulse.
@@ -46,4 +46,4 @@ inline axis_log thinned(const axis_log& log, std::size_t n) {
     return out;
 }
 
-} // namespace quadrant::diagnosis
+} // namespace quadrant::inline v0::diagnosis
