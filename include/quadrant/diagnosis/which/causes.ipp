@@ -297,7 +297,7 @@ inline candidate without_standing(const axis_case& c, std::size_t which) {
     candidate again = c.models.with(others);
     if (others.empty() || c.record.observer.led || c.axis.drive.closes() || !shows_along_motion(c.best()))
         return again;
-    candidate kept = again;
+    candidate kept{.effects = others}; // a model of its own: what is known of the other is not true of it
     kept.fit.plant = c.models.plant_without(c.best(), *own);
     const auto left = c.left_along_motion(std::array{again.fit.plant, kept.fit.plant});
     return left[0] > left[1] ? kept : again;
@@ -508,6 +508,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             for (const auto& r : rivals[j])
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
+        const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
@@ -520,7 +521,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         named.group_probability = std::max(named.probability, named.group_probability * known);
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
-        if ((of_laws && like_friction) || detail::is_undetermined(named.parameters) ||
+        if ((of_laws && like_friction) || undetermined ||
             detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
