@@ -26,7 +26,7 @@ namespace {
 constexpr double period = 2e-4, inertia = 0.05, coulomb = 1.2;
 
 /// A joint of a robot at 5 kHz: swings of 0.5 rad by a PD controller, position with noise, torque measured.
-machine_log joint() {
+machine_log swings() {
     std::mt19937_64 random(11);
     std::normal_distribution<double> of_position(0, 5e-6), of_torque(0, 0.01);
     std::string out = "t_s,q_pos_rad,q_cmd_Nm\n";
@@ -91,7 +91,7 @@ TEST_CASE("thinned: as many rows become one as leave seventeen in a cycle of the
 
 TEST_CASE("thinned: a joint at 5 kHz with its torque measured is diagnosed on fewer rows, and its friction is "
           "found") {
-    const machine_log log = joint();
+    const machine_log log = swings();
     const diagnosis_result r = diagnose(described(), log, nullptr, [](const std::string&) {}, {});
     CHECK(is_thinned(r));
     REQUIRE(!r.causes.empty());

@@ -335,9 +335,9 @@ inline bool open_by_measured_command(const axis_case& c) {
            !(c.best().fit.plant.backlash > 0);
 }
 
-/// How many rows of a long record are taken as one. A measured command is not replayed, and no cause lies within
-/// a row of it: such a record needs no more rows than its time scale does. A described controller needs its own
-/// period, in which the corrected loop is simulated.
+/// How many rows of a long record are taken as one. A measured command is not replayed, and no cause lies
+/// within a row of it: such a record needs no more rows than its time scale does. A described controller needs
+/// its own period, in which the corrected loop is simulated.
 inline std::size_t rows_in_one(const axis_description& axis, const axis_log& log, double period,
                                const rules& r) {
     if (axis.actuator.command_is != command_origin::measured || axis.controller || axis.drive.closes())
