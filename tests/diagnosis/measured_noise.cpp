@@ -26,8 +26,8 @@ axis_description motor() {
         .axes.front();
 }
 
-/// A motor that swings by a torque of 0.4 N m and white torque on top. `added`: by the measurement, or by what is
-/// asked, which moves the motor.
+/// A motor that swings by a torque of 0.4 N m and white torque on top. `added`: by the measurement, or by
+/// what is asked, which moves the motor.
 axis_log shaken(double white, bool added) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal(0, white);

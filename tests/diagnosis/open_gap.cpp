@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// A robot's joint, torque measured, pushed by forces that no name explains: they are as large as the friction that
-// the machine file lacks. The friction is found all the same, with its value.
+// A robot's joint, torque measured, pushed by forces that no name explains: they are as large as the friction
+// that the machine file lacks. The friction is found all the same, with its value.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>

@@ -37,8 +37,8 @@ struct effect {
     /// Every axis has some of it: effects of this kind are tried together from the start, as in a linear
     /// regression.
     bool everyday = false;
-    /// A part of the friction that the file describes: where it describes none, this is free with the level, and
-    /// no cause beside it.
+    /// A part of the friction that the file describes: where it describes none, this is free with the level,
+    /// and no cause beside it.
     bool of_described_friction = false;
     std::string_view shows{}; ///< as what it shows in the residual force
     key_list keys{};

@@ -28,9 +28,9 @@ QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, 
                                                 double pole);
 
 /// Share of the power of such noise that a measurement may have added: no more than the innovations hold in any
-/// channel, and no more than they vary by inside the means of the fastest two where reading noise of rms `sigma`
-/// does not make it, but a tenth of that. What a controller asks for is as white behind a coarse count, but it
-/// moves the axis, and a model that follows it leaves nothing.
+/// channel, and no more than they vary by inside the means of the fastest two where reading noise of rms
+/// `sigma` does not make it, but a tenth of that. What a controller asks for is as white behind a coarse
+/// count, but it moves the axis, and a model that follows it leaves nothing.
 QUADRANT_DIAGNOSIS_DECL double share_added_by_measurement(const std::vector<double>& innovation,
                                                           std::span<const channel> channels, double sigma);
 

@@ -130,10 +130,10 @@ QUADRANT_DIAGNOSIS_DECL double path_of_law_error(const axis_record& r, const pla
 QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& described,
                                         const plant_model& nearest);
 
-/// Judges a record that models are led along beside what the best known one leaves: the floor of each channel is
-/// what half of its blocks stay below. Where forces act that no name explains, a quiet block is one that they
-/// happen to miss; without the floor it would count as much as a loud one, and a fit would polish it at the
-/// expense of the rest.
+/// Judges a record that models are led along beside what the best known one leaves: the floor of each channel
+/// is what half of its blocks stay below. Where forces act that no name explains, a quiet block is one that
+/// they happen to miss; without the floor it would count as much as a loud one, and a fit would polish it at
+/// the expense of the rest.
 QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest);
 
 /// The record with its observer stepping as finely as the described machine needs.

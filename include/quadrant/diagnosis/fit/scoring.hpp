@@ -30,8 +30,8 @@ struct channel {
     double rounding =
         1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
     double command_noise = 0; ///< rms of the means for the noise of a measured command [m]
-    /// Share of each block's rows in which the axis creeps: by less than two counts a mean, so that rounding is a
-    /// tone that the channel sees. Faster, rounding is noise. Empty: in all of them.
+    /// Share of each block's rows in which the axis creeps: by less than two counts a mean, so that rounding
+    /// is a tone that the channel sees. Faster, rounding is noise. Empty: in all of them.
     std::vector<double> creeping{};
     std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each

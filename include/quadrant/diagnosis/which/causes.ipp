@@ -67,8 +67,9 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
-/// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides the
-/// motor's motion, an error of the reading is no force, and a drive's loops are replayed with the readings.
+/// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides
+/// the motor's motion, an error of the reading is no force, and a drive's loops are replayed with the
+/// readings.
 inline bool shows_along_motion(const candidate& m) {
     const auto reads = [](const effect* e) { return e->joins == joint::reading; };
     return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
@@ -287,9 +288,9 @@ QUADRANT_DIAGNOSIS_DECL std::size_t names_as_likely(const axis_case& c, const ef
     return std::min(suspects.size(), static_cast<std::size_t>(std::ceil(all / e.prior.odds)));
 }
 
-/// The best model without one of its causes, to be judged on the hold-out log. Fitted again, its other causes may
-/// hold the axis fast where it moves: a model that leaves more of the forces along the motion than the others
-/// with the numbers that they have only predicts what it corrects.
+/// The best model without one of its causes, to be judged on the hold-out log. Fitted again, its other causes
+/// may hold the axis fast where it moves: a model that leaves more of the forces along the motion than the
+/// others with the numbers that they have only predicts what it corrects.
 inline candidate without_standing(const axis_case& c, std::size_t which) {
     const effect* own = c.best().effects[which];
     std::vector<const effect*> others = c.best().effects;
