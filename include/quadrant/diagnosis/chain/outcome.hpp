@@ -24,7 +24,7 @@ struct outcome {
         elastic; ///< how far load and motor are apart, one entry a row; empty: they move as one [m]
     double play = 0, compliance = 0; ///< of the best model [m], [m/N]
     link_model best{};               ///< as found
-    /// Friction of the motor that was found though its owner excludes it: the force overcomes it all the same [N].
+    /// Friction of the motor that was found though its owner excludes it: the force overcomes it as well [N].
     std::optional<double> unnamed_motor_coulomb{};
 };
 

@@ -29,7 +29,7 @@ QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double tur
     return false;
 }
 
-/// Whether a wave does not repeat with a turn or a fraction of it: half a wave lies between over the travel, or,
+/// Whether a wave repeats with no fraction of a turn: half a wave lies between over the travel, or,
 /// from a tenth of one on, its own period predicts the readings better.
 inline bool is_own_period(const readings& r, const fitted& f, double margin) {
     const double turn = r.of().turn, p = f.model.cyclic_period;
