@@ -103,7 +103,9 @@ TEST_CASE("link: described play and delay are moved inside their tolerances, and
         d.described.lag = 0.04;
         std::vector<parameter_estimate> moved;
         const described_link out = calibrated_link(readings(d.readings), d, axis, rules(), moved);
-        CHECK(std::abs(out.described.lag / (1.05 * 0.04) - 1) < 0.002);
+        // The part of the play that its tolerance does not hold looks like lateness, at the slowest speed most.
+        const double late_by_play = (wider - std::min(wider, 1.1)) * 2e-5 / 2 / 0.011;
+        CHECK(std::abs(out.described.lag - 1.05 * 0.04) < 0.002 * 0.04 + late_by_play);
         CHECK(std::abs(out.described.play / (std::min(wider, 1.1) * 2e-5) - 1) < 0.01);
         CHECK(moved.size() == 2);
     }
