@@ -94,6 +94,7 @@ QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_descriptio
     for (const cause& c : out.found.causes)
         if (c.effect == "motor_friction" && c.probability >= 0.5)
             out.motor_coulomb = c.parameters[0].values[0].value;
+    if (out.found.unnamed_motor_coulomb) out.motor_coulomb = *out.found.unnamed_motor_coulomb;
     const auto& mass = axis.transmission.motor_mass_kg;
     if (!mass) {
         out.notes.push_back(

@@ -24,6 +24,8 @@ struct outcome {
         elastic; ///< how far load and motor are apart, one entry a row; empty: they move as one [m]
     double play = 0, compliance = 0; ///< of the best model [m], [m/N]
     link_model best{};               ///< as found
+    /// Friction of the motor that was found though its owner excludes it: the force overcomes it as well [N].
+    std::optional<double> unnamed_motor_coulomb{};
 };
 
 /// The described value of a cause's first key, 0 when there is none.

@@ -151,6 +151,8 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
         if (std::find(left_out.begin(), left_out.end(), f.what) != left_out.end()) {
             without_name = true;
             unnamed += share_of(f);
+            if (f.what == term::motor_friction && f.probability >= 0.5)
+                out.unnamed_motor_coulomb = term_values(d, a.best, axis).of(f.what)[0].values[0].value;
             out.notes.push_back(
                 fmt::format("axis {}: {}, which the machine file excludes, explains what lies between "
                             "{} and {} best: check excluded_effects.",

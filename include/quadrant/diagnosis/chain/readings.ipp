@@ -60,8 +60,7 @@ QUADRANT_DIAGNOSIS_DECL void readings::round_again() {
     const auto changed = [&](const std::vector<double>& smooth, double count) {
         std::vector<double> out(smooth.size(), 0.0);
         if (!(count > 0)) return out;
-        for (std::size_t k = 0; k < out.size(); ++k)
-            out[k] = count * std::round(smooth[k] / count) - smooth[k];
+        for (std::size_t k = 0; k < out.size(); ++k) out[k] = count * std::round(smooth[k] / count) - smooth[k];
         return zero_phase(out, band, link_.period);
     };
     const auto first = changed(first_, link_.first_count), last = changed(last_, link_.last_count);

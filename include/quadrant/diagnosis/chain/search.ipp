@@ -88,6 +88,13 @@ QUADRANT_DIAGNOSIS_DECL double seeker::half_range(const fitted& f, term t) const
     if (t == term::play) return f.model.play / 2;
     if (t == term::delay || t == term::first_order) return f.model.lag * r_.speed();
     const auto part = f.part(t);
+    if (t == term::motor_friction) { // beside a play its level is no column: it decides the side in contact
+        double compliance = f.model.compliance;
+        for (std::size_t j = 0; j < f.of.size(); ++j)
+            if (f.of[j] == term::spring) compliance += f.values[static_cast<Eigen::Index>(j)];
+        return (part.maxCoeff() - part.minCoeff()) / 2 +
+               compliance * std::abs(f.model.motor_coulomb - described_.motor_coulomb);
+    }
     return (part.maxCoeff() - part.minCoeff()) / 2;
 }
 
@@ -179,7 +186,14 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
     if (of_place(f.what) && !out.at_floor && along > law_error * law_error * explained && along > left / 2)
         known = std::min(known, 0.45);
     // Nor is any curve known to more than five per cent of another one that lies under it.
-    if (of_place(f.what) && explained < law_error * law_error * largest_of_place(out.best)) known = std::min(known, 0.45);
+    if (of_place(f.what) && explained < law_error * law_error * largest_of_place(out.best))
+        known = std::min(known, 0.45);
+    // Two waves so near each other that one beats with the other over the travel: which of them is there, or
+    // whether one stands for what the other leaves, neither says.
+    const bool wave = f.what == term::pitch || f.what == term::cyclic;
+    const link_model& m = out.best.model;
+    if (wave && m.has(term::pitch) && m.has(term::cyclic) && is_fraction(r_, m.cyclic_period, r_.of().turn))
+        known = std::min(known, 0.45);
     f.probability = known / sum;
     f.group_probability = known * same / sum;
 }

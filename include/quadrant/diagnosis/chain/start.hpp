@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../effect/rules.hpp"
 #include "../fit/spatial_spectrum.hpp"
 #include "fit.hpp"
 

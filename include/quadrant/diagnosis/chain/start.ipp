@@ -29,6 +29,18 @@ QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double tur
     return false;
 }
 
+/// Whether a wave repeats with no fraction of a turn: half a wave lies between over the travel, or,
+/// from a tenth of one on, its own period predicts the readings better.
+inline bool is_own_period(const readings& r, const fitted& f, double margin) {
+    const double turn = r.of().turn, p = f.model.cyclic_period;
+    if (!is_fraction(r, p, turn)) return true;
+    const double h = std::max(1.0, std::round(turn / p));
+    if (std::abs(r.travel() * (1 / p - h / turn)) < 0.1) return false;
+    link_model m = f.model;
+    m.cyclic_period = turn / h;
+    return f.score > fit_columns(r, m).score + margin;
+}
+
 QUADRANT_DIAGNOSIS_DECL double repeating_period(const readings& r, const fitted& from, double but,
                                                 bool of_scale) {
     const auto z = places(r, of_scale);
@@ -95,16 +107,24 @@ QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from,
 
 QUADRANT_DIAGNOSIS_DECL bool possible(const fitted& f) {
     const link_model& m = f.model;
-    double play = m.play, compliance = m.compliance, friction = 0;
+    double play = m.play, compliance = m.compliance, friction = 0, narrowest = 0, deviation = 0;
     for (std::size_t j = 0; j < f.of.size(); ++j) {
-        const double value = f.values[static_cast<Eigen::Index>(j)];
-        if (f.of[j] == term::play && f.of[j - 1] != term::play) play += value;
+        const auto i = static_cast<Eigen::Index>(j);
+        const double value = f.values[i];
+        if (f.of[j] == term::play && f.of[j - 1] != term::play) {
+            play += value;
+            const double along = f.values[i + 1], turned = along > 0 ? -1 : 1;
+            narrowest = play - std::abs(along); // at one end of the travel
+            deviation = std::sqrt(std::max(0.0, f.covariance(i, i) + f.covariance(i + 1, i + 1) +
+                                                    2 * turned * f.covariance(i, i + 1)));
+        }
         if (f.of[j] == term::spring) compliance += value;
         if (f.of[j] == term::motor_friction) friction += value;
     }
     friction += m.motor_coulomb * compliance;
-    return !(m.has(term::play) && play <= 0) && !(m.has(term::spring) && compliance <= 0) &&
-           !(m.has(term::motor_friction) && friction < 0);
+    constexpr double sure = 3; // deviations
+    return !(m.has(term::play) && (play <= 0 || narrowest < -sure * deviation)) &&
+           !(m.has(term::spring) && compliance <= 0) && !(m.has(term::motor_friction) && friction < 0);
 }
 
 QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, term t, double margin) {
@@ -163,12 +183,16 @@ QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& 
         return settled(r, std::move(best));
     }
     case term::cyclic: {
-        const double p = repeating_period(r, from, r.of().turn, true);
-        if (!(p > 0)) return from;
         freed(m);
-        m.cyclic_period = p;
-        fitted best = refined_period(r, m, p, [](link_model& x, double y) { x.cyclic_period = y; });
-        return is_fraction(r, best.model.cyclic_period, r.of().turn) ? from : settled(r, std::move(best));
+        const auto put = [](link_model& x, double y) { x.cyclic_period = y; };
+        // The strongest wave first, however near it is to a turn: then its own period has to predict better.
+        for (const double but : {0.0, r.of().turn}) {
+            const double p = repeating_period(r, from, but, true);
+            if (!(p > 0)) return from;
+            fitted best = refined_period(r, m, p, put);
+            if (is_own_period(r, best, margin)) return settled(r, std::move(best));
+        }
+        return from;
     }
     case term::motor_friction:
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
@@ -197,7 +221,12 @@ QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& fro
     if (t == term::delay || t == term::first_order) m.how = described.how, m.lag = described.lag;
     if (t == term::motor_friction) m.motor_coulomb = described.motor_coulomb;
     if (t == term::steps) m.steps.clear();
-    return settled(r, fit_columns(r, m));
+    fitted out = settled(r, fit_columns(r, m));
+    if (t != term::pitch || !m.has(term::cyclic)) return out;
+    // Beside the turn's wave the other one had a period that makes up for it: alone it has its own.
+    fitted alone = refined_period(r, m, m.cyclic_period, [](link_model& x, double y) { x.cyclic_period = y; });
+    return alone.score > out.score && is_own_period(r, alone, rules().margin) ? settled(r, std::move(alone))
+                                                                              : out;
 }
 
 } // namespace quadrant::inline v0::diagnosis::chain
