@@ -8,10 +8,10 @@
 
 namespace quadrant::detail {
 
-/// What repeats in a repetitive memory, in periods, and how another cycle takes over: at once when none is on its way,
-/// else when that fade is done. The one place of this; `repetitive` asks it, alone and in lanes. `Number`: of
-/// parameters, several lanes too; their fade is common, as long as the longest needs. How many steps of it are left
-/// belongs to the state of the memory: `fading`.
+/// What repeats in a repetitive memory, in periods, and how another cycle takes over: at once when none is on
+/// its way, else when that fade is done. The one place of this; `repetitive` asks it, alone and in lanes.
+/// `Number`: of parameters, several lanes too; their fade is common, as long as the longest needs. How many
+/// steps of it are left belongs to the state of the memory: `fading`.
 template <class Number> class cycle_change {
     static constexpr double rounding = 1e-12; ///< of a cycle that was given as a multiple of the period
 
