@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS     simulates so many seconds of an axis on Stribeck
+// usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS     simulates so many seconds of an axis on
+// Stribeck
 //                                           friction with a period of 500 us; sub_steps.sh counts the instructions
 //        sub_steps errors                   how far each is from itself with 1000 sub-steps, over 20 s, in um
 //        sub_steps times                    CPU time of each, and how many times real time that is
-// typed: `stick_slip` alone, in a loop of 25 sub-steps. motor: `linear_motor`, with delay, limit, DAC and encoder, 25.
-// plain: C as one writes it, semi-implicit, 25: the level of the old velocity, mass and viscous friction implicit, the
-// axis held at rest. plain_as_accurate: the same with 48, as many as it takes for the error of typed.
+// typed: `stick_slip` alone, in a loop of 25 sub-steps. motor: `linear_motor`, with delay, limit, DAC and
+// encoder, 25. plain: C as one writes it, semi-implicit, 25: the level of the old velocity, mass and viscous
+// friction implicit, the axis held at rest. plain_as_accurate: the same with 48, as many as it takes for the
+// error of typed.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/stribeck.hpp>
 #include <quadrant/plant/linear_motor.hpp>

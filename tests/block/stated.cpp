@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// What a header states with "always", "exact" or "bounded", over a million random trials each; a case names the block and
-// its words. Other such words have their trials elsewhere: `stick_slip` (tests/friction/stick_slip.cpp), the jumps of
-// `retune` (tests/conformance), exact zero-order holds (tests/filter/discretize.cpp, tests/plant/flexible_modes.cpp).
+// What a header states with "always", "exact" or "bounded", over a million random trials each; a case names the
+// block and its words. Other such words have their trials elsewhere: `stick_slip`
+// (tests/friction/stick_slip.cpp), the jumps of `retune` (tests/conformance), exact zero-order holds
+// (tests/filter/discretize.cpp, tests/plant/flexible_modes.cpp).
 #include <quadrant/base/literals.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/filter/lowpass.hpp>
