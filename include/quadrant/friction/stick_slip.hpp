@@ -16,16 +16,15 @@ concept friction_law = requires(const F& f, quantity_of<signal::velocity, Real> 
     { f.viscous() } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
 };
 
-/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and the speed
-/// over which that changes e-fold. Newton's method
-/// may use them where slip is convex: falling() is false where it is not, and the level is then iterated by
-/// itself.
+/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and 1 over the
+/// speed over which that changes e-fold. Newton's method may use them where slip is convex: convex() is false
+/// where it is not, and the level is then iterated by itself.
 template <class F, class Real>
 concept friction_law_with_slope = friction_law<F, Real> &&
     requires(const F& f, quantity_of<signal::velocity, Real> v, quantity_of<signal::force, Real> level) {
     { f.convex() } -> std::convertible_to<bool>;
     f.fall(v, level).slope;
-    f.fall(v, level).scale;
+    f.fall(v, level).inverse_scale;
 };
 
 /// A law that knows directions, and whose level may rise with the speed as well: `asymmetric_stribeck`. Its
@@ -46,48 +45,54 @@ concept friction_law_by_direction = requires(const F& f, quantity_of<signal::vel
 
 namespace detail {
 /// Relative error that may be left to the velocity of a step.
-template <class Real> inline constexpr double stick_slip_accuracy = 1e-14;
+template <class Real> inline constexpr double stick_slip_accuracy = 3e-14;
 template <> inline constexpr double stick_slip_accuracy<float> = 1e-7;
 
 /// The fastest v' >= 0 with slope v' + slip(v') = size by Newton's method, 0 when there is none; `start` > 0
-/// from where. On a convex
-/// curve a tangent lies below it: its zero is not below a solution, wherever it touches a rising part, and the
-/// next ones come down to the fastest. Ended by the error that is left, which slope and curvature tell: one to
-/// two passes in motion.
+/// from where. On a convex curve a tangent lies below it: its zero is not below a solution, wherever it touches
+/// a rising part, and the next ones come down to the fastest. Half of what the tangent misses the curve by is
+/// known from the curvature and taken off; ended by the error that is left then: in motion mostly after one
+/// pass. Bare SI numbers inside: a choice between two quantities goes through memory.
 template <class Real, class Friction>
-quantity_of<signal::velocity, Real> fastest_sliding(const Friction& friction,
-                                                    const gain_of<signal::force, signal::velocity, Real>& slope,
-                                                    const quantity_of<signal::force, Real>& size,
-                                                    quantity_of<signal::velocity, Real> start) noexcept {
+[[gnu::always_inline]] inline quantity_of<signal::velocity, Real>
+fastest_sliding(const Friction& friction, const Real slope, const Real size, const Real start) noexcept {
     using velocity = quantity_of<signal::velocity, Real>;
     using force = quantity_of<signal::force, Real>;
-    const velocity most = size / slope;
-    velocity v = start < most ? start : most;
+    const Real most = size / slope, close = Real(stick_slip_accuracy<Real>);
+    Real v = start < most ? start : most;
     bool anywhere = start < most; // not known to lie above the solution
     constexpr int most_passes = 32;
     for (int pass = 0; pass < most_passes; ++pass) {
-        const auto level = friction.slip(v);
-        const auto fall = friction.fall(v, level);
-        const gain_of<signal::force, signal::velocity, Real> rise = slope + fall.slope;
-        if (!(rise >
-              decltype(rise)())) { // left of the lowest point: where the axis was, or there is no solution
+        const velocity at = velocity::from_value(v);
+        const force level = friction.slip(at);
+        const auto fall = friction.fall(at, level);
+        const Real falls = -fall.slope.value(), rise = slope - falls;
+        if (!(rise > Real(0))) { // left of the lowest point: where the axis was, or there is no solution
             if (!anywhere) return velocity();
             anywhere = false;
             v = most;
             continue;
         }
         anywhere = false;
-        const velocity step = (slope * v + level - size) / rise, next = v - step;
-        if (!(next > velocity())) return velocity();
-        const velocity way = step < velocity() ? -step : step;
-        if (way <= fall.scale) { // curvature = -slope/scale, within a scale at most e times that
-            const force left = -fall.slope * Real(step / fall.scale) * step; // of the equation, after the step
-            if (left <= Real(stick_slip_accuracy<Real>) * (rise * next)) return next < most ? next : most;
+        const Real per_force = Real(1) / rise, step = (slope * v + level.value() - size) * per_force;
+        const Real next = v - step, nearest = next < most ? next : most;
+        if (!(next > Real(0))) return velocity();
+        const Real way = step < Real(0) ? -step : step, scales = way * fall.inverse_scale.value();
+        const Real bent = falls * scales * way; // curvature = slope/scale, within a scale at most e times that
+        if (scales <= Real(1)) {
+            if constexpr (std::floating_point<Real>) {
+                if (falls <= rise && bent * scales <= close * (rise * next)) {
+                    const Real nearer = next - bent * (Real(0.5) * per_force);
+                    return velocity::from_value(nearer < most ? nearer : most);
+                }
+            } else if (bent <= close * (rise * next)) // the tangent's carries the derivatives
+                return velocity::from_value(nearest);
         }
-        v = next < most ? next : most;
+        v = nearest;
     }
-    return v;
+    return velocity::from_value(v);
 }
+
 /// The fastest v' >= 0 with slope v' + slip(v') = size, where the level may rise: 0 when there is none. From
 /// above, as stick_slip does: the falling part at the speed that is known to be
 /// too fast leaves too much for the rest, whose speed is again too fast, and nearer. That one solves a concave
@@ -135,7 +140,7 @@ fastest_in_direction(const Friction& friction, const gain_of<signal::force, sign
 /// on.
 /// Derivation: docs/derivations/stick_slip.md.
 template <class Real, friction_law<Real> Friction>
-quantity_of<signal::velocity, Real>
+[[gnu::always_inline]] inline quantity_of<signal::velocity, Real>
 stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
            quantity_of<signal::force, Real> drive, quantity<si::time, Real> h) noexcept {
     using velocity = quantity_of<signal::velocity, Real>;
@@ -143,15 +148,17 @@ stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<
     const force push = force(mass * v / h) + drive; // what would bring the axis to rest within h, and the drive
     const gain_of<signal::force, signal::velocity, Real> slope = mass / h + friction.viscous();
     const bool forward = push > force();
-    const force size = forward ? push : -push;
+    const force size = force::from_value(forward ? push.value() : -push.value());
 
     if constexpr (friction_law_with_slope<Friction, Real>)
         if (friction.convex()) { // from where the axis is: a step does not change it much
-            const bool goes_on = forward ? v > velocity() : v < velocity();
-            if (!goes_on && size <= friction.breakaway()) return velocity();
-            const velocity next = detail::fastest_sliding<Real>(
-                friction, slope, size, goes_on ? (forward ? v : -v) : velocity(size / slope));
-            return forward ? next : -next;
+            const Real along = forward ? v.value() : -v.value(), most = size.value();
+            const bool goes_on = along > Real(0);
+            if (!goes_on && most <= friction.breakaway().value()) return velocity();
+            const Real next = detail::fastest_sliding<Real>(friction, slope.value(), most,
+                                                            goes_on ? along : Real(most / slope.value()))
+                                  .value();
+            return velocity::from_value(forward ? next : -next);
         }
     // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A
     // machine axis needs 2 to 5 passes; more only where two solutions are about to vanish.

@@ -87,11 +87,12 @@ public:
     /// Of the level by the speed, where it is `level`; for shape 1, where the curve is convex.
     struct falling {
         gain_of<Out, In, Real> slope; ///< <= 0
-        argument scale;               ///< over which slope and curvature (slope / scale) change e-fold
+        decltype(Real(1) /
+                 argument()) inverse_scale; ///< of the speed over which slope and curvature change e-fold
     };
     bool convex() const noexcept { return given_.shape == 1; }
-    falling fall(argument, value level) const noexcept {
-        return {-((level - coulomb_) / velocity_), velocity_};
+    [[gnu::always_inline]] falling fall(argument, value level) const noexcept {
+        return {-((level - coulomb_) * inverse_velocity_), inverse_velocity_};
     }
 
     bool faulted() const noexcept { return out_.faulted(); }
