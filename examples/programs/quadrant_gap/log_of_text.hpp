@@ -26,7 +26,7 @@ template <class Import>
 machine_log log_of_text(const std::string& text, const std::string& name, const Import& through) {
     std::optional<bad_input> refused;
     try {
-        return detail::log_reader(text, name).read();
+        return quadrant::diagnosis::detail::log_reader(text, name).read();
     } catch (const bad_input& fault) {
         refused = fault;
     }
