@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: tests/run.sh          everything that a change must pass; some 20 minutes on 2 cores, nothing cached
-#        tests/run.sh all      and clang-tidy and longer fuzzing
+# usage: tests/run.sh          everything that a change must pass
+#        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, each source compiled alone
 #        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
@@ -19,12 +19,13 @@ mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
 
 fuzz_seconds=20          # all fuzzers together
+tests=                   # CMake's QUADRANT_TESTS
+together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 1.3 GB a compiler
 
 case "${1-}" in
-'') set -- release sanitize thread fuzz callgrind ;;
+'') set -- release sanitize fuzz callgrind ;;
 all)
-    fuzz_seconds=120
-    export QUADRANT_TESTS=all
+    fuzz_seconds=120 tests=all together=0
     set -- release sanitize thread fuzz callgrind tidy
     ;;
 esac
@@ -51,7 +52,8 @@ build_preset() {
     preset=$1
     shift
     {
-        cmake --preset "$preset" -B "$build/$preset" "-DQUADRANT_SHARED=$shared" &&
+        cmake --preset "$preset" -B "$build/$preset" "-DQUADRANT_SHARED=$shared" "-DQUADRANT_TESTS=$tests" \
+            -DQUADRANT_TOGETHER=$together &&
             cmake --build "$build/$preset" --parallel "$jobs" --target "$@" -- -k 0
     } >"$logs/$preset-build.txt" 2>&1 && return
     broken "building $preset" "$logs/$preset-build.txt"
@@ -160,13 +162,13 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
     libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
     chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace \
     python3-dev python3-pybind11 python3-numpy python3-pandas python3-setuptools python3-wheel python3-venv python3-pytest python3-build || exit 1
-[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
+[ "$tests" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
     libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev python3-pyqt5.qtwebengine xvfb ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
-[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
-[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
-[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page will be skipped"
-[ "${QUADRANT_TESTS-}" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
+[ "$tests" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
+[ "$tests" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
+[ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page will be skipped"
+[ "$tests" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
 
 for phase; do
     case $phase in

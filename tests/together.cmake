@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSL-1.0
 # usage: cmake -DOUT=FILE.cpp "-DFILES=A.cpp;B.cpp" -P together.cmake
-# One source in place of several tests: what they include is read once and instantiated once. Each test stands in a
-# namespace of its own, so that two may have helpers of one name; their includes come before, because none may be read
-# inside a namespace (a second time #pragma once leaves nothing of them).
+# One source in place of several tests: what they include is read once and instantiated once. Each test stands in
+# a namespace of its own, so that two may have helpers of one name; their includes come before, because none may be
+# read inside a namespace (a second time #pragma once leaves nothing of them).
 cmake_minimum_required(VERSION 3.24)
 set(includes)
 set(tests)
