@@ -93,17 +93,18 @@ TEST_CASE("lowpass: the gain at standstill is one exactly") {
     CHECK(off == 0);
 }
 TEST_CASE("line: exact at both ends; arc: exact at the start") {
+    using path::point;
     dice roll;
     int off = 0;
     const auto place = [&] { return point{roll(-2, 2), roll(-2, 2), roll(-2, 2)}; };
     const auto same = [](point a, point b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
     for (int n = 0; n < trials; ++n) {
         const point from = place(), to = place();
-        const line straight(from, to);
+        const path::line straight(from, to);
         off += !same(straight.position(0), from) || !same(straight.position(straight.length()), to) ||
                !same(straight.position(straight.length() * roll(1, 2)), to) ||
                !same(straight.position(-roll(0, 1)), from);
-        const arc bent(from, to, roll(0.1, 6), roll(-1, 1));
+        const path::arc bent(from, to, roll(0.1, 6), roll(-1, 1));
         off += !same(bent.position(0), from);
     }
     CHECK(off == 0);

@@ -76,7 +76,7 @@ TEST_CASE("retune: notch and butterworth, the output is off by (b0' - b0)(x[k] -
     check_filter<notch<signal::force>>(
         [](auto& r) {
             return notch<signal::force>::parameters{.centre = r.decades(10, 900) * 1_Hz,
-                                                    .damping = r.decades(0.01, 2)};
+                                                    .width = r.decades(0.01, 2)};
         },
         bound);
     check_filter<butterworth<signal::force>>(

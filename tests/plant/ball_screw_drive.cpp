@@ -74,8 +74,8 @@ TEST_CASE("ball_screw_drive: its model is what it does at low speed of change: g
     drive d{with(level(0)), Ts};
     const auto m = d.model();
     for (int k = 0; k < 5000; ++k) d(1_A); // 13 time constants
-    CHECK(near(d.now().v.value(), m.gain.value() / m.damping.value(), 1e-5));
-    CHECK(near(m.damping.value(), 2.5485, 1e-4)); // B/J
+    CHECK(near(d.now().v.value(), m.gain.value() / m.viscous_rate.value(), 1e-5));
+    CHECK(near(m.viscous_rate.value(), 2.5485, 1e-4)); // B/J
 }
 TEST_CASE("ball_screw_drive: sticks by one level forward and another backward, and a push on the table counts "
           "by its lever") {

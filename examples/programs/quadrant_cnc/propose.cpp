@@ -71,7 +71,7 @@ proposal propose(const frf_file& measured, const axis_description& a, double per
             design([&](frequency f) { return axis(f) * block.response(f); });
             if (out.gains->velocity_gain > without.velocity_gain)
                 out.notch = proposed_notch{.frequency_Hz = found.parameters.centre.value(),
-                                           .width = found.parameters.damping,
+                                           .width = found.parameters.width,
                                            .prominence_dB = found.prominence_db,
                                            .without = without.velocity_gain};
             else
