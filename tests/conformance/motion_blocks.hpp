@@ -60,7 +60,7 @@ template <class Command, class Real> struct inverted : quadrant::inverse_model<C
     }
     std::complex<double> response(quadrant::frequency) const {
         const auto& p = this->given();
-        return (1 + quadrant::detail::plain(p.damping)) / quadrant::detail::plain(p.gain);
+        return (1 + quadrant::detail::plain(p.viscous_rate)) / quadrant::detail::plain(p.gain);
     }
 };
 
