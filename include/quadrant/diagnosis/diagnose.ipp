@@ -32,8 +32,10 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
                        ? verdict::explained
                        : verdict::partly_explained;
         const auto& given = c.models.given();
-        const bool as_given = !c.models.pays(c.models.calibrated(), given) &&
-                              c.models.structure(given, c.noise) < c.limits.structure;
+        // What a law of friction may be wrong by is no gap where calibration does no better.
+        const bool as_given =
+            !c.models.pays(c.models.calibrated(), given) &&
+            (c.models.structure(given, c.noise) < c.limits.structure || c.calibrated_within_its_laws());
         return as_given ? verdict::no_gap : verdict::within_tolerance;
     }
     const bool blamed = std::any_of(causes.begin(), causes.end(), claimed);

@@ -57,6 +57,7 @@ std::vector<Real> zero_phase_of(std::span<const Real> x, double corner_Hz, doubl
     run(y.rbegin(), y.rend());
     return {y.begin() + static_cast<std::ptrdiff_t>(pad), y.begin() + static_cast<std::ptrdiff_t>(pad + n)};
 }
+/// The same of numbers.
 inline std::vector<double> zero_phase(std::span<const double> x, double corner_Hz, double period) {
     return zero_phase_of<double>(x, corner_Hz, period);
 }
