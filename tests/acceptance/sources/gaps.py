@@ -75,7 +75,8 @@ def state(case, found):
 
 
 def page(cases):
-    out = ["# Gaps of the sources, diagnosed", ""]
+    out = ["# Gaps of the sources, diagnosed", "",
+           "For whoever knows the three published machines. You get what their authors could not explain, and what a log would show.", ""]
 
     def say(text):
         out.extend(textwrap.wrap(text, 112, break_long_words=False, break_on_hyphens=False))
