@@ -119,7 +119,8 @@ public:
 
     value operator()(argument e) noexcept {
         value early = read(reader_);
-        if (state_.fading > 0) early += Real(cycle_.left(state_.fading)) * (read(old_reader_) - early);
+        if (state_.fading > 0) [[unlikely]]
+            early += Real(cycle_.left(state_.fading)) * (read(old_reader_) - early);
         state_.r.put(early);
         const value m = e + state_.r.ago(given_.ahead);
         state_.m.put(m);
@@ -131,7 +132,8 @@ public:
         state_.next_p = now + 1 == size_p ? 0 : now + 1;
         state_.m.advance();
         state_.r.advance();
-        if (state_.fading > 0 && --state_.fading == 0 && cycle_.is_pending()) start();
+        if (state_.fading > 0 && --state_.fading == 0 && cycle_.is_pending()) [[unlikely]]
+            start();
         return out_.keep(y);
     }
     void reset() noexcept {
