@@ -38,7 +38,7 @@ part apply apply read_diagnosis read_machine text/json_text effect/effect_list
 part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/drive_estimate fit/record fit/drive_noise fit/command_noise model/linear_past model/sample_loss
 part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
 part case which/axis_case which/block_places where/places how_far/how_far how_far/closed_loop how_far/driven_loop
-part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start
+part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start chain/position_compensation
 part compensate compensate compensate/compensation compensate/tracking_forecast
 part controllers controller/kinds where/controller_box where/controller_mismatch
 cp "$here/binding.cpp" "$build/binding.cpp"
