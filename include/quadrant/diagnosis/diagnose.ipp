@@ -304,13 +304,10 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
 
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
 /// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
-/// Beside forces without a name a corrected model predicts best by standing still. A play hides the motor's
-/// motion, an error of the reading is none, and a drive's loops are replayed with the readings.
+/// Beside forces without a name a corrected model predicts best by standing still. A drive's loops are replayed
+/// with the readings.
 inline bool contradicts_motion(const axis_case& c) {
-    const auto reads = [](const effect* e) { return e->joins == joint::reading; };
-    const auto& effects = c.best().effects;
-    if (effects.empty() || c.models.over() || c.axis.drive.closes() || c.best().fit.plant.backlash > 0 ||
-        std::any_of(effects.begin(), effects.end(), reads))
+    if (c.best().effects.empty() || c.models.over() || c.axis.drive.closes() || !shows_along_motion(c.best()))
         return false;
     return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
 }

@@ -22,6 +22,13 @@ struct rival {
 
 inline double square(double x) { return x * x; }
 
+/// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides
+/// the motor's motion, and an error of the reading is no force.
+inline bool shows_along_motion(const candidate& m) {
+    const auto reads = [](const effect* e) { return e->joins == joint::reading; };
+    return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
+}
+
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments
 /// (pseudo-BMA with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A
 /// hold-out log counts as it stands.

@@ -67,14 +67,6 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
-/// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides
-/// the motor's motion, an error of the reading is no force, and a drive's loops are replayed with the
-/// readings.
-inline bool shows_along_motion(const candidate& m) {
-    const auto reads = [](const effect* e) { return e->joins == joint::reading; };
-    return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
-}
-
 /// What the best model takes off the residual force beside the model without one of its causes, on this log and
 /// on the hold-out log, and off the forces along the measured motion: a model that stands still where the axis
 /// moves leaves little to its predictions and all of them.
