@@ -91,11 +91,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
         const auto run = loop(plant_of(model), controller);
         if (!run) return {};
         const std::vector<double> all(judged_.segments, 1.0);
-        double error = energy(difference(run->position, log_.position)).rms(all);
-        // A drive's command that was not recorded is what its described loops make of the motion.
-        if (!judged_.observer.drive || judged_.observer.drive->tapped())
-            error *= energy(difference(run->command, log_.command)).rms(all);
-        out.push_back(error);
+        const double way = energy(difference(run->position, log_.position)).rms(all);
+        // A drive's command that was not recorded is what its described loops make of the motion: the motion
+        // stands for both.
+        const bool recorded = !judged_.observer.drive || judged_.observer.drive->tapped();
+        out.push_back(way * (recorded ? energy(difference(run->command, log_.command)).rms(all) : way));
     }
     return out;
 }

@@ -53,18 +53,19 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
         all.a(i, i) += 1 / (p.spread * p.spread);
         all.g[i] += (x - p.expected) / (p.spread * p.spread);
     }
-    // At the optimum only what stands at a bound presses, and against the bound; the rest is where the fit stopped.
-    Eigen::VectorXd pressing = all.g;
-    if (!replayed)
-        for (Eigen::Index i = 0; i < n; ++i)
-            if (all.g[i] > 0 ? low[i] < 0 : high[i] > 0) pressing[i] = 0;
     c.held_out.assign(s.segments, 0.0);
     c.leave.clear();
     std::array<Eigen::VectorXd, folds> step;
     for (std::size_t f = 0; f < folds; ++f) {
         Eigen::MatrixXd a = all.a - sums[f].a;
         a.diagonal() *= 1 + 1e-9;
-        step[f] = bounded_step(a, pressing - sums[f].g, low, high);
+        if (replayed)
+            step[f] = bounded_step(a, all.g - sums[f].g, low, high);
+        else // at the optimum, where nothing presses against a bound
+            step[f] = solved(a, sums[f].g)
+                          .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
+                          .cwiseMax(low)
+                          .cwiseMin(high);
         c.leave.push_back(c.fit.x + step[f]);
     }
     double readings = 0;
