@@ -25,7 +25,7 @@ together=13              # CMake's QUADRANT_TOGETHER: half of the processor time
 case "${1-}" in
 '') set -- release sanitize fuzz callgrind ;;
 all)
-    fuzz_seconds=120 tests=all
+    fuzz_seconds=60 tests=all
     set -- release sanitize thread fuzz callgrind tidy
     ;;
 esac
@@ -120,8 +120,9 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
     [ -x "$1" ] || { left_out "fuzz: no fuzzers"; return; }
     for fuzzer; do
         name=${fuzzer##*/}
-        found=$build/found/$name # grows from run to run
+        found=$build/found/$name # grows from run to run; what earlier runs found begins it (tests/fuzz/grow.sh)
         mkdir -p "$found"
+        [ ! -f "tests/fuzz/$name.tar.xz" ] || tar -C "$found" -xJf "tests/fuzz/$name.tar.xz"
         { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
         { printf '\001' && cat examples/data/machine.json; } >"$found/machine"
         { printf '\002' && cat tests/fuzz/diagnosis.json; } >"$found/diagnosis"
