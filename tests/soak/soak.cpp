@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage: soak SAMPLES [PART OF]
-// Every block of tests/conformance/blocks.hpp in double for so many samples; PART 0 ... OF - 1 of the blocks alone,
-// so that several processes share the work. The plants that integrate in sub-steps, which run in simulations and not
-// in a servo loop, make so many sub-steps: a tenth of the calls where a period has ten.
-// Stretches of noise, of a held value, of rest and of a slow sine, of random length. A line a block; exit code 1 where
-// one raised a fault, gave what is no finite number, allocated, or is not as new after a reset.
+// Every block of tests/conformance/blocks.hpp in double for so many samples; PART 0 ... OF - 1 of the blocks
+// alone, so that several processes share the work. The plants that integrate in sub-steps, which run in
+// simulations and not in a servo loop, make so many sub-steps: a tenth of the calls where a period has ten.
+// Stretches of noise, of a held value, of rest and of a slow sine, of random length. A line a block; exit code
+// 1 where one raised a fault, gave what is no finite number, allocated, or is not as new after a reset.
 #include "conformance/blocks.hpp"
 
 #include <cmath>
