@@ -3,7 +3,8 @@
 """usage: compile_files.py BUILD: processor seconds and memory of compiling each file of the diagnosis with g++ -O2, as rows of a table.
 
 BUILD was configured with CMAKE_EXPORT_COMPILE_COMMANDS. Exit code 1: a file takes more than 15 s or 600 MB, in the best of three
-runs; other programs make a compiler slower. No compiler cache is asked."""
+runs; other programs make a compiler slower. As many compile at a time as there are cores. No compiler cache is asked."""
+import concurrent.futures
 import json
 import os
 import shlex
@@ -37,13 +38,17 @@ def main(build):
     if not entries:
         raise SystemExit(f"{build} makes no file of the diagnosis with g++")
     too_much = []
-    with tempfile.TemporaryDirectory() as folder:
-        for entry in sorted(entries, key=lambda e: e["file"]):
-            command = own_command(entry, os.path.join(folder, "object"))
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        def cost(entry):
+            command = own_command(entry, os.path.join(folder, os.path.basename(entry["file"]) + ".o"))
             seconds, megabytes = measured(command, entry["directory"])
             for _ in range(runs - 1):
                 if seconds > most_seconds:
                     seconds = min(seconds, measured(command, entry["directory"])[0])
+            return seconds, megabytes
+
+        entries.sort(key=lambda e: e["file"])
+        for entry, (seconds, megabytes) in zip(entries, pool.map(cost, entries)):
             name = os.path.basename(entry["file"])
             print(f"| {name} | {seconds:.1f} | {megabytes:.0f} |", flush=True)
             if seconds > most_seconds or megabytes > most_megabytes:

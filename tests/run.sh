@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # usage: tests/run.sh          everything that a change must pass
-#        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, each source compiled alone
+#        tests/run.sh all      and a second sanitizer (threads), clang-tidy, longer fuzzing, every case of every test
 #        tests/run.sh PHASE... of: release sanitize thread fuzz callgrind tidy
 # Environment: QUADRANT_SHARED  folder with gap/ and data/ (default: shared beside the repository)
 #              QUADRANT_BUILD   where to build (default: build in the repository)
@@ -25,7 +25,7 @@ together=13              # CMake's QUADRANT_TOGETHER: half of the processor time
 case "${1-}" in
 '') set -- release sanitize fuzz callgrind ;;
 all)
-    fuzz_seconds=120 tests=all together=0
+    fuzz_seconds=60 tests=all
     set -- release sanitize thread fuzz callgrind tidy
     ;;
 esac
@@ -120,8 +120,9 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
     [ -x "$1" ] || { left_out "fuzz: no fuzzers"; return; }
     for fuzzer; do
         name=${fuzzer##*/}
-        found=$build/found/$name # grows from run to run
+        found=$build/found/$name # grows from run to run; what earlier runs found begins it (tests/fuzz/grow.sh)
         mkdir -p "$found"
+        [ ! -f "tests/fuzz/$name.tar.xz" ] || tar -C "$found" -xJf "tests/fuzz/$name.tar.xz"
         { printf '\000' && head -n 40 examples/data/log.csv; } >"$found/log"
         { printf '\001' && cat examples/data/machine.json; } >"$found/machine"
         { printf '\002' && cat tests/fuzz/diagnosis.json; } >"$found/diagnosis"
@@ -167,7 +168,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
 [ "$tests" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
 [ "$tests" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
-[ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page will be skipped"
+[ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page.* will be skipped"
 [ "$tests" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
 
 for phase; do

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: soak SAMPLES [PART OF]    every block of tests/conformance/blocks.hpp in double for so many samples;
-// PART 0 ... OF - 1
-//                                  of the blocks alone, so that several processes share the work
+// usage: soak SAMPLES [PART OF]
+// Every block of tests/conformance/blocks.hpp in double for so many samples; PART 0 ... OF - 1 of the blocks
+// alone, so that several processes share the work. The plants that integrate in sub-steps, which run in
+// simulations and not in a servo loop, make so many sub-steps: a tenth of the calls where a period has ten.
 // Stretches of noise, of a held value, of rest and of a slow sine, of random length. A line a block; exit code
 // 1 where one raised a fault, gave what is no finite number, allocated, or is not as new after a reset.
 #include "conformance/blocks.hpp"
@@ -55,6 +56,18 @@ private:
     int kind_ = 0;
 };
 
+/// Sub-steps of one call: those of the plant, 1 for every other block.
+template <class Block> std::uint64_t steps_of(const Block& block) {
+    if constexpr (requires { block.given().substeps; })
+        return block.given().substeps;
+    else if constexpr (requires { block.given().steps; })
+        return block.given().steps;
+    else if constexpr (requires { block.box.motor; })
+        return steps_of(block.box.motor);
+    else
+        return 1;
+}
+
 template <class Block>
 bool soaked(const char* name, double amplitude, const Block& fresh, std::uint64_t samples) {
     using in = input_of<Block, double>;
@@ -63,8 +76,9 @@ bool soaked(const char* name, double amplitude, const Block& fresh, std::uint64_
     years input(amplitude);
     double most = 0;
     std::uint64_t not_finite = 0;
+    const std::uint64_t steps = steps_of(fresh), calls = (samples + steps - 1) / steps;
     const std::size_t before = allocations;
-    for (std::uint64_t k = 0; k < samples; ++k) {
+    for (std::uint64_t k = 0; k < calls; ++k) {
         const double y = give(block, input());
         not_finite += !std::isfinite(y);
         most = std::abs(y) > most ? std::abs(y) : most;
@@ -80,7 +94,9 @@ bool soaked(const char* name, double amplitude, const Block& fresh, std::uint64_
         same = same && give(block, x) == give(as_new, x);
     }
     const bool good = !faulted && !allocated && not_finite == 0 && same;
-    std::printf("%-50s largest output %.3g %s\n", name, most,
+    std::printf("%-50s largest output %.3g in %llu calls of %llu %s: %s\n", name, most,
+                static_cast<unsigned long long>(calls), static_cast<unsigned long long>(steps),
+                steps == 1 ? "step" : "steps",
                 good        ? "good"
                 : faulted   ? "FAULTED"
                 : allocated ? "ALLOCATED"
