@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Time of one row of one plant in the observer's pass over a log, alone and in lanes, by the instruction set that
-// this file is compiled for. The counter a_lane_sample is that time.
+// Time of one row of one plant in the observer's pass over a log, alone and in lanes, by the instruction set
+// that this file is compiled for. The counter a_lane_sample is that time.
 //   build/bench/benchmarks/plant_pass_avx2
 #include <quadrant/diagnosis/fit/pass.hpp>
 #include <quadrant/diagnosis/model/plant_model.hpp>

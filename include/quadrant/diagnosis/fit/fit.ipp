@@ -222,8 +222,8 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::next() {
 }
 
 QUADRANT_DIAGNOSIS_DECL void fit_course::try_step() {
-    // Nearly every first step is better. Where it is not, all that may follow it are asked for at once: in lanes
-    // they cost little more than the next one alone.
+    // Nearly every first step is better. Where it is not, all that may follow it are asked for at once: in
+    // lanes they cost little more than the next one alone.
     const std::size_t most = attempt_ == 0 ? 1 : static_cast<std::size_t>(attempts - attempt_);
     tries_.clear();
     for (double damping = damping_; tries_.size() < most; damping *= 8) {
