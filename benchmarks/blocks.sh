@@ -12,6 +12,8 @@ mkdir -p "$build"
 {
     cmake -S "$root" -B "$here" -G Ninja -DCMAKE_CXX_COMPILER=g++ -DCMAKE_BUILD_TYPE=Release -DQUADRANT_BUILD_TESTS=OFF &&
         cmake --build "$here" --target blocks_count blocks_time xy_loop xy_loop_count quadrant-latency &&
+        { ! cmake --build "$here" --target help | grep -q plant_pass_sse2 ||
+            cmake --build "$here" --target plant_pass_sse2 plant_pass_avx2 plant_pass_avx512f; } &&
         { ! command -v arm-none-eabi-g++ >/dev/null || cmake --build "$here" --target latency_cortex_m7; }
 } >"$here.log" 2>&1 || { cat "$here.log" >&2; exit 1; }
 
@@ -65,6 +67,16 @@ both_axes() {
         done
     done
     sed -n 's/^\(xy_loop\/hal_chain[^|]*\)|\(.*\)/| \1 | | | \2 |/p' "$here/xy_times.txt" # where LinuxCNC is installed
+}
+plant_passes() { # by instruction set; the program's own counter, the shortest of 20
+    for set in sse2 avx2 avx512f; do
+        [ -x "$here/benchmarks/plant_pass_$set" ] && grep -q $set /proc/cpuinfo || continue
+        "$here/benchmarks/plant_pass_$set" --benchmark_min_time=0.02 --benchmark_repetitions=20 --benchmark_format=csv 2>/dev/null |
+            awk -F, -v set="$set" '/^"plant_pass/ && !/_(mean|median|stddev|cv)"/ { gsub(/"/, "", $1); t = $NF * 1e9
+                if (!($1 in best)) order[++n] = $1
+                if (!($1 in best) || t < best[$1]) best[$1] = t }
+                END { for (i = 1; i <= n; ++i) printf "| %s, %s | %.1f |\n", order[i], set, best[order[i]] }'
+    done
 }
 both_axes_v3() { # the same for x86-64-v3, products and sums fused where the compiler likes, beside an expert's loop
     grep -q avx2 /proc/cpuinfo || { echo "| (no AVX2 here) | | | | |"; return; }
@@ -171,6 +183,17 @@ without it or QEMU the last line says so). An own loop: [how to](howto/measure_m
 \`\`\`
 $("$here/examples/quadrant-latency" --bound)
 \`\`\`
+
+## A plant of the diagnosis
+
+One row of one plant in the pass of a diagnosis over a log: an observer that the readings correct, around a \`servo_axis\` with Stribeck friction whose
+delay splits each period, so that a row is two steps of it; \`undelayed\`: one step; \`cogging\`: two steps with four harmonics over the position.
+\`scalar\`: one plant alone; \`lanes\`: 16 plants in one pass, the time divided by 16. Programs choose the instruction set when they start
+(\`build/bench/benchmarks/plant_pass_avx2\` and its sisters; the target must be named when they are built).
+
+| | ns a lane and row |
+|---|---|
+$(plant_passes)
 
 ## Sub-steps of a plant
 

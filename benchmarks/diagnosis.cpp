@@ -47,39 +47,6 @@ void one_pass(benchmark::State& state) {
     state.SetComplexityN(state.range(0));
 }
 
-/// So many plants on 28 000 rows, in one pass: an axis of 320 kg with Stribeck friction whose delay splits each
-/// period. The counter is the time of one plant's row.
-void plant_pass(benchmark::State& state, std::size_t plants) {
-    constexpr std::size_t rows = 28000;
-    constexpr double period = 5e-4;
-    plant_model model;
-    model.mass = 320;
-    model.force_constant = 1450;
-    model.delay = 4e-4;
-    model.friction.viscous_slope = 1750;
-    model.friction.coulomb = 122;
-    model.friction.excess = 55;
-    model.friction.stribeck_velocity = 0.0022;
-    model.friction.contact.length = 2e-7;
-    std::vector<double> position(rows), command(rows);
-    for (std::size_t k = 0; k < rows; ++k) {
-        const double t = period * static_cast<double>(k);
-        position[k] = std::round(0.03 * std::sin(4.4 * t) / 2.5e-7) * 2.5e-7;
-        command[k] = 0.14 * (std::cos(4.4 * t) > 0 ? 1 : -1) - 0.13 * std::sin(4.4 * t);
-    }
-    const predictor p{.period = period, .corner_Hz = 60, .position = position, .command = command};
-    std::vector<plant_model> models(plants, model);
-    for (std::size_t i = 0; i < plants; ++i) models[i].mass *= 1 + 0.001 * static_cast<double>(i);
-    std::vector<std::vector<double>> e(plants);
-    for (auto _ : state) {
-        p.run(models, e);
-        benchmark::DoNotOptimize(e.data());
-    }
-    state.counters["a_lane_sample"] =
-        benchmark::Counter(static_cast<double>(rows * plants),
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-}
-
 void whole(benchmark::State& state, rules r) {
     r.threads = 1;
     const auto log = rows(static_cast<std::size_t>(state.range(0)));
@@ -99,8 +66,6 @@ BENCHMARK(one_pass)
     ->Range(7000, 28000)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity(benchmark::oN);
-BENCHMARK_CAPTURE(plant_pass, scalar, 1)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(plant_pass, lanes, 8)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(whole, in_full, rules{})
     ->RangeMultiplier(2)
     ->Range(7000, 28000)

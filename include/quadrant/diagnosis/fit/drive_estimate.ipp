@@ -358,8 +358,8 @@ private:
     }
     std::vector<std::vector<double>> run(std::span<const plant_model> plants) const {
         std::vector<std::vector<double>> e(plants.size());
-        for (std::size_t i = 0; i < plants.size(); i += predictor::abreast) {
-            const std::size_t many = std::min(predictor::abreast, plants.size() - i);
+        for (std::size_t i = 0; i < plants.size(); i += predictor::in_a_group) {
+            const std::size_t many = std::min(predictor::in_a_group, plants.size() - i);
             run_.run(plants.subspan(i, many), std::span(e).subspan(i, many));
         }
         for (auto& each : e) make_ready(each);
@@ -383,7 +383,7 @@ private:
     Eigen::MatrixXd slopes(const candidate& c) const {
         const auto n = static_cast<Eigen::Index>(c.residual.size());
         Eigen::MatrixXd out(n, c.x.size());
-        constexpr auto moved = static_cast<Eigen::Index>(predictor::abreast) - 1;
+        constexpr auto moved = static_cast<Eigen::Index>(predictor::in_a_group) - 1;
         for (Eigen::Index i = 0; i < c.x.size(); i += moved) {
             std::vector<plant_model> plants{c.plant};
             std::vector<double> step;

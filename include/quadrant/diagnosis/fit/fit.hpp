@@ -52,7 +52,7 @@ public:
     /// The objective of models as they stand, side by side.
     std::vector<double> objectives(std::span<const plant_model> plants) const;
     /// Several fits side by side: what their next steps need is found in one pass. As many are under way as
-    /// fill the lanes twice; the others would hold their slopes in memory meanwhile.
+    /// fill a pass; the others would hold their slopes in memory meanwhile.
     template <class Course> void run(std::span<Course> courses) const {
         std::vector<plant_model> plants;
         std::vector<std::vector<double>> innovation;
@@ -61,7 +61,7 @@ public:
         for (std::size_t begun = 0;;) {
             plants.clear();
             for (Course* c : under_way) c->ask(plants);
-            while (begun < courses.size() && plants.size() < 2 * predictor::abreast) {
+            while (begun < courses.size() && plants.size() < predictor::abreast) {
                 under_way.push_back(&courses[begun++]);
                 under_way.back()->ask(plants);
             }
@@ -132,7 +132,8 @@ private:
     /// The next iteration, if there is one.
     void next();
     void try_step();
-    void compare();
+    /// Whether the trial is better; then it is the best, and its damping falls.
+    bool compare();
     /// The end of an iteration: whether another follows, and with which slopes.
     void conclude();
 
@@ -141,6 +142,7 @@ private:
     /// A step that promises less is not tried. Far below the hair: where the score is rough a step gains more
     /// than its quadratics promise.
     static constexpr double least_promise = 1e-3;
+    static constexpr int attempts = 6; ///< of one iteration, with more damping each
 
     const fitter* fitter_;
     known_slopes known_;
@@ -149,6 +151,7 @@ private:
     fit_result best_, trial_{};
     std::vector<viewed_signal> slopes_{}; ///< of the parameters behind the known ones
     std::vector<double> step_{};
+    std::vector<Eigen::VectorXd> tries_{}; ///< points that are asked for at once, the least damped first
     double damping_ = 1e-3, damping_before_ = 0, since_ = 0,
            gain_ = 0; // since: what was gained with these slopes
     bool better_ = false;

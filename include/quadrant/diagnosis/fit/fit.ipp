@@ -136,8 +136,12 @@ QUADRANT_DIAGNOSIS_DECL fit_course::fit_course(const fitter& f, const plant_mode
 QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
     if (done()) return;
     if (stage_ == stage::begin) plants.push_back(best_.plant);
-    if (stage_ == stage::trial) plants.push_back(trial_.plant);
-    if (stage_ != stage::trial) {
+    if (stage_ == stage::trial) {
+        for (const Eigen::VectorXd& x : tries_) {
+            plants.push_back(best_.plant);
+            fitter::put(plants.back(), best_.parameters, x);
+        }
+    } else {
         auto each = fitter::moved(best_, known_.count(), step_);
         plants.insert(plants.end(), std::make_move_iterator(each.begin()), std::make_move_iterator(each.end()));
     }
@@ -172,11 +176,23 @@ QUADRANT_DIAGNOSIS_DECL std::size_t fit_course::took(std::span<std::vector<doubl
         if (!better_) damping_ = damping_before_;
         next();
         return step_.size();
-    case stage::trial:
-        trial_.innovation.rows.swap(innovation[0]);
-        fitter_->judge(trial_, choices[0]);
-        compare();
-        return 1;
+    case stage::trial: {
+        const std::size_t asked = tries_.size();
+        for (std::size_t i = 0; i < asked && !better_; ++i) {
+            trial_.x = tries_[i];
+            trial_.plant = best_.plant;
+            trial_.parameters = best_.parameters;
+            fitter::put(trial_.plant, trial_.parameters, trial_.x);
+            trial_.innovation.rows.swap(innovation[i]);
+            fitter_->judge(trial_, choices[i]);
+            if (!compare()) ++attempt_;
+        }
+        if (!better_ && attempt_ < attempts)
+            try_step();
+        else
+            conclude();
+        return asked;
+    }
     case stage::done:
         break;
     }
@@ -206,16 +222,21 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::next() {
 }
 
 QUADRANT_DIAGNOSIS_DECL void fit_course::try_step() {
-    double promised = 0;
-    trial_.x = fitter_->step(best_, damping_, promised);
-    if (!(promised > least_promise)) return conclude();
-    trial_.plant = best_.plant;
-    trial_.parameters = best_.parameters;
-    fitter::put(trial_.plant, trial_.parameters, trial_.x);
+    // Nearly every first step is better. Where it is not, all that may follow it are asked for at once: in
+    // lanes they cost little more than the next one alone.
+    const std::size_t most = attempt_ == 0 ? 1 : static_cast<std::size_t>(attempts - attempt_);
+    tries_.clear();
+    for (double damping = damping_; tries_.size() < most; damping *= 8) {
+        double promised = 0;
+        Eigen::VectorXd x = fitter_->step(best_, damping, promised);
+        if (!(promised > least_promise)) break;
+        tries_.push_back(std::move(x));
+    }
+    if (tries_.empty()) return conclude();
     stage_ = stage::trial;
 }
 
-QUADRANT_DIAGNOSIS_DECL void fit_course::compare() {
+QUADRANT_DIAGNOSIS_DECL bool fit_course::compare() {
     if (trial_.objective < best_.objective) {
         gain_ = best_.objective - trial_.objective;
         trial_.quadratic = std::move(best_.quadratic);
@@ -224,8 +245,7 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::compare() {
         damping_ = std::max(1e-6, damping_ / 24);
     }
     damping_ *= 8;
-    if (!better_ && ++attempt_ < 6) return try_step();
-    conclude();
+    return better_;
 }
 
 QUADRANT_DIAGNOSIS_DECL void fit_course::conclude() {

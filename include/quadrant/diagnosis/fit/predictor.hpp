@@ -44,7 +44,10 @@ struct predictor {
     /// e'[k] = e[k] - e[k-1] + pole e'[k-1]: makes a drift of independent steps a signal of one size.
     static void take_drift_out(std::vector<double>& e, double pole);
 
-    static constexpr std::size_t abreast = 8; ///< plants in one pass
+    /// Plants in the lanes of one number, at most.
+    static constexpr std::size_t in_a_group = 8;
+    /// Plants in one pass: two groups that take turns. One alone waits most of its time for its own last step.
+    static constexpr std::size_t abreast = 2 * in_a_group;
     double period;                            ///< T [s]
     double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;

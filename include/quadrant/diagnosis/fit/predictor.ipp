@@ -73,14 +73,15 @@ QUADRANT_DIAGNOSIS_DECL void predictor::run(std::span<const plant_model> plants,
         const double chosen = run(plants[i], innovation[i], acceleration.empty() ? nullptr : &acceleration[i]);
         if (!choices.empty()) choices[i] = chosen;
     }
-    if (order.size() > abreast / 2)
+    if (order.size() > in_a_group / 2)
         std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
             return joints_of(plants[a]) > joints_of(plants[b]);
         });
     std::vector<plant_model> some;
     std::array<std::vector<double>, abreast> e, a;
-    for (std::size_t first = 0; first < order.size(); first += abreast) {
-        const std::size_t n = std::min(abreast, order.size() - first);
+    const std::size_t most = closed ? in_a_group : abreast; // loops that are closed share the steps of a row
+    for (std::size_t first = 0; first < order.size(); first += most) {
+        const std::size_t n = std::min(most, order.size() - first);
         some.clear();
         for (std::size_t i = 0; i < n; ++i) {
             some.push_back(plants[order[first + i]]);
@@ -128,12 +129,14 @@ private:
     std::size_t signals_;
 };
 
-/// use(rows of these signals): at most predictor::abreast, in lanes where there are several.
+/// use(rows of these signals), a group after the other, in lanes where there are several.
 template <class Use> void in_lanes(std::span<std::vector<double>> signals, const Use& use) {
-    if (signals.size() == 1)
-        use(rows_of_each<double>(signals), double{});
-    else
-        use(rows_of_each<lanes<predictor::abreast>>(signals), lanes<predictor::abreast>{});
+    constexpr std::size_t width = predictor::in_a_group;
+    for (; !signals.empty(); signals = signals.subspan(std::min(signals.size(), width)))
+        if (const auto some = signals.first(std::min(signals.size(), width)); some.size() == 1)
+            use(rows_of_each<double>(some), double{});
+        else
+            use(rows_of_each<lanes<width>>(some), lanes<width>{});
 }
 
 } // namespace detail

@@ -277,8 +277,9 @@ private:
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
     /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
-    /// lacks, from the part's numbers. `from`: where its own fit began.
-    void mend_from_parts(candidate& c, const candidate& from) const;
+    /// lacks, from the part's numbers; all of these side by side. `from`: where their own fits began.
+    void mend_from_parts(std::vector<candidate>& models, const std::vector<std::size_t>& which,
+                         const candidate& from) const;
     const candidate* tried(const candidate& from, const effect* added) const;
     std::string describe(const candidate& c) const;
 

@@ -97,12 +97,12 @@ search::with_each(const candidate& from, const std::vector<const effect*>& among
     sketch_each(from, rank, out, when_late::leave_out);
     finish_best(rank, rules_.finalists * effort(), out, when_late::leave_out);
     finish_near(rank, rules_.finalists * effort(), from, out);
+    mend_from_parts(out, rank, from);
     for (std::size_t i : rank) {
         if (out[i].missed) {
             missed_.insert(out[i].effects.back());
             continue;
         }
-        if (std::isfinite(out[i].total)) mend_from_parts(out[i], from);
         tell_(describe(out[i]));
         tried_.push_back(out[i]);
     }
@@ -125,8 +125,8 @@ search::with_these(const candidate& from, const std::vector<const effect*>& adde
     }
     sketch_each(from, fresh, out, when_late::go_on);
     finish_best(fresh, most, out, when_late::go_on);
+    mend_from_parts(out, fresh, from);
     for (std::size_t i : fresh) {
-        if (std::isfinite(out[i].total)) mend_from_parts(out[i], from);
         tell_(describe(out[i]));
         tried_.push_back(out[i]);
     }
@@ -671,6 +671,23 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::everyday() const {
     std::vector<const effect*> each;
     for (const effect* e : suspects())
         if (e->everyday) each.push_back(e);
+    // Each set from the one without its last name, and those that begin at the same one side by side.
+    std::vector<std::vector<std::size_t>> begun{{}};
+    for (std::size_t i = 0; i < begun.size(); ++i) {
+        const std::vector<std::size_t> set = begun[i]; // a copy: the list grows
+        candidate from;
+        for (const std::size_t j : set) from.effects.push_back(each[j]);
+        std::vector<const effect*> later;
+        for (std::size_t j = set.empty() ? 0 : set.back() + 1; j < each.size(); ++j) {
+            later.push_back(each[j]);
+            begun.push_back(set);
+            begun.back().push_back(j);
+        }
+        const auto known = std::find_if(tried_.begin(), tried_.end(), [&](const candidate& c) {
+            return std::isfinite(c.total) && same(c, from);
+        });
+        if (!set.empty() && known != tried_.end()) with_these(*known, later);
+    }
     std::vector<candidate> out;
     for (std::size_t set = 3; set < (std::size_t{1} << each.size()); ++set) {
         std::vector<const effect*> some;
@@ -793,22 +810,33 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_near(const std::vector<std::size_t>&
     });
 }
 
-QUADRANT_DIAGNOSIS_DECL void search::mend_from_parts(candidate& c, const candidate& from) const {
-    const candidate* part = nullptr;
-    for (const candidate& t : tried_)
-        if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
-            t.total > c.total + rules_.margin && (!part || t.total > part->total))
-            part = &t;
-    if (!part || over()) return;
-    const auto lacks =
-        std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(*part, e); });
-    std::vector<candidate> again{joined(*part, *lacks)};
-    sketch_each(*part, {0}, again, when_late::go_on);
-    if (!std::isfinite(again.front().fit.objective)) return;
-    finish(record_, again.front());
-    if (!(again.front().total > c.total)) return;
-    again.front().effects = c.effects; // what was added last stays last
-    c = std::move(again.front());
+QUADRANT_DIAGNOSIS_DECL void search::mend_from_parts(std::vector<candidate>& models,
+                                                     const std::vector<std::size_t>& which,
+                                                     const candidate& from) const {
+    std::vector<std::pair<std::size_t, candidate>> again; // of which model
+    for (const std::size_t i : which) {
+        const candidate& c = models[i];
+        if (!std::isfinite(c.total) || c.missed) continue;
+        const candidate* part = nullptr;
+        for (const candidate& t : tried_)
+            if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
+                t.total > c.total + rules_.margin && (!part || t.total > part->total))
+                part = &t;
+        if (!part || over()) continue;
+        const auto lacks =
+            std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(*part, e); });
+        std::vector<candidate> one{joined(*part, *lacks)};
+        sketch_each(*part, {0}, one, when_late::go_on);
+        if (std::isfinite(one.front().fit.objective)) again.emplace_back(i, std::move(one.front()));
+    }
+    std::vector<candidate*> sketches;
+    for (auto& [i, c] : again) sketches.push_back(&c);
+    finish(record_, sketches);
+    for (auto& [i, c] : again) {
+        if (!(c.total > models[i].total)) continue;
+        c.effects = models[i].effects; // what was added last stays last
+        models[i] = std::move(c);
+    }
 }
 
 QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, const effect* added) const {
