@@ -100,10 +100,10 @@ public:
         return {coulomb_ + excess, -(excess * inverse_velocity_), inverse_velocity_};
     }
 
-    /// The same law for the sub-steps of one period, while the block stands still: from one sub-step to the next the
-    /// speed changes by little, and the exponential at the new speed is the last one times that of the difference,
-    /// a short sum (difference up to 1/64 of the Stribeck velocity; else the exponential anew). Each sub-step adds
-    /// up to 4e-16 to the relative error of the part above Coulomb. A third of the time of a sub-step goes.
+    /// The same law for the sub-steps of one period. From one sub-step to the next the speed changes by little:
+    /// the exponential at the new speed is the last one times that of the difference, a short sum (difference
+    /// up to 1/64 of the Stribeck velocity; else the exponential itself). Each sub-step adds up to 4e-16 to the
+    /// relative error of the part above Coulomb. Refers to the law, which must not change meanwhile.
     class sub_steps {
     public:
         explicit sub_steps(const stribeck& law) noexcept : law_(law) {}
