@@ -69,7 +69,7 @@ template <class Real, class Friction>
 fastest_sliding(Friction& friction, const Real slope, const Real size, const Real start) noexcept {
     using velocity = quantity_of<signal::velocity, Real>;
     const Real close = Real(stick_slip_accuracy<Real>);
-    const auto within = [&](const Real& x) { return slope * x < size; }; // below size/slope, the speed without friction
+    const auto within = [&](const Real& x) { return slope * x < size; }; // below the speed without friction
     const auto held = [&](const Real& x) -> Real {
         if (within(x)) [[likely]]
             return x;

@@ -85,9 +85,9 @@ public:
         return coulomb_ + excess_ * exp(-exp(Real(given_.shape) * log(ratio)));
     }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
-    /// The level at a speed and its slope there; for shape 1, where the curve is convex. The level may be off from
-    /// `slip` by a unit in the last place: a multiplication is here in place of its division, which a plant would
-    /// wait for in every sub-step.
+    /// The level at a speed and its slope there; for shape 1, where the curve is convex. The level may be off
+    /// from `slip` by a unit in the last place: a multiplication stands here in place of its division, for which
+    /// a plant would wait in every sub-step.
     struct falling {
         value level;
         gain_of<Out, In, Real> slope; ///< <= 0
