@@ -86,7 +86,7 @@ public:
     }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
     /// The level at a speed and its slope there; for shape 1, where the curve is convex. The level may be off
-    /// from `slip` by a unit in the last place: a multiplication stands here in place of its division, for which
+    /// from `slip` by a unit in the last place: a multiplication stands here in place of its division, on which
     /// a plant would wait in every sub-step.
     struct falling {
         value level;
