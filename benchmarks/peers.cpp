@@ -2,10 +2,10 @@
 // usage: peers list            numbers and names; exit code 1 when two of one group do not give the same
 //        peers I SAMPLES       runs number I; peers.sh counts the instructions
 //        peers times           nanoseconds a sample of each, CPU time, the shortest of 60 runs
-// The same small filter, law or limit by this library, by plain C, and by what others use: LinuxCNC's components
-// as installed, liquid-dsp's second-order section (float) and Eigen's state space where they are installed, and
-// the published forms of what is in no Debian package: iir1's direct form II, CMSIS-DSP's arm_biquad_cascade_df2T_f64,
-// wpimath's LinearFilter, PIDController and SlewRateLimiter. One sample a call, as a servo period has it.
+// The same small filter, law or limit by this library, by plain C, and by what others use: LinuxCNC's
+// components, liquid-dsp's second-order section (float) and Eigen's state space where they are installed, and
+// the published forms of what is in no Debian package: iir1's direct form II, CMSIS-DSP's
+// arm_biquad_cascade_df2T_f64, wpimath's LinearFilter, PIDController and SlewRateLimiter. One sample a call.
 #include "hal_chain.hpp"
 
 #include <quadrant/base/literals.hpp>
