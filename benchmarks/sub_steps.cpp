@@ -39,8 +39,9 @@ struct typed {
     explicit typed(std::size_t n) : n_(n), h_(period / double(n)) {}
     [[gnu::noinline]] double step(double u) noexcept {
         const quantity_of<signal::force> drive = force_constant * (u * 1_V);
+        auto&& friction_now = in_sub_steps(law);
         for (std::size_t i = 0; i < n_; ++i) {
-            const auto next = stick_slip<double>(law, mass, v, drive, h_);
+            const auto next = stick_slip<double>(friction_now, mass, v, drive, h_);
             x += (v + next) * (h_ * 0.5);
             v = next;
         }

@@ -38,6 +38,7 @@ void add_loops() {
     rows<xy_loop::typed_lanes<90, 61>>("xy_loop/typed_lanes");
 #ifdef __AVX2__
     rows<xy_loop::by_expert<90, 61>>("xy_loop/expert");
+    rows<xy_loop::by_expert<1, 1>>("xy_loop/expert/without_fir");
 #endif
     rows<xy_loop::by_hand<90, 61>>("xy_loop/hand_written");
     rows<xy_loop::as_graph<90, 61>>("xy_loop/virtual_graph");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // What a header states with "always", "exact" or "bounded", over a million random trials each; a case names the
-// block and its words. Other such words have their trials elsewhere: `stick_slip`
-// (tests/friction/stick_slip.cpp), the jumps of `retune` (tests/conformance), exact zero-order holds
-// (tests/filter/discretize.cpp, tests/plant/flexible_modes.cpp).
+// block and its words. tests/static/claims.txt has the whole list, and where each is held.
+#include "dice.hpp"
+
 #include <quadrant/base/literals.hpp>
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/filter/lowpass.hpp>
@@ -20,32 +20,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 using namespace quadrant;
 using namespace quadrant::literals;
 
 namespace {
-constexpr int trials = 1'000'000;
+using stated::dice, stated::trials;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-class dice {
-public:
-    std::uint64_t bits() {
-        x_ = x_ * 6364136223846793005u + 1442695040888963407u;
-        return x_ ^ (x_ >> 29);
-    }
-    double operator()(double low, double high) { return low + (high - low) * (double(bits() >> 11) * 0x1p-53); }
-    double decades(double low, double high) { return std::exp((*this)(std::log(low), std::log(high))); }
-    double any_number() { return std::bit_cast<double>(bits()); } ///< of any size, also infinite, also none
-    bool often() { return bits() >> 62 != 0; }
-
-private:
-    std::uint64_t x_ = 20080615;
-};
 auto force_of(double f) { return quantity_of<signal::force>::from_value(f); }
 auto velocity_of(double v) { return quantity_of<signal::velocity>::from_value(v); }
 auto stiffness_of(double k) { return gain_rate_of<signal::force, signal::velocity>::from_value(k); }

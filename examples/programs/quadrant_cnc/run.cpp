@@ -31,7 +31,7 @@ public:
         next_ = p.wall_time + 10;
         fmt::print(stderr, "{}{:3.0f} %  line {}, {:.1f} s simulated, {:.0f} times faster than real time{}",
                    terminal_ ? "\r\033[K" : "", 100 * p.share, p.line, p.time,
-                   p.wall_time > 0 ? p.time / p.wall_time : 0, terminal_ ? "" : "\n");
+                   p.cpu_time > 0 ? p.time / p.cpu_time : 0, terminal_ ? "" : "\n");
         std::fflush(stderr);
         shown_ = terminal_;
     }

@@ -46,7 +46,7 @@ struct run_outcome {
     quadrant::path::point worst_place;
     std::vector<axis_outcome> axes;
     std::vector<std::string> notes;
-    double wall_time = 0;
+    double wall_time = 0, cpu_time = 0; ///< of computing [s]
 
     /// The contour error, then for each axis: error, velocity, acceleration, jerk, effort.
     decimated signals{1};
@@ -54,7 +54,7 @@ struct run_outcome {
     heaviest<contour_sample> contour_plot{6000};
     std::vector<contour_sample> worst; ///< around the largest contour error, one a period
 
-    double faster_than_real_time() const { return wall_time > 0 ? duration / wall_time : 0; }
+    double faster_than_real_time() const { return cpu_time > 0 ? duration / cpu_time : 0; }
 };
 
 } // namespace quadrant_cnc

@@ -10,7 +10,8 @@ namespace quadrant_cnc {
 
 /// How far a run is, told a few times a second.
 struct progress {
-    double share = 0, time = 0, wall_time = 0; ///< of the file, 0 ... 1; simulated [s]; since the start [s]
+    double share = 0, time = 0;         ///< of the file, 0 ... 1; simulated [s]
+    double wall_time = 0, cpu_time = 0; ///< since the start [s]
     std::size_t line = 0;
 };
 

@@ -60,7 +60,7 @@ inline std::string summary(const run_outcome& r) {
         out += a.limited > 0 ? fmt::format("; at a limit for {} periods\n", a.limited) : "\n";
     }
     for (const std::string& note : r.notes) out += fmt::format("Note: {}\n", note);
-    out += fmt::format("{} s of computing, {} times faster than real time\n", number(r.wall_time),
+    out += fmt::format("{} s of CPU time, {} times faster than real time\n", number(r.cpu_time),
                        number(r.faster_than_real_time()));
     return out;
 }
@@ -95,7 +95,8 @@ inline nlohmann::ordered_json to_json(const run_outcome& r) {
             {"contour_error_rms_m", r.contour.rms(r.samples)},
             {"axes", axes},
             {"notes", r.notes},
-            {"wall_time_s", r.wall_time}};
+            {"wall_time_s", r.wall_time},
+            {"cpu_time_s", r.cpu_time}};
 }
 
 } // namespace quadrant_cnc

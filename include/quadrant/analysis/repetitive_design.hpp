@@ -35,7 +35,7 @@ template <std::size_t Taps> struct fir {
     }
 };
 
-/// Zero-phase low-pass Q: a sinc behind a Hamming window, symmetric, gain at standstill exactly one; -6 dB at
+/// Zero-phase low-pass Q: a sinc behind a Hamming window, symmetric, gain at standstill one; -6 dB at
 /// `corner`. Ripple of some 0.002 in the pass band: what it leaves of every harmonic, and why a memory whose
 /// loop is open grows.
 template <std::size_t Taps = 61>

@@ -3,6 +3,7 @@
 #include "../base/signal.hpp"
 
 #include <concepts>
+#include <type_traits>
 
 namespace quadrant::inline v0 {
 
@@ -16,15 +17,16 @@ concept friction_law = requires(const F& f, quantity_of<signal::velocity, Real> 
     { f.viscous() } -> std::convertible_to<gain_of<signal::force, signal::velocity, Real>>;
 };
 
-/// A law that also says how its level falls: slope of slip(v) at v >= 0, where it is `level`, and 1 over the
-/// speed over which that changes e-fold. Newton's method may use them where slip is convex: convex() is false
-/// where it is not, and the level is then iterated by itself.
+/// A law that also says how its level falls: slip(v) and its slope at v >= 0, and 1 over the speed over which
+/// that changes e-fold. Newton's method may use them where slip is convex: convex() is false where it is not,
+/// and the level is then iterated by itself.
 template <class F, class Real>
 concept friction_law_with_slope = friction_law<F, Real> &&
-    requires(const F& f, quantity_of<signal::velocity, Real> v, quantity_of<signal::force, Real> level) {
+    requires(F& f, quantity_of<signal::velocity, Real> v) {
     { f.convex() } -> std::convertible_to<bool>;
-    f.fall(v, level).slope;
-    f.fall(v, level).inverse_scale;
+    f.fall(v).level;
+    f.fall(v).slope;
+    f.fall(v).inverse_scale;
 };
 
 /// A law that knows directions, and whose level may rise with the speed as well: `asymmetric_stribeck`. Its
@@ -43,6 +45,14 @@ concept friction_law_by_direction = requires(const F& f, quantity_of<signal::vel
     f.parts(forward, v).scale;
 };
 
+/// What a plant steps in the sub-steps of one period: the law's own form for that, if it has one, or the law.
+template <class Friction> decltype(auto) in_sub_steps(const Friction& law) noexcept {
+    if constexpr (requires { law.in_sub_steps(); })
+        return law.in_sub_steps();
+    else
+        return (law);
+}
+
 namespace detail {
 /// Relative error that may be left to the velocity of a step.
 template <class Real> inline constexpr double stick_slip_accuracy = 3e-14;
@@ -52,43 +62,46 @@ template <> inline constexpr double stick_slip_accuracy<float> = 1e-7;
 /// from where. On a convex curve a tangent lies below it: its zero is not below a solution, wherever it touches
 /// a rising part, and the next ones come down to the fastest. Half of what the tangent misses the curve by is
 /// known from the curvature and taken off; ended by the error that is left then: in motion mostly after one
-/// pass. Bare SI numbers inside: a choice between two quantities goes through memory.
+/// pass. Bare SI numbers inside: a choice between two quantities goes through memory. Each sub-step of a plant
+/// waits for the one before it: a division that is rarely needed stands behind a branch.
 template <class Real, class Friction>
 [[gnu::always_inline]] inline quantity_of<signal::velocity, Real>
-fastest_sliding(const Friction& friction, const Real slope, const Real size, const Real start) noexcept {
+fastest_sliding(Friction& friction, const Real slope, const Real size, const Real start) noexcept {
     using velocity = quantity_of<signal::velocity, Real>;
-    using force = quantity_of<signal::force, Real>;
-    const Real most = size / slope, close = Real(stick_slip_accuracy<Real>);
-    Real v = start < most ? start : most;
-    bool anywhere = start < most; // not known to lie above the solution
+    const Real close = Real(stick_slip_accuracy<Real>);
+    const auto within = [&](const Real& x) { return slope * x < size; }; // below the speed without friction
+    const auto held = [&](const Real& x) -> Real {
+        if (within(x)) [[likely]]
+            return x;
+        return size / slope;
+    };
+    bool anywhere = within(start); // not known to lie above the solution
+    Real v = held(start);
     constexpr int most_passes = 32;
     for (int pass = 0; pass < most_passes; ++pass) {
-        const velocity at = velocity::from_value(v);
-        const force level = friction.slip(at);
-        const auto fall = friction.fall(at, level);
+        const auto fall = friction.fall(velocity::from_value(v));
         const Real falls = -fall.slope.value(), rise = slope - falls;
         if (!(rise > Real(0))) { // left of the lowest point: where the axis was, or there is no solution
             if (!anywhere) return velocity();
             anywhere = false;
-            v = most;
+            v = size / slope;
             continue;
         }
         anywhere = false;
-        const Real per_force = Real(1) / rise, step = (slope * v + level.value() - size) * per_force;
-        const Real next = v - step, nearest = next < most ? next : most;
+        const Real per_force = Real(1) / rise, step = (slope * v + fall.level.value() - size) * per_force;
+        const Real next = v - step;
         if (!(next > Real(0))) return velocity();
         const Real way = step < Real(0) ? -step : step, scales = way * fall.inverse_scale.value();
-        const Real bent = falls * scales * way; // curvature = slope/scale, within a scale at most e times that
+        const Real curvature = falls * fall.inverse_scale.value(); // within a scale at most e times that
+        const Real bent = curvature * (way * way);
         if (scales <= Real(1)) {
             if constexpr (std::floating_point<Real>) {
-                if (falls <= rise && bent * scales <= close * (rise * next)) {
-                    const Real nearer = next - bent * (Real(0.5) * per_force);
-                    return velocity::from_value(nearer < most ? nearer : most);
-                }
+                if (falls <= rise && bent * scales <= close * (rise * next))
+                    return velocity::from_value(held(next - (way * way) * (curvature * (Real(0.5) * per_force))));
             } else if (bent <= close * (rise * next)) // the tangent's carries the derivatives
-                return velocity::from_value(nearest);
+                return velocity::from_value(held(next));
         }
-        v = nearest;
+        v = held(next);
     }
     return velocity::from_value(v);
 }
@@ -137,20 +150,22 @@ fastest_in_direction(const Friction& friction, const gain_of<signal::force, sign
 /// The implicit form makes stick exact (a resting axis below breakaway does not creep), does not chatter at any
 /// h and adds no energy; sign(v) of the textbook form does the opposite of all three ([Armstrong1994] section
 /// 4). Where the law falls so steeply that several v' solve it, an axis in motion takes the fastest: it goes
-/// on.
+/// on. `friction`: the law, or for several steps in a row what `in_sub_steps(law)` gives.
 /// Derivation: docs/derivations/stick_slip.md.
-template <class Real, friction_law<Real> Friction>
+template <class Real, class Friction>
+requires friction_law<std::remove_cvref_t<Friction>, Real>
 [[gnu::always_inline]] inline quantity_of<signal::velocity, Real>
-stick_slip(const Friction& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
+stick_slip(Friction&& friction, quantity<si::mass, Real> mass, quantity_of<signal::velocity, Real> v,
            quantity_of<signal::force, Real> drive, quantity<si::time, Real> h) noexcept {
     using velocity = quantity_of<signal::velocity, Real>;
     using force = quantity_of<signal::force, Real>;
-    const force push = force(mass * v / h) + drive; // what would bring the axis to rest within h, and the drive
-    const gain_of<signal::force, signal::velocity, Real> slope = mass / h + friction.viscous();
+    const gain_of<signal::force, signal::velocity, Real> inertia = mass / h; // a loop of sub-steps divides once
+    const force push = force(inertia * v) + drive; // what would bring the axis to rest within h, and the drive
+    const gain_of<signal::force, signal::velocity, Real> slope = inertia + friction.viscous();
     const bool forward = push > force();
     const force size = force::from_value(forward ? push.value() : -push.value());
 
-    if constexpr (friction_law_with_slope<Friction, Real>)
+    if constexpr (friction_law_with_slope<std::remove_reference_t<Friction>, Real>)
         if (friction.convex()) { // from where the axis is: a step does not change it much
             const Real along = forward ? v.value() : -v.value(), most = size.value();
             const bool goes_on = along > Real(0);

@@ -4,6 +4,7 @@
 #include "../base/finite.hpp"
 
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 
 namespace quadrant::inline v0 {
@@ -84,16 +85,51 @@ public:
         return coulomb_ + excess_ * exp(-exp(Real(given_.shape) * log(ratio)));
     }
     gain_of<Out, In, Real> viscous() const noexcept { return viscous_; }
-    /// Of the level by the speed, where it is `level`; for shape 1, where the curve is convex.
+    /// The level at a speed and its slope there; for shape 1, where the curve is convex. The level may be off
+    /// from `slip` by a unit in the last place: a multiplication stands here in place of its division, on which
+    /// a plant would wait in every sub-step.
     struct falling {
+        value level;
         gain_of<Out, In, Real> slope; ///< <= 0
         decltype(Real(1) /
                  argument()) inverse_scale; ///< of the speed over which slope and curvature change e-fold
     };
     bool convex() const noexcept { return given_.shape == 1; }
-    [[gnu::always_inline]] falling fall(argument, value level) const noexcept {
-        return {-((level - coulomb_) * inverse_velocity_), inverse_velocity_};
+    [[gnu::always_inline]] falling fall(argument speed) const noexcept { ///< speed >= 0
+        const value excess = excess_ * decayed(Real((speed * inverse_velocity_).value()));
+        return {coulomb_ + excess, -(excess * inverse_velocity_), inverse_velocity_};
     }
+
+    /// The same law for the sub-steps of one period. From one sub-step to the next the speed changes by little:
+    /// the exponential at the new speed is the last one times that of the difference, a short sum (difference
+    /// up to 1/64 of the Stribeck velocity; else the exponential itself). Each sub-step adds up to 4e-16 to the
+    /// relative error of the part above Coulomb. Refers to the law, which must not change meanwhile.
+    class sub_steps {
+    public:
+        explicit sub_steps(const stribeck& law) noexcept : law_(law) {}
+        value breakaway() const noexcept { return law_.breakaway(); }
+        value slip(argument v) const noexcept { return law_.slip(v); }
+        gain_of<Out, In, Real> viscous() const noexcept { return law_.viscous(); }
+        bool convex() const noexcept { return law_.convex(); }
+        [[gnu::always_inline]] falling fall(argument speed) noexcept { ///< speed >= 0
+            const Real ratio = Real((speed * law_.inverse_velocity_).value()), d = ratio_ - ratio;
+            if (d < Real(near) && d > Real(-near)) {
+                const Real d2 = d * d, low = Real(1) + d + d2 * (Real(0.5) + d * Real(1.0 / 6)),
+                           high = Real(1.0 / 24) + d * Real(1.0 / 120) + d2 * Real(1.0 / 720);
+                excess_ = excess_ * (low + d2 * d2 * high);
+            } else
+                excess_ = law_.excess_ * decayed(ratio);
+            ratio_ = ratio;
+            return {law_.coulomb_ + excess_, -(excess_ * law_.inverse_velocity_), law_.inverse_velocity_};
+        }
+
+    private:
+        static constexpr double near = 1.0 / 64;
+        const stribeck& law_;
+        Real ratio_ = Real(-1); ///< speed / Stribeck velocity of the last call; none yet
+        value excess_{};
+    };
+    sub_steps in_sub_steps() const noexcept requires std::floating_point<Real> { return sub_steps(*this); }
 
     bool faulted() const noexcept { return out_.faulted(); }
     const parameters& given() const noexcept { return given_; }

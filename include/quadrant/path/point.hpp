@@ -30,7 +30,8 @@ struct point {
 inline constexpr double same_place = 1e-9;
 
 constexpr double dot(point a, point b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline double magnitude(point a) noexcept { return std::hypot(a.x, a.y, a.z); }
+/// Of lengths between 1e-150 and 1e150 m: `std::hypot`, which knows more, takes ten times as long.
+inline double magnitude(point a) noexcept { return std::sqrt(dot(a, a)); }
 inline double distance(point a, point b) noexcept { return magnitude(b - a); }
 constexpr bool finite(point a) noexcept { return quadrant::finite(a.x, a.y, a.z); }
 

@@ -92,13 +92,14 @@ public:
         [[maybe_unused]] const auto memory = remembered(); // goes back there after a fault
         [[maybe_unused]] const Load load = load_;
         const auto n = given_.substeps;
+        auto&& law = in_sub_steps(friction_);
         for (std::size_t i = 0; i < n; ++i) {
             // Share of the sub-step in which the newer command already acts.
             const Real late = fraction_ * Real(static_cast<double>(n)) - Real(static_cast<double>(i));
             const Real share = late < Real(0) ? Real(1) : late >= Real(1) ? Real(0) : Real(1) - late;
             const voltage acting = newer * share + older * (Real(1) - share);
             const velocity next =
-                advanced(v, driven(x + v * (h_ * Real(0.5)), force_constant_ * acting, external));
+                advanced(law, v, driven(x + v * (h_ * Real(0.5)), force_constant_ * acting, external));
             x += (v + next) * (h_ * Real(0.5));
             v = next;
         }
@@ -156,13 +157,13 @@ private:
             return 0;
     }
     /// One sub-step; a friction that remembers moves with the axis.
-    velocity advanced(velocity v, force drive) noexcept {
+    template <class Law> velocity advanced(Law& law, velocity v, force drive) noexcept {
         if constexpr (friction_with_memory<Friction, Real>) {
             const auto to = presliding<Real>(friction_, mass_, v, drive, h_);
             friction_.become(to.friction);
             return to.v;
         } else
-            return stick_slip<Real>(friction_, mass_, v, drive, h_);
+            return stick_slip<Real>(law, mass_, v, drive, h_);
     }
     force driven([[maybe_unused]] position x, force motor, force external) noexcept {
         if constexpr (loaded)

@@ -79,22 +79,21 @@ public:
                 std::max(before.shape.twist[i], after.shape.twist[i]), machine.axis[std::size_t(i)]};
         }
         axis_[3] = {turn_, 0, 0, 0, machine.path}; // the vector, for what is asked along the path
+        straight_ = !(curved_ > 0);
+        if (straight_) join_straight();
         const double room = 0.5 * std::min(before.length, after.length);
-        double low = 0, high = std::min({before.within.velocity, after.within.velocity, 1e9});
-        if (passes(high, tolerance, room)) low = high;
-        for (int i = 0; i < 24 && low < high; ++i) {
-            const double middle = 0.5 * (low + high);
-            if (middle <= low || middle >= high) break;
-            (passes(middle, tolerance, room) ? low : high) = middle;
-        }
-        most_ = low;
+        const double high = std::min({before.within.velocity, after.within.velocity, 1e9});
+        most_ = passes(high, tolerance, room) ? high
+                : straight_                   ? passed_straight(high, tolerance, room)
+                                              : passed(high, tolerance, room);
     }
 
     double most() const noexcept { return most_; } ///< highest speed [m/s]; 0: a stop
     /// Shortest time of the transition [s]; infinite when no time keeps the limits. Never falls with the speed.
     double time(double v) const noexcept {
         if (smooth_ || !(v > 0)) return 0;
-        const double g1 = 2, g2 = kind_ == profile_kind::cubic_acceleration ? 6 : 4;
+        if (straight_) return std::max(v * per_speed_, std::sqrt(v * per_root_));
+        const double g1 = slope_peak, g2 = bend_peak();
         double longest = 0;
         for (const part& p : axis_) {
             if (p.within.acceleration < unlimited) {
@@ -114,10 +113,7 @@ public:
     /// How far from the joint the transition begins on the one piece and ends on the other [m].
     double leg(double v) const noexcept { return 0.5 * v * time(v); }
     /// Bound of the distance from the joint and from the path [m].
-    double deviation(double v) const noexcept {
-        const double d = (kind_ == profile_kind::cubic_acceleration ? 0.075 : 1.0 / 12) * v * time(v);
-        return smooth_ ? 0 : d * (turn_ + 0.75 * curved_ * d);
-    }
+    double deviation(double v) const noexcept { return off(v * time(v)); }
     double turn() const noexcept {
         return turn_;
     } ///< |t2 - t1|: twice the sine of half the angle of the corner
@@ -136,13 +132,48 @@ private:
         double turn = 0, bend = 0, bending = 0, twist = 0;
         bounds within;
     };
+    static constexpr double slope_peak = 2; ///< g1: the most of g'
+    double bend_peak() const noexcept {     ///< g2: the most of g''
+        return kind_ == profile_kind::cubic_acceleration ? 6 : 4;
+    }
+    double share() const noexcept { ///< m: how far from the joint, in the middle, of v tau
+        return kind_ == profile_kind::cubic_acceleration ? 0.075 : 1.0 / 12;
+    }
+    /// The deviation of a transition that is v tau long.
+    double off(double way) const noexcept {
+        const double d = share() * way;
+        return smooth_ ? 0 : d * (turn_ + 0.75 * curved_ * d);
+    }
     bool passes(double v, double tolerance, double room) const noexcept {
-        return leg(v) <= room && deviation(v) <= tolerance;
+        const double way = v * time(v);
+        return 0.5 * way <= room && off(way) <= tolerance;
+    }
+    /// Between two lines tau is the longer of v a and sqrt(v b), of all axes together.
+    void join_straight() noexcept {
+        for (const part& p : axis_) {
+            per_speed_ = std::max(per_speed_, slope_peak * p.turn / p.within.acceleration);
+            per_root_ = std::max(per_root_, bend_peak() * p.turn / p.within.jerk);
+        }
+    }
+    /// The highest speed below `high` that passes between two lines: v tau(v) = way, solved.
+    double passed_straight(double high, double tolerance, double room) const noexcept {
+        const double way = std::min(2 * room, tolerance / (share() * turn_)) * (1 - 1e-12);
+        const double by_acceleration = std::sqrt(way / per_speed_), by_jerk = std::cbrt(way * way / per_root_);
+        return std::min({high, by_acceleration, by_jerk});
+    }
+    double passed(double high, double tolerance, double room) const noexcept {
+        double low = 0;
+        for (int i = 0; i < 24; ++i) {
+            const double middle = 0.5 * (low + high);
+            if (middle <= low || middle >= high) break;
+            (passes(middle, tolerance, room) ? low : high) = middle;
+        }
+        return low;
     }
 
     profile_kind kind_ = profile_kind::trapezoidal_acceleration;
-    bool smooth_ = false;
-    double turn_ = 0, curved_ = 0, most_ = 0;
+    bool smooth_ = false, straight_ = false;
+    double turn_ = 0, curved_ = 0, most_ = 0, per_speed_ = 0, per_root_ = 0; ///< tau/v, tau^2/v between lines
     std::array<part, 4> axis_{};
 };
 
