@@ -27,6 +27,11 @@ PUZZLES = {
               "[LowKeck2003] shows 500 um in 0.2 s that settle long after their time, with stick-slip, and prints no parameter of the friction. The machine is the plausible one of "
               "[reproduction](../reproduction.md). Log: the move of 500 um without friction feedforward; hold-out log: 20 mm in 0.5 s.",
               "within 2 um after [ms]"),
+    "stage_swings": ("The precision stage along the motion that the diagnosis asks for",
+                     "The move of 500 um lasts a hundred samples and hardly leaves the bristles. The diagnosis asks for swings with strong accelerations and with "
+                     "half of them; here they are, with the same causes. Log: four swings of 20 mm at 1.8 Hz and four of 10 mm; hold-out log: 20 mm in 0.5 s. The "
+                     "figure is that of the move of 500 um.",
+                     "within 2 um after [ms]"),
 }
 
 
