@@ -193,12 +193,12 @@ inline recording stage_log(const stage::machine& is, const std::function<axis_mo
                                       });
     return out;
 }
-/// What the diagnosis asks for after the source's move: four swings of 20 mm at 1.8 Hz, then four of half the
-/// acceleration.
-inline axis_motion<> stage_swings(double t) {
-    const double w = 2 * std::numbers::pi * 1.8, size = t < 4 / 1.8 ? 10e-3 : 5e-3; // m; at rest in between
-    return {size * (1 - std::cos(w * t)) * 1_m, size * w * std::sin(w * t) * 1_mps,
-            size * w * w * std::cos(w * t) * 1_mps2};
+/// What the diagnosis asks for after the source's move: swings at 1.8 Hz, both ways.
+inline std::function<axis_motion<>(double)> stage_swings(double stroke) {
+    return [size = stroke / 2, w = 2 * std::numbers::pi * 1.8](double t) {
+        return axis_motion<>{size * (1 - std::cos(w * t)) * 1_m, size * w * std::sin(w * t) * 1_mps,
+                             size * w * w * std::cos(w * t) * 1_mps2};
+    };
 }
 inline void add_stage(std::vector<candidate>& to, bool swings) {
     const auto put = [&](const char* name, const char* words, std::vector<std::string> truth,
@@ -213,8 +213,11 @@ inline void add_stage(std::vector<candidate>& to, bool swings) {
                           };
                           made out;
                           out.log = stage_log(is, curve(500e-6, 0.2), 2.2, 500e-6, &out.seen);
-                          if (swings) out.log = stage_log(is, stage_swings, 8 / 1.8, 0, nullptr);
                           out.holdout = stage_log(is, curve(0.02, 0.5), 1.2, 0.02, nullptr);
+                          if (swings) {
+                              out.log = stage_log(is, stage_swings(20e-3), 4 / 1.8, 0, nullptr);
+                              out.holdout = stage_log(is, stage_swings(10e-3), 4 / 1.8, 0, nullptr);
+                          }
                           diagnosis::machine_description file;
                           file.sample_period_s = stage::period.value();
                           file.excluded_effects = {"backlash"}; // a direct drive
