@@ -3,7 +3,6 @@
 """The pages of quadrant-cnc analyse and tune, of a machine, of a measured axis, of a chirp log, in a browser: every picture is drawn, nothing leaves its place, nothing is loaded.
 analysis_page.py PROGRAM ROOT SCRATCH     exit code 77: no browser"""
 import cmath
-import json
 import math
 import os
 import pathlib
@@ -35,7 +34,7 @@ for k in range(120):  # a double integrator with a mode at 180 Hz
 pages = {"analysis": ("analyse", mill, [], 3, 15, ("phase margin",)),
          "measured": ("analyse", mill, ["--axis", "x", "--frf", scratch / "measured.csv"], 1, 7, ("proposed velocity gain", "proposed notch", "Measured response")),
          "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed", "averages", "1: all of the position")),
-         "tuning": ("tune", scratch / "sliding.json", ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)"))}
+         "tuning": ("tune", mill.with_name("sliding.json"), ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)"))}
 T, x, v, lines = 1e-3, 0.0, 0.0, ["t_s,x_ref_m,x_pos_m,x_cmd_V"]
 for k in range(9000):  # a free mass under a PD law with a chirp in its reference
     reference = 4e-5 * math.sin(2 * math.pi * 9 / math.log(400) * (400 ** (k * T / 9) - 1))
@@ -43,9 +42,6 @@ for k in range(9000):  # a free mass under a PD law with a chirp in its referenc
     lines.append(f"{k * T:.6f},{reference:.12f},{x:.12f},{u:.9f}")
     x, v = x + v * T + 0.315 * u * T * T, v + 0.63 * u * T
 (scratch / "chirp.csv").write_text("\n".join(lines) + "\n")
-sliding = json.loads(mill.read_text())
-sliding["axes"]["x"]["control"] = {"law": "sliding_mode", "sliding_per_s": 200, "gain_V_s_per_m": 100, "adaptation_V_per_m": 1e4}
-(scratch / "sliding.json").write_text(json.dumps(sliding))
 for name, (command, machine, asked_for, _, _, _) in pages.items():
     subprocess.run([program, command, "--quiet", "--cnc", machine, "--report", scratch / f"{name}.html", *asked_for], check=True)
 options = Options()

@@ -218,3 +218,33 @@ TEST_CASE("presliding: with duals the derivatives of a step are those of differe
         near(3, (step(340.0, v, 50.0, 6e7 * (1 + e)) - step(340.0, v, 50.0, 6e7 * (1 - e))) / (12e7 * e));
     }
 }
+namespace {
+/// A law that does not say its force at rest: presliding asks after(0, h) of it.
+template <class Law> struct silent {
+    using state = typename Law::state;
+    Law law;
+    auto after(quantity_of<signal::velocity> v, quantity<si::time> h) const noexcept { return law.after(v, h); }
+    void become(const state& next) noexcept { law.become(next); }
+    const state& now() const noexcept { return law.now(); }
+    void reset() noexcept { law.reset(); }
+};
+} // namespace
+TEST_CASE(
+    "presliding: a law that says its force at rest gives the same step, to the bit, as one that is asked") {
+    using detail::tells_force_at_rest;
+    static_assert(tells_force_at_rest<maxwell_slip<3>, double, signal::force>);
+    static_assert(tells_force_at_rest<lugre<>, double, signal::force>);
+    static_assert(!tells_force_at_rest<silent<lugre<>>, double, signal::force>);
+    int told = 0, moving = 0;
+    for (const bool falling : {false, true})
+        random_axes(falling, [&](const auto& law, const situation& s, double) {
+            if constexpr (requires { law.at_rest(); }) {
+                REQUIRE(law.at_rest().value() == law.after(mps(0), seconds(s.h)).force.value());
+                const auto one = s.step(law), two = s.step(silent<std::decay_t<decltype(law)>>{law});
+                REQUIRE(one.v.value() == two.v.value());
+                ++told, moving += s.v != 0 && one.v.value() != 0;
+            }
+        });
+    CHECK(told > 5000);
+    CHECK(moving > 2000);
+}

@@ -14,7 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"
 from browser_test import check, check_alone, check_console, check_width, shoot, show, start  # noqa: E402
 
 # Of every figure: its title, how wide its SVG is shown and how wide the figure, how many curves have a colour of the page,
-# the smallest text [px], and text outside of the frame.
+# the smallest text [px], pairs of texts over each other, and text outside of the frame.
 PICTURES = """
 return [...document.querySelectorAll('figure')].map(f => {
     const svg = f.querySelector('svg'), box = svg && svg.getBoundingClientRect();
@@ -22,7 +22,11 @@ return [...document.querySelectorAll('figure')].map(f => {
     const curves = [...svg.querySelectorAll('path, use')].filter(
         e => /var\\(--line/.test(e.getAttribute('stroke') || e.getAttribute('color') || ''));
     const texts = [...svg.querySelectorAll('text')].filter(t => t.textContent.trim());
-    return {
+    const boxes = texts.map(t => t.getBoundingClientRect()), em = box.width / svg.viewBox.baseVal.width;
+    const shared = (a, b, low, high) => Math.min(a[high], b[high]) - Math.max(a[low], b[low]);
+    const over = boxes.flatMap((a, i) => boxes.slice(i + 1).filter(
+        b => shared(a, b, 'left', 'right') > 2 * em && shared(a, b, 'top', 'bottom') > 7 * em));
+    return {over: over.length,
         title: f.querySelector('h4').textContent, width: box.width, height: box.height, room: f.clientWidth, label: svg.getAttribute('aria-label'),
         curves: curves.length, unresolved: curves.filter(e => !/rgb/.test(getComputedStyle(e).stroke)).length,
         least: Math.min(...texts.map(t => parseFloat(getComputedStyle(t).fontSize) * box.width / svg.viewBox.baseVal.width)),
@@ -53,6 +57,7 @@ def main():
                         check(p["curves"] > 0 and not p["unresolved"], f"{where}: '{p['title']}' has {p['curves']} curves")
                         check(p["height"] > 150 and p["width"] <= p["room"] + 1, f"{where}: '{p['title']}': {p}")
                         check(p["least"] > 7.5, f"{where}: '{p['title']}' has text of {p['least']:.1f} px")
+                        check(not p["over"], f"{where}: '{p['title']}': {p['over']} pairs of texts over each other")
                         check(not p["outside"], f"{where}: '{p['title']}': outside of it {p['outside']}")
                     check_width(driver, where)
                     twice = driver.execute_script(

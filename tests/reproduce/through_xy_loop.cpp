@@ -2,6 +2,7 @@
 // The experiments of one axis, run again as one axis of the whole two-axis loop: the same, to the bit.
 #include "quadrant_reproduce/experiment/dob_force.hpp"
 #include "quadrant_reproduce/experiment/feedforward.hpp"
+#include "quadrant_reproduce/experiment/harmonics_cases.hpp"
 #include "quadrant_reproduce/milling_table.hpp"
 #include "quadrant_reproduce/push_run.hpp"
 
@@ -203,4 +204,14 @@ TEST_CASE(
             CHECK(one.largest == follow_sinusoid<as_y>(*a, how, "").largest);
         }
     }
+}
+TEST_CASE("xy_loop: what the Ferraris estimator says of the force (Fig. 5.10) is the same on one axis of the "
+          "whole loop, bit for bit") {
+    using quadrant_reproduce::ferraris_run;
+    const auto one = ferraris_run();
+    REQUIRE(one.estimated.y.size() == 400);
+    CHECK(*std::max_element(one.estimated.y.begin(), one.estimated.y.end()) > 20);
+    CHECK(one.estimated.y != one.given.y);
+    CHECK(one.estimated.y == ferraris_run<as_x>().estimated.y);
+    CHECK(one.estimated.y == ferraris_run<as_y>().estimated.y);
 }

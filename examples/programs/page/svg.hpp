@@ -38,10 +38,11 @@ inline std::vector<std::size_t> peaks(const std::vector<double>& y, std::size_t 
     return keep;
 }
 
-/// "[um]" and "um" as engineers write them.
+/// "[um]", "[um/V]" and "um" as engineers write them.
 inline std::string with_micro(std::string label) {
     if (label == "um") return "µm";
-    if (const std::size_t at = label.find("um]"); at != std::string::npos) label.replace(at, 2, "µm");
+    for (const char* unit : {"um]", "um/"})
+        if (const std::size_t at = label.find(unit); at != std::string::npos) label.replace(at, 2, "µm");
     return label;
 }
 
@@ -78,10 +79,17 @@ public:
         }
         return p_.polar ? text + ring_data() : text;
     }
-    std::string plot() const {
+    /// Where it stands on the paper, from below, and whether its curves are named: a panel under another with
+    /// the same curves need not say so again.
+    struct place {
+        double from = 0, height = 1;
+        bool names = true;
+    };
+    std::string plot(const place& at) const {
         std::string text =
             "reset\nset grid lc rgb 'gray' dt solid lw 0.5\nset border lw 0.7\nset tics nomirror scale 0.5\n";
-        text += p_.lines.size() > 1 ? "set key above maxrows 2 samplen 2\n" : "unset key\n";
+        text += fmt::format("set origin 0,{:.6g}\nset size 1,{:.6g}\n", at.from, at.height);
+        text += at.names && p_.lines.size() > 1 ? "set key above maxrows 2 samplen 2\n" : "unset key\n";
         text += fmt::format("set xlabel {}\nset ylabel {}\n", in_quotes(with_micro(p_.x_label)),
                             in_quotes(with_micro(p_.y_label)));
         if (p_.log_x) text += "set logscale x\n";
@@ -89,7 +97,7 @@ public:
         if (p_.x_range) text += fmt::format("set xrange [{}:{}]\n", p_.x_range->first, p_.x_range->second);
         if (p_.y_range) text += fmt::format("set yrange [{}:{}]\n", p_.y_range->first, p_.y_range->second);
         if (p_.y_label.ends_with("[deg]")) text += "set ytics 90\n";
-        if (p_.square || p_.polar) text += "set size ratio -1\n";
+        if (p_.square || p_.polar) text += fmt::format("set size ratio -1 1,{:.6g}\n", at.height);
         if (p_.polar) text += round_frame();
         text += "plot ";
         for (std::size_t k = 0; p_.polar && k < ring_factors.size(); ++k)
@@ -150,7 +158,8 @@ namespace detail {
 inline std::string fit_into_page(std::string svg, std::size_t number, std::string_view label) {
     const std::size_t open = svg.find("<svg"), view = svg.find("viewBox", open),
                       canvas = svg.find("<g id=", open);
-    if (canvas == std::string::npos || view == std::string::npos || svg.find("</svg>", canvas) == std::string::npos)
+    if (canvas == std::string::npos || view == std::string::npos ||
+        svg.find("</svg>", canvas) == std::string::npos)
         return ""; // lost on its way from gnuplot
     const std::string frame = svg.substr(view, svg.find('\n', view) - view);
     svg = fmt::format("<svg {} role=\"img\" aria-label=\"{}\">\n", frame, label) + svg.substr(canvas);
@@ -178,16 +187,26 @@ inline std::string fit_into_page(std::string svg, std::size_t number, std::strin
 /// One picture as SVG; empty when gnuplot did not draw it. `label` is HTML already.
 inline std::string svg(const picture& drawn, std::size_t number, std::string_view label) {
     const std::size_t panels = drawn.panels.size();
-    const bool round = drawn.panels[0].square || drawn.panels[0].polar;
+    const auto height = [&](const panel& p) { return p.square || p.polar ? 440 : panels == 1 ? 300 : 220; };
+    const auto names = [](const panel& p) {
+        std::vector<std::string> all;
+        for (const line& l : p.lines) all.push_back(l.name);
+        return all;
+    };
+    int whole = 0;
+    for (const panel& p : drawn.panels) whole += height(p);
     std::string script = fmt::format(
         "set encoding utf8\nset terminal svg size 480,{} dynamic noenhanced font 'sans,13' name 'p{}_'\n",
-        round         ? 440
-        : panels == 1 ? 300
-                      : 220 * panels,
-        number);
+        whole, number);
     for (std::size_t k = 0; k < panels; ++k) script += panel_script(drawn.panels[k], k).data();
-    if (panels > 1) script += fmt::format("set multiplot layout {},1\n", panels);
-    for (std::size_t k = 0; k < panels; ++k) script += panel_script(drawn.panels[k], k).plot();
+    if (panels > 1) script += "set multiplot\n";
+    int below = whole;
+    for (std::size_t k = 0; k < panels; ++k) {
+        const panel& p = drawn.panels[k];
+        below -= height(p);
+        script += panel_script(p, k).plot({double(below) / whole, double(height(p)) / whole,
+                                           k == 0 || names(p) != names(drawn.panels[k - 1])});
+    }
 
     const int handle = memfd_create("quadrant", 0); // a file without a name leaves nothing behind
     if (handle < 0) return "";

@@ -62,10 +62,11 @@ inline void draw_glitches(section& s) {
         const std::string title = "Axis " + r.id.substr(dot - 1, 1) + ": tracking error at 100 mm/s";
         for (picture& p : s.pictures)
             if (p.title == title)
-                p.panels[0].lines.push_back({.name = "measured, " + r.id.substr(dot + 1),
-                                             .x = {0, p.panels[0].lines[0].x.back()},
-                                             .y = {*r.published_measured, *r.published_measured},
-                                             .drawn = line::style::dashed});
+                p.panels[0].lines.push_back(
+                    {.name = "measured, " + (r.id.ends_with(".gms") ? "GMS" : r.id.substr(dot + 1)),
+                     .x = {0, p.panels[0].lines[0].x.back()},
+                     .y = {*r.published_measured, *r.published_measured},
+                     .drawn = line::style::dashed});
     }
 }
 

@@ -94,6 +94,7 @@ public:
                               Real((bent - along) / stiff / damping_velocity_));
         return to;
     }
+    value at_rest() const noexcept { return now().force; } ///< the force of after(0, h)
     void become(const state& next) noexcept { memory_.become({unless_died_out(next.force)}); }
     void retune(const lugre& next) noexcept {
         if (next.period_ != period_) return memory_.raise();

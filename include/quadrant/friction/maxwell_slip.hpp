@@ -133,6 +133,12 @@ public:
         }
         return to;
     }
+    /// The force of after(0, h): what the springs hold.
+    value at_rest() const noexcept {
+        value sum{};
+        for (const element& each : now().elements) sum += each.force;
+        return sum;
+    }
     void become(state next) noexcept {
         for (element& each : next.elements) each.force = unless_died_out(each.force);
         memory_.become(next);

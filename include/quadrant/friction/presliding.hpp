@@ -97,6 +97,14 @@ template <class State, class Real, signal_tag In = signal::velocity> struct pres
     State friction{};
 };
 
+namespace detail {
+/// A law that says its force at v = 0 without a step, to the bit that of after(0, h).
+template <class F, class Real, class Out>
+concept tells_force_at_rest = std::floating_point<Real> && requires(const F& f) {
+    { f.at_rest() } -> std::convertible_to<quantity_of<Out, Real>>;
+};
+} // namespace detail
+
 /// Velocity v' after one step h of M dv/dt = drive - friction, the friction that of the end of the step:
 ///   M (v' - v)/h + after(v', h).force = drive
 /// Each law solves its own equation exactly for a velocity that stands for h; which velocity that is, is found
@@ -119,17 +127,31 @@ auto presliding(
     const force push = force(inertia * v) + drive; // what would bring the axis to rest within h, and the drive
     const auto size = [](velocity x) { return x < velocity() ? -x : x; };
 
-    auto at = friction.after(velocity(), h);
-    const force missing = push - at.force;
-    const velocity linear = missing / (inertia + at.slope);           // the solution while nothing breaks away
-    if (!finite(missing)) return outcome{missing / inertia, at.next}; // for the plant to see
-    if (missing == force()) return outcome{linear, friction.after(linear, h).next}; // zero, and its derivatives
+    constexpr bool told = detail::tells_force_at_rest<Friction, Real, Out>;
+    decltype(friction.after(velocity(), h)) at;
+    force missing = push;
+    if constexpr (told) // an axis that moves on its way needs no more of rest than this
+        missing -= friction.at_rest();
+    else {
+        at = friction.after(velocity(), h);
+        missing -= at.force;
+    }
+    const auto from_rest = [&] {
+        if constexpr (told) at = friction.after(velocity(), h);
+        return missing / (inertia + at.slope); // the solution while nothing breaks away
+    };
+    if (!finite(missing))
+        return outcome{missing / inertia, friction.after(velocity(), h).next}; // for the plant
+    if (missing == force()) {                                                  // zero, and its derivatives
+        const velocity linear = from_rest();
+        return outcome{linear, friction.after(linear, h).next};
+    }
     const bool forward = missing > force();
     const auto beyond = [forward](velocity a, velocity b) { return forward ? a > b : a < b; };
 
     velocity near{}, far{}; // the solution lies between, once far is known
     bool bounded = false;
-    velocity x = beyond(v, near) ? v : linear;
+    velocity x = beyond(v, near) ? v : from_rest();
     const Real close = Real(detail::newton_accuracy<Real>);
     constexpr int most_passes = 80; // seen: up to 20, but for a jump at rest, which is halved to nothing
     for (int pass = 0; pass < most_passes; ++pass) {

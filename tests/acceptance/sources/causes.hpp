@@ -193,10 +193,18 @@ inline recording stage_log(const stage::machine& is, const std::function<axis_mo
                                       });
     return out;
 }
-inline void add_stage(std::vector<candidate>& to) {
+/// What the diagnosis asks for after the source's move: swings at 1.8 Hz, both ways.
+inline std::function<axis_motion<>(double)> stage_swings(double stroke) {
+    return [size = stroke / 2, w = 2 * std::numbers::pi * 1.8](double t) {
+        return axis_motion<>{size * (1 - std::cos(w * t)) * 1_m, size * w * std::sin(w * t) * 1_mps,
+                             size * w * w * std::cos(w * t) * 1_mps2};
+    };
+}
+inline void add_stage(std::vector<candidate>& to, bool swings) {
     const auto put = [&](const char* name, const char* words, std::vector<std::string> truth,
                          const stage::machine& is) {
-        to.push_back({std::string("stage.") + name, "stage", words, std::move(truth), [=] {
+        const std::string puzzle = swings ? "stage_swings" : "stage";
+        to.push_back({puzzle + "." + name, puzzle, words, std::move(truth), [=] {
                           const auto curve = [](double length, double time) {
                               return [s = trajectory::s_curve({length * 1_m, time * 1_s})](double t) {
                                   const auto m = s(t * 1_s);
@@ -206,6 +214,10 @@ inline void add_stage(std::vector<candidate>& to) {
                           made out;
                           out.log = stage_log(is, curve(500e-6, 0.2), 2.2, 500e-6, &out.seen);
                           out.holdout = stage_log(is, curve(0.02, 0.5), 1.2, 0.02, nullptr);
+                          if (swings) {
+                              out.log = stage_log(is, stage_swings(20e-3), 4 / 1.8, 0, nullptr);
+                              out.holdout = stage_log(is, stage_swings(10e-3), 4 / 1.8, 0, nullptr);
+                          }
                           diagnosis::machine_description file;
                           file.sample_period_s = stage::period.value();
                           file.excluded_effects = {"backlash"}; // a direct drive
@@ -234,7 +246,8 @@ inline std::vector<candidate> all() {
     std::vector<candidate> out;
     add_table(out);
     add_cnc(out);
-    add_stage(out);
+    add_stage(out, false);
+    add_stage(out, true);
     return out;
 }
 

@@ -19,15 +19,17 @@ inline picture band_picture(const std::string& title, const std::string& caption
     panel drawn{.x_label = "", .y_label = label, .lines = {}, .log_y = true};
     line printed{.name = "printed", .x = {}, .y = {}, .drawn = line::style::points};
     line ours{.name = "ours, from lowest to highest", .x = {}, .y = {}};
+    line ends{.name = "ours, lowest and highest", .x = {}, .y = {}, .drawn = line::style::points};
     for (std::size_t k = 0; k < all.size(); ++k) {
         const double at = static_cast<double>(k + 1);
         for (const double y : {all[k].low, all[k].high}) ours.x.push_back(at), ours.y.push_back(y);
+        for (const double y : {all[k].low, all[k].high}) ends.x.push_back(at), ends.y.push_back(y);
         ours.x.push_back(at), ours.y.push_back(std::numeric_limits<double>::quiet_NaN());
         if (all[k].printed) printed.x.push_back(at), printed.y.push_back(*all[k].printed);
         order += (order.empty() ? "" : ", ") + std::to_string(k + 1) + " " + all[k].name;
     }
     drawn.x_range = std::pair{0.5, static_cast<double>(all.size()) + 0.5};
-    drawn.lines = {std::move(ours), std::move(printed)};
+    drawn.lines = {std::move(ours), std::move(ends), std::move(printed)};
     drawn.x_label = "case";
     return {title, caption + " Cases: " + order + ".", {std::move(drawn)}};
 }

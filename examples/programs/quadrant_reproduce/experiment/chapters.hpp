@@ -48,6 +48,11 @@ inline outcome cascade_chapter(const std::string& id) {
     return out;
 }
 
+/// What a legend says of a friction feedforward.
+inline std::string fed_forward_words(std::string_view name) {
+    return name == "none" ? "no friction fed forward" : name == "static" ? "static curve" : "GMS";
+}
+
 /// Chapters 3 and 4: largest radial deviation on the circle without a cutter, on friction by another law and
 /// another mass, through `xy_loop`.
 template <class... Configurations>
@@ -58,7 +63,7 @@ outcome friction_chapter(const std::string& id, const std::string& title,
         .x_label = "mass, machine over controller", .y_label = "largest radial deviation [um]", .lines = {}};
     std::size_t which = 0;
     const auto one = [&]<class Configuration>(Configuration) {
-        line curve{.name = names[which], .x = {}, .y = {}};
+        line curve{.name = fed_forward_words(names[which]), .x = {}, .y = {}};
         for (const double mass : chapter_masses) {
             const thesis::cut c{.force = 0, .mass = mass, .turns = 2};
             const auto found = thesis::mill<Configuration, thesis::lugre_plant>(c);

@@ -10,6 +10,8 @@ outcome harmonics_case(const std::string& id, const std::string& title, const st
                        bool tracking, const std::string& note) {
     outcome out;
     picture errors{title, "The last fifth of a second, without and with.", {}};
+    double less = 0; // in all, of the rms
+    bool diverged = false;
     for (const int h : harmonics) {
         const thesis::push p{.harmonics = h, .tracking = tracking};
         const auto off = thesis::pushed<thesis::nothing_observed>(p);
@@ -18,6 +20,7 @@ outcome harmonics_case(const std::string& id, const std::string& title, const st
         out.rows.push_back({id, "rms_off_" + n, "um", rms_of(off), {}, {}, {}, note});
         out.rows.push_back(
             {id, "rms_on_" + n, "um", rms_of(on), {}, {}, {}, on.diverged ? thesis::diverged_note : ""});
+        less += 1 - on.rms / off.rms, diverged = diverged || on.diverged || off.diverged;
         if (h == 15 && !tracking) {
             out.rows.push_back(
                 {id, "first_harmonic_off", "um", off.first, {}, {}, {}, "amplitude of the error at 23.3 Hz"});
@@ -29,6 +32,14 @@ outcome harmonics_case(const std::string& id, const std::string& title, const st
                   .y_label = n + (h == 1 ? " harmonic [um]" : " harmonics [um]"),
                   .lines = {last_of("without", off, off.error, 0.2), last_of("with", on, on.error, 0.2)}});
     }
+    out.rows.push_back({id,
+                        "mean_reduction",
+                        "%",
+                        diverged ? std::nullopt : std::optional(100 * less / double(harmonics.size())),
+                        {},
+                        {},
+                        {},
+                        diverged ? thesis::diverged_note : "of the rms, mean over the numbers of harmonics"});
     out.pictures = {std::move(errors)};
     return out;
 }

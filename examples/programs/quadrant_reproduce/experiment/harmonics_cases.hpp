@@ -101,37 +101,37 @@ inline outcome harmonics_memory(const std::string& id, const thesis::axis& a) {
     return out;
 }
 
-/// Fig. 5.10: what the estimator says of the force, without being fed back.
-inline outcome ferraris_estimate(const std::string& id) {
+/// Fig. 5.10: the force on the resting y axis and what the estimator says of it, without being fed back.
+struct ferraris_lines {
+    line given{.name = "force", .x = {}, .y = {}}, estimated{.name = "estimate", .x = {}, .y = {}};
+};
+template <template <class, class> class Axis = thesis::one_axis> ferraris_lines ferraris_run() {
     using namespace thesis;
     using boxes = milling_axis_boxes<absent<signal::velocity, signal::voltage>, by_ferraris>;
     auto c = controller_of<boxes>(y);
     c.plant_pole = y.A;
     c.disturbance = {.feeds_back = false};
-    milling_axis<boxes> loop{.box = {c, period}};
-    const quantity<si::mass> mass = y.kf / y.B;
-    linear_motor<coulomb_viscous<>> motor({.mass = mass,
-                                           .force_constant = y.kf,
-                                           .friction = {.viscous = y.A * mass},
-                                           .delay = 0.4_ms,
-                                           .substeps = 10},
-                                          period);
+    Axis<boxes, linear_motor<coulomb_viscous<>>> axis({c, linear_machine(y, 0.4_ms, 10)});
+    const typename decltype(axis)::motion rest{};
     cutting_force<15> cutter(
         {milling_harmonics::fundamental, 1.38 * milling_harmonics::scale, milling_harmonics::y}, period);
-    line given{.name = "force", .x = {}, .y = {}}, estimated{.name = "estimate", .x = {}, .y = {}};
-    auto before = motor.now().v;
+    ferraris_lines out;
+    auto before = axis.now().v;
     for (int k = 0; k < 2400; ++k) {
-        loop.box.disturbance.sense((motor.now().v - before) / period);
-        before = motor.now().v;
+        axis.disturbance().sense((axis.now().v - before) / period);
+        before = axis.now().v;
         const auto force = cutter();
-        const auto u = loop({}, motor.now().x);
-        if (k >= 2000) {
-            const double t = (k - 2000) * period.value();
-            given.x.push_back(t), given.y.push_back(force.value());
-            estimated.x.push_back(t), estimated.y.push_back(loop.box.disturbance.force().value());
-        }
-        motor(u, force);
+        axis.step(rest, rest, force);
+        if (k < 2000) continue; // the estimate after the step is the one of this sample
+        const double t = (k - 2000) * period.value();
+        out.given.x.push_back(t), out.given.y.push_back(force.value());
+        out.estimated.x.push_back(t), out.estimated.y.push_back(axis.disturbance().force().value());
     }
+    return out;
+}
+inline outcome ferraris_estimate(const std::string& id) {
+    using namespace thesis;
+    const auto [given, estimated] = ferraris_run();
     // How late: the shift that fits best, in steps of a sample.
     double best = HUGE_VAL, late = 0;
     for (std::size_t shift = 0; shift < 30; ++shift) {

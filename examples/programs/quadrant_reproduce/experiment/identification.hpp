@@ -58,14 +58,14 @@ inline outcome identification_case(const thesis::axis& a) {
         simulated.x.push_back(um);
         simulated.y.push_back(thesis::identification::virgin_force(a, um * 1e-6));
     }
-    out.pictures = {
-        {fmt::format("Axis {}: the virgin curve", a.name),
-         "Friction over the way from rest: what was simulated, and what was identified at 1, 5, 15 and 30 um.",
-         {panel{.x_label = "way [um]",
-                .y_label = "friction [N]",
-                .lines = {simulated, found},
-                .x_range = std::pair{0.0, 60.0}}}},
-        friction_map_picture(a, findings.map)};
+    out.pictures = {{fmt::format("Axis {}: the virgin curve", a.name),
+                     "Friction over the displacement from rest: what was simulated, and what was identified at "
+                     "1, 5, 15 and 30 um.",
+                     {panel{.x_label = "displacement [um]",
+                            .y_label = "friction [N]",
+                            .lines = {simulated, found},
+                            .x_range = std::pair{0.0, 60.0}}}},
+                    friction_map_picture(a, findings.map)};
     return out;
 }
 

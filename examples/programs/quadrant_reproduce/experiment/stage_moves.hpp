@@ -28,14 +28,18 @@ stage_lines stage_run(const std::string& name, const stage::tuning& t, double le
     return lines;
 }
 inline picture stage_picture(const std::string& title, const std::string& caption, stage_lines&& l) {
-    return {title,
-            caption,
-            {panel{.x_label = "time [s]", .y_label = "position [um]", .lines = {std::move(l.position)}},
-             panel{.x_label = "time [s]", .y_label = "error [um]", .lines = {std::move(l.error)}},
-             panel{.x_label = "time [s]", .y_label = "current [A]", .lines = {std::move(l.command)}},
-             panel{.x_label = "position [um]",
-                   .y_label = "speed [m/s]",
-                   .lines = {std::move(l.speed_over_position)}}}};
+    const bool far = l.position.y.back() > 2000; // um
+    if (far)                                     // in millimetres
+        for (auto* numbers : {&l.position.y, &l.speed_over_position.x})
+            for (double& um : *numbers) um *= 1e-3;
+    const std::string position = far ? "position [mm]" : "position [um]";
+    return {
+        title,
+        caption,
+        {panel{.x_label = "time [s]", .y_label = position, .lines = {std::move(l.position)}},
+         panel{.x_label = "time [s]", .y_label = "error [um]", .lines = {std::move(l.error)}},
+         panel{.x_label = "time [s]", .y_label = "current [A]", .lines = {std::move(l.command)}},
+         panel{.x_label = position, .y_label = "speed [m/s]", .lines = {std::move(l.speed_over_position)}}}};
 }
 
 /// A move with tight gains and the friction fed forward, beside one without that.

@@ -17,7 +17,12 @@ inline outcome stage_other_case(const std::string& id) {
         {panel{.x_label = "", .y_label = "largest error [um]", .lines = {}},
          panel{.x_label = "mass, machine over controller", .y_label = "settled after [s]", .lines = {}}}};
     const auto with = [&]<class Compensation>(const char* name, Compensation) {
-        line error{.name = name, .x = {}, .y = {}}, settles = error;
+        line error{.name = name == std::string_view("none")    ? "no friction compensation"
+                           : name == std::string_view("lugre") ? "LuGre fed forward"
+                                                               : "LuGre observer",
+                   .x = {},
+                   .y = {}},
+            settles = error;
         for (const double mass : {0.5, 0.75, 1.0, 1.25, 1.5}) {
             double most = 0, time = 0;
             constexpr int machines = 3;

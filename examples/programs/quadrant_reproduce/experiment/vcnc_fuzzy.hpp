@@ -7,6 +7,9 @@
 
 namespace quadrant_reproduce {
 
+/// "vcnc.fuzzy.case1" in a legend: "case 1".
+inline std::string fuzzy_case_words(const std::string& id) { return std::string("case ") + id.back(); }
+
 /// Figs. 12 and 13: tracking error and spectrum of the command with the first and with the tuned gains.
 inline std::vector<picture> fuzzy_before_and_after(const std::string& id,
                                                    const vcnc::fuzzy_trial::record& before,
@@ -33,7 +36,7 @@ inline std::vector<picture> fuzzy_before_and_after(const std::string& id,
             out.x.push_back(double(k) * vcnc::period.value()), out.y.push_back(error[k]);
         return out;
     };
-    const std::string name = id.substr(id.rfind('.') + 1);
+    const std::string name = fuzzy_case_words(id);
     return {
         {"Tracking before and after tuning",
          "Reference minus table over 100 mm forth and back; top the first gains, below the tuned ones.",
@@ -73,7 +76,7 @@ inline outcome vcnc_fuzzy_case(const char* id, const vcnc::fuzzy_start& from) {
         {id, "iterations", "1", double(tuned.steps.size() - 1), {}, {}, {}, "changes of the gains"},
         {id, "phase_margin", "deg", end.trial.phase_margin, {}, {}, {}, "with half a period more delay"},
         {id, "oscillation", "1", end.trial.oscillation, {}, {}, {}, "50 Hz, Sc = 2000"}};
-    line gain{.name = id, .x = {}, .y = {}}, adaptation = gain, error = gain;
+    line gain{.name = fuzzy_case_words(id), .x = {}, .y = {}}, adaptation = gain, error = gain;
     for (std::size_t i = 0; i < tuned.steps.size(); ++i) {
         const auto& s = tuned.steps[i];
         for (line* l : {&gain, &adaptation, &error}) l->x.push_back(double(i));

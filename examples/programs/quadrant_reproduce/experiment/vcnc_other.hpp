@@ -26,7 +26,11 @@ inline outcome accelerometer_case(const std::string& id) {
         "accelerometer's gain makes a disturbance meet 1.5 and 2 times the inertia, and the gains of the PID "
         "go with "
         "it.",
-        {panel{.x_label = "frequency [Hz]", .y_label = "um/N", .lines = {}, .log_x = true, .log_y = true},
+        {panel{.x_label = "frequency [Hz]",
+               .y_label = "compliance [um/N]",
+               .lines = {},
+               .log_x = true,
+               .log_y = true},
          panel{.x_label = "time [s]", .y_label = "error of y [um]", .lines = {}}}};
     for (const double heavier : {0.0, 0.5, 1.0}) {
         const auto of = [&](const vcnc::axis& a) { // gains in proportion to what the axis now weighs
@@ -99,7 +103,7 @@ inline outcome other_machine_case(const std::string& id) {
         .x_label = "inertia, machine over controller", .y_label = "largest contour error [um]", .lines = {}};
     const auto along = [&]<class Law>(const char* name, typename Law::parameters (*law_of)(const vcnc::axis&),
                                       Law*) {
-        line curve{.name = name, .x = {}, .y = {}};
+        line curve{.name = name == std::string_view("pid") ? "PID" : "sliding mode", .x = {}, .y = {}};
         for (const double inertia : {0.5, 0.75, 1.0, 1.25, 1.5}) {
             vcnc::servo<Law, boxes> x(machine(vcnc::x_axis, inertia, 2), law_of(vcnc::x_axis)),
                 y(machine(vcnc::y_axis, inertia, 3), law_of(vcnc::y_axis));
