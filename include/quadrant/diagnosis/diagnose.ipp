@@ -23,7 +23,7 @@ namespace detail {
 
 inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
     if ((c.at_floor() || c.within_its_laws()) && !c.count_unnamed && !c.controller_open()) {
-        // Suspects for what calibration leaves are no finding where machines inside the tolerances differ by more.
+        // Suspects for what calibration leaves are no finding where machines inside the tolerances differ more.
         const bool silent =
             causes.empty() || (std::none_of(causes.begin(), causes.end(), claimed) &&
                                (c.models.immaterial(c.path.front()) || c.calibrated_within_its_laws() ||
