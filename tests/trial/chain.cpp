@@ -2,6 +2,7 @@
 // Machines of the trial with two positions an axis, and what the diagnosis says of some of them.
 #include "quadrant_gap/trial/chain_files.hpp"
 
+#include <quadrant/diagnosis/chain/diagnose_chain.hpp>
 #include <quadrant/diagnosis/chain/link.hpp>
 #include <quadrant/diagnosis/compensate.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
@@ -135,6 +136,32 @@ TEST_CASE(
     const auto d = diagnosed(m);
     CHECK(d.verdict <= diagnosis::verdict::within_tolerance);
     CHECK(d.causes.empty());
+}
+
+TEST_CASE("two encoders: where the command chatters from sign to sign, the direction of the motion tells the side") {
+    drawn_chain m = draw_chain(7, 1, {kind::none, {}, false, false, population::two_encoders});
+    m.described.guide.coulomb = 50;
+    m.described.gears.play = 0;
+    m.truth = m.described;
+    m.truth.gears.play = 40 * m.described.scale.resolution;
+    const auto machine = diagnosis::read_machine(machine_file(m).dump(), "machine.json");
+    auto axis = read(log_file(m, detail::recorded(m, m.truth))).axes.at(0);
+    const auto said_of = [&] {
+        return diagnosis::chain::diagnose_transmission(machine.axes[0], axis, machine.sample_period_s, "log.csv",
+                                                       {}, {});
+    };
+    CHECK(said_of().notes.empty());
+    const double lasts = 0.005 / machine.sample_period_s; // rows of one sign: a force, but of no side that stays
+    double largest = 0;
+    for (const double u : axis.command) largest = std::max(largest, std::abs(u));
+    for (std::size_t k = 0; k < axis.command.size(); ++k)
+        axis.command[k] += static_cast<std::size_t>(static_cast<double>(k) / lasts) % 2 ? 3 * largest : -3 * largest;
+    const auto said = said_of();
+    REQUIRE(said.notes.size() == 1);
+    CHECK(said.notes[0].find("changes its sign too often") != std::string::npos);
+    REQUIRE_FALSE(said.found.causes.empty());
+    CHECK(said.found.causes[0].effect == "lost_motion");
+    CHECK(said.found.causes[0].probability > 0.9);
 }
 
 TEST_CASE("positions: a head that swings slowly is no missed step, and an effect that the file excludes stays "

@@ -88,6 +88,13 @@ QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_descriptio
     two_encoders out;
     auto d = motor_to_scale(axis, log, period, file);
     give_force(d, axis, log);
+    if (!says_enough(readings(d.readings))) {
+        out.notes.push_back(fmt::format(
+            "axis {}: the force changes its sign too often to tell which side of the transmission is in contact: "
+            "the direction of the motion is taken for it, and nothing is said of the stiffness.",
+            axis.name));
+        d = motor_to_scale(axis, log, period, file);
+    }
     out.found = link_or_refusal(d, axis, file, excluded, limits);
     out.carried = log;
     out.motor_coulomb = axis.transmission.motor_coulomb_N.value_or(0);
@@ -117,7 +124,7 @@ QUADRANT_DIAGNOSIS_DECL axis_log carried_too(const two_encoders& found, const ax
     give_force(d, axis, log);
     const readings r(d.readings);
     // The zeros and moments of the readings are this log's own.
-    if (r.rows().size() >= 4 * pieces) found.carry(out, axis, apart(r, fit_columns(r, found.found.best)));
+    if (says_enough(r)) found.carry(out, axis, apart(r, fit_columns(r, found.found.best)));
     return out;
 }
 

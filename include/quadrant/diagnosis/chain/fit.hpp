@@ -10,6 +10,9 @@ inline constexpr std::size_t folds_of = 5;
 inline constexpr std::size_t most_blocks = 200, rows_of_block = 8; ///< at most, at least
 inline constexpr double samples_of_block = 4; ///< that count: rows of one block repeat each other
 
+/// Whether so many rows count that a model can be fitted to some pieces and predict the others.
+inline bool says_enough(const readings& r) { return r.rows().size() >= 4 * pieces; }
+
 /// One model on one link, its columns fitted by least squares.
 struct fitted {
     link_model model;

@@ -131,7 +131,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
         if (std::find(excluded.begin(), excluded.end(), name_of(t)) != excluded.end() && !name_of(t).empty())
             left_out.push_back(t);
     const readings r(as_described.readings);
-    if (r.rows().size() < 4 * pieces)
+    if (!says_enough(r))
         throw std::length_error(fmt::format("{} rows that count; a comparison of two positions needs {}",
                                             r.rows().size(), 4 * pieces));
     outcome out;
