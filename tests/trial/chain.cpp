@@ -151,7 +151,8 @@ TEST_CASE("two encoders: where the command chatters from sign to sign, the direc
                                                        {}, {});
     };
     CHECK(said_of().notes.empty());
-    const double lasts = 0.005 / machine.sample_period_s; // rows of one sign: a force, but of no side that stays
+    // Rows of one sign: a force is seen in them, a side that stays is not.
+    const double lasts = 0.005 / machine.sample_period_s;
     double largest = 0;
     for (const double u : axis.command) largest = std::max(largest, std::abs(u));
     for (std::size_t k = 0; k < axis.command.size(); ++k)
