@@ -23,7 +23,7 @@ struct ferraris_calibration {
         gain_deviation{}; ///< standard deviation, for a white residual
     quantity_of<signal::acceleration> offset_deviation{};
 
-    /// The gain is told from the offset: the motion beyond a parabola stands ten times above what is
+    /// The gain is distinguishable from the offset: the motion beyond a parabola stands ten times above what is
     /// unexplained.
     bool determined() const noexcept { return excitation.value() > 10 * residual.value(); }
     quantity_of<signal::acceleration> acceleration(quantity_of<signal::voltage> m) const noexcept {
@@ -72,7 +72,7 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
         }
         return equations.solve();
     };
-    const bool parabola = // the integral too, to rounding: no gain is to be told
+    const bool parabola = // the integral too, to rounding: no gain can be identified
         !(furthest > 0) || !(fit(false, [&](std::size_t k) { return way[k]; }).residual > 1e-20 * squares);
     const auto found = fit(!parabola, [&](std::size_t k) { return position[k].value(); });
     const double deviation = std::sqrt(found.residual / double(n - 4));

@@ -38,7 +38,7 @@ template <signal_tag In, signal_tag Out, class State, class Real> struct frictio
 };
 
 namespace detail {
-/// A force that something holds which can hold no more than `most`, either way.
+/// A held force, limited to `most` in either direction.
 template <class Value> Value borne(const Value& force, const Value& most) noexcept {
     return force > most ? most : force < -most ? -most : force;
 }

@@ -43,7 +43,7 @@ public:
         double leg_out = 0; ///< of the joint ahead [m]
         speed_profile body; ///< between the two
     };
-    /// A place on the path: the segment, the way along it [m], its line in the program.
+    /// A place on the path: the segment, the distance along it [m], its line in the program.
     struct place {
         const path::segment* path;
         double s; ///< along it

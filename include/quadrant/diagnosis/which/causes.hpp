@@ -14,7 +14,7 @@ struct rival {
     candidate model;
     const effect* name = nullptr;
     double weight = 0;
-    bool same = false;     ///< not told apart from the cause by this record
+    bool same = false;     ///< not distinguished from the cause by this record
     bool unlikely = false; ///< then: beside the others that are not; not told
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
@@ -81,8 +81,8 @@ struct excluded_rival {
 /// falls. One that contains the cause is no rival.
 QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which);
 
-/// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even
-/// ones alone repeat twice as often.
+/// Harmonics reported with their own period: where the odd ones hold less than a hundredth of the energy, the
+/// even ones alone repeat twice as often.
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values);
 
 /// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per
