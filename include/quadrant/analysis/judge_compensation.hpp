@@ -28,7 +28,7 @@ template <signal_tag Command> struct compensation_verdict {
     std::size_t reversals; ///< that count
     compensation_size size;
     compensation_time time;
-    std::string why; ///< cannot tell
+    std::string why; ///< it cannot be decided
 
     std::string text() const {
         constexpr std::array sizes{"cannot tell", "wrong sign", "not at all",
