@@ -58,6 +58,10 @@ private_words = [
     (r"as the others get free", "in the order in which workers become free"),
     (r"while the loop has not the axis", "while another controller drives the axis"),
     (r"\b[Ff]or who\b", "for whoever"),
+    (r"\bReturned is\b", "returns"),
+    (r"\ba pull as large as the rest\b", "worst case: the whole residual biases this parameter"),
+    (r"\bmay also be what the name stands in for\b", "may come from the same unknown cause"),
+    (r"\b[Mm]ore of the path known\b", "a longer look-ahead"),
 ]
 
 

@@ -60,8 +60,8 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
         speed += T * (before + now) / 2;
         furthest = std::max(furthest, std::abs(way[k])), squares += way[k] * way[k];
     }
-    // Unknowns: p0, v0, Z in units of the record's length, G in units of the furthest way where it is one of
-    // them.
+    // Unknowns: p0, v0, Z in units of the record's length, G in units of the largest displacement where it is
+    // one of them.
     const auto fit = [&](bool with_gain, const auto& of) {
         least_squares equations(with_gain ? 4 : 3);
         for (std::size_t k = 0; k < n; ++k) {

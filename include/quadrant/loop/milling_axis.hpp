@@ -374,7 +374,7 @@ private:
         wire.linear = wire.feedback + wire.inertia + wire.drag;
         wire.disturbance = estimate(measured, wire.linear, last_applied(), accelerated);
         wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
-        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
+        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts path
         if constexpr (requires { box.friction(wire.travel, -wire.disturbance); })
             wire.friction =
                 box.friction(wire.travel, -wire.disturbance); // it learns what the observer is left with

@@ -70,9 +70,10 @@ struct predictor {
     double drift_pole =
         1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
-    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the
-    /// model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the
-    /// second difference of the model's positions around each row, over the square of the period [m/s^2].
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returns the information
+    /// cost [nats] of choosing the lost samples from the log, 0 without lost commands. When `acceleration` is
+    /// given, also the second difference of the model's positions around each row, over the square of the
+    /// period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const;
     /// The same for several plants, some at a time side by side: a third of the time and less. One list of

@@ -85,9 +85,9 @@ QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, s
 /// even ones alone repeat twice as often.
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values);
 
-/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per
-/// cent, none better than what is left beside what its effect explains (a pull as large as the rest, all of it
-/// along this value), no length better than half a count. An angle moves by as much in radian.
+/// The scatter of the segments does not show the error of a law that is a little wrong. No value is better than
+/// one per cent, none better than what is left beside what its effect explains (worst case: the whole residual
+/// biases this parameter), no length better than half a count. An angle moves by as much in radian.
 QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
                                              const axis_case& c, double left);
 
