@@ -4,8 +4,8 @@
 // The machine here is simulated by the code below. Its controller is a PID with a lead, no cascade. Somebody
 // has turned its
 // lead from 25 ms to 30 ms, and a way cover pulls on it with the square of its stretch: no list has either.
-// You should see: the controller found by replay, with the number that mends it; without the cover in the list
-// no name is claimed for what is behind the command; with it the cover is named and its number found.
+// You should see: the controller found by replay, with the number that corrects it; without the cover in the
+// list no name is claimed for what is behind the command; with it the cover is named and its number found.
 #include <quadrant/diagnosis/apply.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/effect/own_effect.hpp>

@@ -28,7 +28,7 @@
 ///   };
 /// Every parameter is an input pin. A thread beside the real-time one looks at them every few milliseconds,
 /// builds a new block from what changed and offers it; the real-time thread takes the offer between two
-/// periods. Nothing is allocated, locked or thrown there. What a constructor refuses is told once, raises
+/// periods. Nothing is allocated, locked or thrown there. What a constructor refuses is reported once, raises
 /// `refused`, and the old one stays. While `apply` is FALSE changes are collected; they are then taken all at
 /// once.
 namespace hal {
@@ -110,7 +110,7 @@ private:
         }
         offered_.store(false, std::memory_order_release);
     }
-    /// NaN is a value like others here: told once.
+    /// NaN is a value like others here: reported once.
     static auto bits(const numbers& x) { return std::bit_cast<std::array<std::uint64_t, list.size()>>(x); }
 
     pin_maker maker_;

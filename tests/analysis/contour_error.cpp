@@ -78,7 +78,7 @@ TEST_CASE("contour error: the same as the nearest of a hundred thousand places o
                 fine[std::size_t((100000 + int(std::lround(k * 100000 / 600.)) + i) % 100000)];
             nearest = std::min(nearest, std::hypot(mm(p.x - here.x), mm(p.y - here.y)));
         }
-        CHECK(std::abs(std::abs(mm(found.error)) - nearest) < 1.4e-3); // half the way between two of the many
+        CHECK(std::abs(std::abs(mm(found.error)) - nearest) < 1.4e-3); // half the gap between two of the many
     }
 }
 TEST_CASE(

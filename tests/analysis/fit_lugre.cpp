@@ -56,7 +56,7 @@ axis_log<> follow(const gains& g, const lugre<>::parameters& friction, quantity<
 struct place_and_speed {
     double x, v;
 };
-/// Through the presliding way and beyond it: 30 um at 3 Hz and 10 um at 40 Hz.
+/// Through the presliding displacement and beyond it: 30 um at 3 Hz and 10 um at 40 Hz.
 place_and_speed shake(double t) {
     const double a = 2 * std::numbers::pi * 3, b = 2 * std::numbers::pi * 40;
     return {30e-6 * std::sin(a * t) + 10e-6 * std::sin(b * t),

@@ -149,8 +149,8 @@ TEST_CASE("friction compensation: the scale is that of the simulation within 8 %
 }
 TEST_CASE("friction compensation: too early and too late; where it is judged right the glitch is smaller than "
           "beside it") {
-    // Friction that needs some way to turn comes after the sign of the reference: bristles by about 2 ms, the
-    // springs by 4.
+    // Friction that needs some displacement to turn comes after the sign of the reference: bristles by about
+    // 2 ms, the springs by 4.
     const auto check = [](const auto& friction, double best) {
         const auto early = simulate(friction, {.late = best - 0.006}),
                    right = simulate(friction, {.late = best}),

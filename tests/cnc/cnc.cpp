@@ -59,7 +59,7 @@ TEST_CASE("contour: the distance to lines, arcs, helices and splines is the leas
             const double found = follow(at).distance(), least = searched(path, at, 2000);
             CHECK(found <= least + 1e-12);
             CHECK(least <=
-                  std::hypot(found, 0.51 * longest / 2000)); // half the way between two places searched
+                  std::hypot(found, 0.51 * longest / 2000)); // half the distance between two places searched
         }
 }
 

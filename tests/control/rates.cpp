@@ -54,8 +54,8 @@ template <class Law> double command(Law& law, double r, double v, double a, cons
     else
         return double(u);
 }
-/// Largest difference of the positions that two laws move an axis to, as a share of the way. A constant force
-/// acts.
+/// Largest difference of the positions that two laws move an axis to, as a share of the distance. A constant
+/// force acts.
 template <class First, class Second> double apart(First one, Second other, double ratio, duration T) {
     const viscous_step<> step(A, T.value());
     const double w = std::numbers::pi * ratio, rate = w / T.value();

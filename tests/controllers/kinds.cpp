@@ -90,7 +90,7 @@ TEST_CASE("controller kinds: the loop of each follows a smooth motion within hal
 TEST_CASE("controller kinds: a log that begins in the middle of a motion is replayed to rounding, 50 ms on") {
     for (const axis_description& axis : machine().axes) {
         CAPTURE(axis.name);
-        auto c = *axis.controller; // what a memory has learnt before the first row no log can tell
+        auto c = *axis.controller; // what a memory has learnt before the first row no log can show
         std::erase_if(c.values, [](const auto& v) { return v.first.starts_with("memory."); });
         const auto log = cropped(logged(axis, c), 700);
         const auto replayed =

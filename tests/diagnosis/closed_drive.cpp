@@ -190,7 +190,7 @@ TEST_CASE("both motions: the second log begins anew behind rows that say nothing
     CHECK(most(0, 400) < 1e-9);
     CHECK(most(from, 730) < 1e-2);  // of 600 mrad: the velocity at the begin is a difference of three rows
     CHECK(most(670, 730) < 1e-4);   // and is forgotten
-    CHECK(std::abs(e[415]) > 0.05); // the way between is none of the machine's
+    CHECK(std::abs(e[415]) > 0.05); // the motion between is none of the machine's
 }
 TEST_CASE("both motions: logs of different columns stay apart") {
     const plant_model p = arm();

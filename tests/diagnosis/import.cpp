@@ -448,6 +448,6 @@ TEST_CASE(
     CHECK(pushed(-1, 0.4, 0, 0.05, 0).find("the command pushes against the motion (-0.") != std::string::npos);
     CHECK(pushed(-1, 0.01, 0, 0.05, 0) == "accepted"); // too little to be sure of
     // Without friction, and with a command that leads the reading by 20 rows: what follows the speed is
-    // negative there and makes three fifths of the command, and the jerk tells why.
+    // negative there and makes three fifths of the command, and the jerk shows why.
     CHECK(pushed(1, 0, 0.02, 0.5, 0.2) == "accepted");
 }

@@ -133,7 +133,7 @@ TEST_CASE("noise of a measured command: found under what moves the axis, none wh
     }
     CHECK(white_noise_in(command) / 0.02 == doctest::Approx(1).epsilon(0.05));
     CHECK(white_noise_in(filtered) < 0.0015);                      // its density is down to 1/19^2
-    CHECK(white_noise_in(std::span(command).first(400)) == 0);     // too short to tell
+    CHECK(white_noise_in(std::span(command).first(400)) == 0);     // too short to decide
     CHECK(white_noise_in(std::vector<double>(2000, 1.5)) < 1e-12); // a standing command has none
 }
 
@@ -530,7 +530,7 @@ TEST_CASE("doubt_by_loop: claims with which the loop goes further from the log a
     CHECK(left({0.9}, {1, 0.1}) == probabilities{0.9});
     CHECK(left({0.9}, {1, 1.05}) == probabilities{0.9}); // no clear difference
     CHECK(left({0.9}, {1, 1.2}) == probabilities{0.4});
-    CHECK(left({0.9, 0.8}, {1, 1.5, 0.1}) == probabilities{0.9, 0.8}); // both together mend it
+    CHECK(left({0.9, 0.8}, {1, 1.5, 0.1}) == probabilities{0.9, 0.8}); // both together correct it
     CHECK(left({0.9, 0.8}, {1, 0.1, 0.2}) == probabilities{0.9, 0.4});
     CHECK(left({0.9, 0.1}, {1, 0.1, 0.2}) == probabilities{0.9, 0.1}); // only a suspect
     CHECK(left({0.9}, {}) == probabilities{0.9});                      // no loop

@@ -261,7 +261,7 @@ TEST_CASE(
     as_it_stands(angle);
     as_it_stands([](int k) { return std::sin(0.02 * k) + (k == 301 ? 5 : 0); }); // a wrong reading
     as_it_stands([](int k) { return k < 300 ? 0.01 * k : 0.01 * k - 4; });       // a jump inside the turn
-    as_it_stands([](int k) { return 3.1 * std::sin(0.9 * k); }); // too fast to tell a step from a jump
+    as_it_stands([](int k) { return 3.1 * std::sin(0.9 * k); }); // too fast to distinguish a step from a jump
 }
 
 TEST_CASE("read_log: without a position reference the motion is that of its speed, or of the axis") {

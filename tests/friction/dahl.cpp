@@ -13,12 +13,12 @@
 using namespace hysteresis;
 
 namespace {
-/// 122 N, 60 N/um at the start of a motion: 2.03 um is the way in which a spring would get there.
+/// 122 N, 60 N/um at the start of a motion: 2.03 um is the displacement in which a spring would get there.
 dahl<>::parameters contact(double shape = 1) { return {122_N, per_um(60), shape, {}}; }
 constexpr double bend = 122.0 / 60e6;
 const double shapes[] = {0, 0.3, 0.5, 1, 1.5, 2, 4};
 
-/// dr/da = -r^shape by Runge-Kutta, r = 1 - F sign(v)/Fc, a = way in bends.
+/// dr/da = -r^shape by Runge-Kutta, r = 1 - F sign(v)/Fc, a = displacement in bends.
 double curve(double shape, double r, double a) {
     const auto slope = [&](double at) { return at > 0 ? -std::pow(at, shape) : 0.0; };
     const int n = 20000;

@@ -60,7 +60,7 @@ private:
     std::uint64_t x_;
 };
 
-/// A bad velocity gives the last force and moves nothing; it is told until settle or reset.
+/// A bad velocity gives the last force and moves nothing; it is reported until settle or reset.
 template <class Law> void check_bad_velocities(const Law& fresh) {
     for (const double bad : {bad_number, infinite, -infinite}) {
         Law law = fresh;

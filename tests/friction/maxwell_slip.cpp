@@ -125,7 +125,7 @@ TEST_CASE("maxwell_slip: memory is not local: at one force, going one way, the f
     gms virgin_branch{flat(), Ts}, returning{flat(), Ts};
     const double f = go(virgin_branch, 0.5 * um);
     go(returning, 20 * um), go(returning, -60 * um);
-    double low = 0, high = 60 * um; // the way up to the same force
+    double low = 0, high = 60 * um; // the displacement up to the same force
     for (int i = 0; i < 60; ++i) {
         gms trial = returning;
         (go(trial, (low + high) / 2) < f ? low : high) = (low + high) / 2;

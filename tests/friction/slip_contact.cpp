@@ -270,8 +270,8 @@ TEST_CASE(
     p.weights[0] = 1;
     p.give[0] = quantity_of<signal::position>::from_value(1e-6);
     const contact<> guide(p, mass, step);
-    // The way after a second [m]; the push grows slowly first, as one at once would stretch the contact twice
-    // as far.
+    // The displacement after a second [m]; the push grows slowly first, as one at once would stretch the
+    // contact twice as far.
     const auto pushed = [&](double push, double added) {
         contact<>::state s;
         double v = 0, x = 0;

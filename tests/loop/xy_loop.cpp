@@ -149,7 +149,7 @@ TEST_CASE_TEMPLATE("xy_control: an input of one axis that is no sensible number 
         }
     CHECK(refused == 16);
     for (int k = 500; k < 600; ++k) CHECK(volts_apart(hit(circle(k), seen(k)), twin(circle(k), seen(k))) == 0);
-    CHECK(hit.faulted()); // is told until reset or settle
+    CHECK(hit.faulted()); // is reported until reset or settle
     hit.settle(seen(600));
     CHECK_FALSE(hit.faulted());
     hit.settle({.x = on_x(no_number * 1_m), .y = on_y(0_m)});

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // No block of the plant creates energy: from rest, the work that random forces put in is at any time at least
-// the kinetic energy. A force held over a step does the work force times way exactly, whatever the step.
+// the kinetic energy. A force held over a step does the work force times displacement exactly, whatever the
+// step.
 // Springs of a friction law are stretched by the velocity at the end of a step, the position moves by the
-// mean of both: beside their energy the work is counted along the way of the springs. Tolerance: a billionth
+// mean of both: beside their energy the work is counted along the path of the springs. Tolerance: a billionth
 // of the work that went in and out, which is rounding.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>

@@ -56,7 +56,7 @@ TEST_CASE("linear_motor: on maxwell_slip, pushed below breakaway, it yields as f
     CHECK(std::abs(there - 1.674e-6) < 0.08e-6); // 75.443 + 14.667 N/um z = 100 N
     for (int k = 0; k < 800; ++k) m(volts(100.0 / 1450 * (800 - k) / 800));
     for (int k = 0; k < 4000; ++k) m(0_V);
-    // Back by twice the way of 50 N on the virgin curve, 0.6539 um: 0.366 um are left.
+    // Back by twice the displacement of 50 N on the virgin curve, 0.6539 um: 0.366 um are left.
     CHECK(std::abs(m.now().x.value() - (there - 2 * 50.0 / 76.467e6)) < 0.08e-6);
 }
 TEST_CASE("linear_motor: on maxwell_slip, pushed beyond breakaway, it comes to the speed where the Stribeck "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Gain and integral gain exchanged: they differ by a second, so the compiler can tell.
+// Gain and integral gain exchanged: they differ by a second, so the compiler can distinguish them.
 // MUST SAY: could not convert | no viable conversion
 // AT MOST: gcc 700, clang 14100
 #include "quadrant/base/literals.hpp"

@@ -170,7 +170,8 @@ TEST_CASE("interpolator: over thousands of random paths every axis stays within 
         const bool straight = std::all_of(moves.begin(), moves.end(), [](const move& each) {
             return std::holds_alternative<line>(each.path.shape());
         });
-        // The last ramp of acceleration ends on a period: a period before it, the way left is a third of v T.
+        // The last ramp of acceleration ends on a period: a period before it, the distance left is a third of v
+        // T.
         if (kind == profile_kind::trapezoidal_acceleration && std::get_if<line>(&moves.back().path.shape())) {
             const sample& last = all[all.size() - 2 - std::size_t(std::ceil(moves.back().dwell / T))];
             const double left = distance(last.r, all.back().r);

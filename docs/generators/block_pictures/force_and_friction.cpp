@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// What an acceleration sensor tells of a force, and its calibration; friction that is learned.
+// What an acceleration sensor shows of a force, and its calibration; friction that is learned.
 #include "families.hpp"
 #include "quadrant_reproduce/friction_run.hpp"
 

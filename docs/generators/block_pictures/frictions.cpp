@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Friction: force over velocity where the law knows the velocity alone, over the way where it remembers.
+// Friction: force over velocity where the law knows the velocity alone, over the displacement where it
+// remembers.
 #include "families.hpp"
 
 #include <quadrant/friction/asymmetric_stribeck.hpp>
@@ -44,7 +45,7 @@ picture draw_asymmetric_stribeck() {
               {over("speed [rad/s]", "torque [N m]", {over_velocity("", b, 40, 1)})});
 }
 
-/// Force over the way along places that are visited one after another, at an even speed.
+/// Force over the displacement along places that are visited one after another, at an even speed.
 template <class Law>
 line over_way(const char* name, Law law, std::initializer_list<double> micrometres, double speed) {
     curve c(name);

@@ -56,7 +56,7 @@ struct measured_axis {
     double from_Hz = 0, to_Hz = 0;
     bool coherence = false;                                         ///< whether it is known
     std::vector<quadrant::analysis::measured_frf::line> response{}; ///< as it was measured
-    std::string not_told{}; ///< why its band does not tell whether the loop is stable; empty: it does
+    std::string not_told{}; ///< why its band does not show whether the loop is stable; empty: it does
     proposal proposed{};
 };
 

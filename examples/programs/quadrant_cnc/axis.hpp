@@ -33,7 +33,7 @@ public:
 /// Throws quadrant::invalid_parameter for what no block can be made of.
 std::unique_ptr<axis> make_axis(const axis_description& a, double period, std::uint64_t seed);
 
-/// "A", or "V" where the file does not tell what a volt makes.
+/// "A", or "V" where the file does not say what a volt makes.
 const char* effort_unit(const axis_description& a);
 
 } // namespace quadrant_cnc

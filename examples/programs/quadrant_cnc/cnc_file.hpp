@@ -39,7 +39,7 @@ struct linear_motor_description {
     double coulomb_N = 0;
     std::optional<double> static_N, stribeck_velocity_m_per_s;
     std::optional<double> drive_limit_V;
-    std::optional<double> amplifier_A_per_V; ///< only to tell the current
+    std::optional<double> amplifier_A_per_V; ///< only to report the current
 };
 
 struct sensor_description {

@@ -8,7 +8,7 @@
 /// Runs a part program through the virtual machine.
 namespace quadrant_cnc {
 
-/// How far a run is, told a few times a second.
+/// How far a run is, reported a few times a second.
 struct progress {
     double share = 0, time = 0;         ///< of the file, 0 ... 1; simulated [s]
     double wall_time = 0, cpu_time = 0; ///< since the start [s]

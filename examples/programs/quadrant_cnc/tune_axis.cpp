@@ -26,7 +26,7 @@ constexpr const char *gain_key = "gain_V_s_per_m", *adaptation_key = "adaptation
     throw quadrant::diagnosis::bad_input(cnc.file, why);
 }
 
-/// The stroke and its way back, with the profile and the limits of the file.
+/// The stroke and its return, with the profile and the limits of the file.
 std::vector<axis_motion<>> references(const cnc_description& cnc, const axis_description& a,
                                       const trial_stroke& stroke) {
     const auto drive = std::make_unique<quadrant::trajectory::interpolator<8>>(

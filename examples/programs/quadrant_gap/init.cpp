@@ -25,7 +25,7 @@ struct init_options {
     terminal say;
 };
 
-/// "340", "0.4ms", "x=340": the axis ("" is every axis) and the number in SI. `kind_of` tells an axis' kind.
+/// "340", "0.4ms", "x=340": the axis ("" is every axis) and the number in SI. `kind_of` returns an axis' kind.
 template <class KindOf>
 std::pair<std::string, double> parse(const init_field& f, std::string_view text, KindOf kind_of) {
     const auto refuse = [&](std::string_view what) {

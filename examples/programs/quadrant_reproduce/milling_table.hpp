@@ -133,8 +133,8 @@ private:
     white_noise gauss_;
 };
 
-/// A process whose force of the coming period is told from outside: a cutter whose force depends on the way
-/// that both axes go.
+/// A process whose force of the coming period is given from outside: a cutter whose force depends on the path
+/// of both axes.
 struct told_force {
     struct parameters {};
     told_force(const parameters&, duration) {}

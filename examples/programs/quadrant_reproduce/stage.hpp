@@ -198,7 +198,7 @@ void run(const machine& is, const machine& thought, const tuning& t, const Refer
     }
 }
 
-/// What is read off a move of so long a way.
+/// What is read off a move of that length.
 struct figures {
     double peak_speed = 0, peak_command = 0;       ///< [m/s], [A]
     double settling = 0, max_error = 0, final = 0; ///< [s] into +-2 um, [um], [um]

@@ -45,8 +45,8 @@ template <class Json> std::string text_of_json(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// A table of numbers as the text of a log: each number with as many digits as tell it from its neighbours, so
-/// that it is read as it was.
+/// A table of numbers as the text of a log: each number with as many digits as distinguish it from its
+/// neighbours, so that it is read as it was.
 std::string csv_of(const std::vector<std::pair<std::string, array>>& columns) {
     if (columns.empty()) throw bad_input("log", "has no columns");
     const std::size_t rows = rows_of(columns[0].second, columns[0].first.c_str());

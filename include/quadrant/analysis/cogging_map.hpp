@@ -19,9 +19,9 @@ namespace quadrant::inline v0::analysis {
 template <signal_tag Out, signal_tag In = signal::position> struct cogging_run {
     std::vector<quantity_of<In>> position;
     std::vector<quantity_of<Out>> command; ///< or current, or force
-    int direction = 0;                     ///< +1, -1; 0: the way from the first position to the last
+    int direction = 0;                     ///< +1, -1; 0: the direction from the first position to the last
     std::vector<double>
-        velocity{}; ///< SI; of all runs or of none: then the viscous slope is told from Coulomb friction
+        velocity{}; ///< SI; of all runs or of none: then viscous and Coulomb friction are distinct
 };
 
 /// What repeats along the travel, and which of its harmonics a map keeps.
@@ -34,7 +34,7 @@ template <signal_tag In = signal::position> struct cogging_options {
         friction_orders{}; ///< where half the difference of the directions repeats along the pitch too
 };
 
-/// One harmonic of the cogging that was found, with its interval, and what tells that it is friction instead.
+/// One harmonic of the cogging that was found, with its interval, and what shows that it is friction instead.
 template <signal_tag Out> struct cogging_harmonic {
     unsigned order;
     estimated<quantity_of<Out>> amplitude;
@@ -44,7 +44,7 @@ template <signal_tag Out> struct cogging_harmonic {
         half_difference; ///< of the two directions in this order; far above its neighbours: a friction order
 };
 
-/// What two directions tell.
+/// What two directions show.
 template <signal_tag Out, signal_tag In = signal::position> struct cogging_identification {
     quantity_of<In> pitch{};
     std::vector<cogging_harmonic<Out>> harmonics; ///< those kept, the strongest first

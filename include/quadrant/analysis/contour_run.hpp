@@ -36,7 +36,7 @@ struct contour_options {
     std::size_t lead =
         0; ///< periods that the reference is asked before it is due (lead() of the law's preview)
     displacement spacing =
-        displacement::from_value(1e-5); ///< of the places that the path is judged by: s^2/(8 R) exact
+        displacement::from_value(1e-5); ///< of the places at which it is evaluated: s^2/(8 R) exact
     displacement window = displacement::from_value(2e-3); ///< along the path: `sampled_path`
 };
 

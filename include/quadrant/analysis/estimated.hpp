@@ -9,7 +9,7 @@
 
 namespace quadrant::inline v0::analysis {
 
-/// A place or a way along an axis.
+/// A position or a displacement along an axis.
 using displacement = quantity_of<signal::position>;
 
 /// A number with its interval of 95 %.

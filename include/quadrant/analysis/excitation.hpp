@@ -11,7 +11,7 @@
 #include <vector>
 
 /// Sources that are added to a wire to measure it: `wire.command = ... + excite();`, or by type, `injected`.
-/// Each call gives the coming sample; `now()` tells the last one again, for the FRF. No step allocates.
+/// Each call gives the coming sample; `now()` returns the last one again, for the FRF. No step allocates.
 namespace quadrant::inline v0::analysis {
 
 /// A sine of rising (or falling) frequency, once; then zero.

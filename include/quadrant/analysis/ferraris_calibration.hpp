@@ -23,7 +23,7 @@ struct ferraris_calibration {
         gain_deviation{}; ///< standard deviation, for a white residual
     quantity_of<signal::acceleration> offset_deviation{};
 
-    /// The gain is told from the offset: the motion beyond a parabola stands ten times above what is
+    /// The gain is distinguishable from the offset: the motion beyond a parabola stands ten times above what is
     /// unexplained.
     bool determined() const noexcept { return excitation.value() > 10 * residual.value(); }
     quantity_of<signal::acceleration> acceleration(quantity_of<signal::voltage> m) const noexcept {
@@ -60,8 +60,8 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
         speed += T * (before + now) / 2;
         furthest = std::max(furthest, std::abs(way[k])), squares += way[k] * way[k];
     }
-    // Unknowns: p0, v0, Z in units of the record's length, G in units of the furthest way where it is one of
-    // them.
+    // Unknowns: p0, v0, Z in units of the record's length, G in units of the largest displacement where it is
+    // one of them.
     const auto fit = [&](bool with_gain, const auto& of) {
         least_squares equations(with_gain ? 4 : 3);
         for (std::size_t k = 0; k < n; ++k) {
@@ -72,7 +72,7 @@ inline ferraris_calibration calibrate_ferraris(std::span<const quantity_of<signa
         }
         return equations.solve();
     };
-    const bool parabola = // the integral too, to rounding: no gain is to be told
+    const bool parabola = // the integral too, to rounding: no gain can be identified
         !(furthest > 0) || !(fit(false, [&](std::size_t k) { return way[k]; }).residual > 1e-20 * squares);
     const auto found = fit(!parabola, [&](std::size_t k) { return position[k].value(); });
     const double deviation = std::sqrt(found.residual / double(n - 4));

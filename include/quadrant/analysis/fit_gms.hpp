@@ -168,8 +168,9 @@ template <std::size_t N> gms_fit<N> gms_elements(const std::vector<double>& x, d
 /// between knots are the sum of the stiffness that still sticks, [Jamaludin2008] eq. (3.9). Weighted least
 /// squares; starts from every choice of N knots out of 12 places (the stiffness is then linear), the best three
 /// refined in ln(knot), ln(k). Deterministic. `limits` says which knots lie within one encoder count (of the
-/// way back, so half of it here) or a tenth of each other: the curve is then known, the single k_i and forces
-/// are not. Throws with fewer than 4 points an element, or for a curve that no N springs in this order fit.
+/// displacement back, so half of it here) or a tenth of each other: the curve is then known, the single k_i and
+/// forces are not. Throws with fewer than 4 points an element, or for a curve that no N springs in this order
+/// fit.
 template <std::size_t N> gms_fit<N> fit_gms(const virgin_curve& curve) {
     const std::size_t n = curve.points.size();
     require(n >= 4 * N, "fit_gms.points", double(n), "must be 4 or more for each element");

@@ -71,13 +71,13 @@ struct lugre_fit {
 /// command. `simulate(friction, run)` gives the commands of the loop along what run number `run` was asked to
 /// do, as many as were
 /// recorded: with an encoder without steps, so that it answers smoothly. Compared from sample `first` on, when
-/// the start is forgotten. Runs: back and forth within and beyond the presliding way, with parts fast enough
-/// for sigma1 v to be felt beside sigma0 z, each from another place, with gains so low that the counts of the
-/// encoder do not shake the axis. All runs are fitted together by `minimise`, sigma0 in its logarithm, sigma1
-/// not below 0. Intervals: the spread of what the single runs would want instead ([Liang1986], Student's t),
-/// correlated as their samples are. What is the same in all runs
-/// they do not know: a wrong mass, force constant or static curve, and what an encoder's steps do to the mean
-/// of the loop. Whether the motion is enough for the encoder tells a trial: fit runs simulated with its steps.
+/// the start is forgotten. Runs: back and forth within and beyond the presliding displacement, with parts fast
+/// enough for sigma1 v to be felt beside sigma0 z, each from another place, with gains so low that the counts
+/// of the encoder do not shake the axis. All runs are fitted together by `minimise`, sigma0 in its logarithm,
+/// sigma1 not below 0. Intervals: the spread of what the single runs would want instead ([Liang1986], Student's
+/// t), correlated as their samples are. What is the same in all runs they do not know: a wrong mass, force
+/// constant or static curve, and what an encoder's steps do to the mean of the loop. A trial shows whether the
+/// motion is enough for the encoder: fit runs simulated with its steps.
 /// Source: [LowKeck2003], dynamic parameters by matching simulated and recorded current; there with a genetic
 /// algorithm. Throws with fewer than 3 runs, unequal lengths, a start that is not above 0, what `minimise`
 /// throws, and when a parameter makes no difference to the command.

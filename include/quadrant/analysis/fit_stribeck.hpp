@@ -23,7 +23,7 @@ struct stribeck_fit {
     double surprise; ///< sum of squares over what the points' errors explain; far above 1: another curve
     bool converged;
     double shape = 1;   ///< delta, as given
-    std::string limits; ///< what the map cannot tell; empty: nothing
+    std::string limits; ///< what the map cannot identify; empty: nothing
 
     /// For `stribeck`, `maxwell_slip`; without Fs the level is Coulomb's, and vs does not matter.
     stribeck<>::parameters parameters() const {

@@ -105,11 +105,11 @@ steady_run read_run(const axis_log<Command>& run, duration period, double uneven
 /// Steady part: the longest stretch in which the speed is within `uneven` of the run's median speed; of that
 /// what is left after the run in, where the mean has the least spread (`settle_mean`). Its standard error
 /// counts correlation.
-/// What it measures is the friction after so long a way at one speed: with elements that slip slowly
+/// It measures the friction after a path of that length at one speed: with elements that slip slowly
 /// (`maxwell_slip`) the force nears s(v) + viscous v with s(v)/attraction, 0.1 to 0.4 s on the milling table,
 /// after a run in of some ten micrometres.
 /// At less than one encoder count per response time of the loop the axis creeps from count to count and the
-/// mean falls short (1 % at 0.01 mm/s and 0.25 um on the milling table): the fit's `surprise` tells.
+/// mean falls short (1 % at 0.01 mm/s and 0.25 um on the milling table): the fit's `surprise` shows it.
 /// Source: [Jamaludin2008] eq. (3.5).
 /// A run that is not steady, or has no counterpart, is left out, and `unused` says why. Throws for runs shorter
 /// than 640 samples, of unequal wires or with samples that are not finite.

@@ -28,7 +28,7 @@ template <signal_tag Command> struct compensation_verdict {
     std::size_t reversals; ///< that count
     compensation_size size;
     compensation_time time;
-    std::string why; ///< cannot tell
+    std::string why; ///< it cannot be decided
 
     std::string text() const {
         constexpr std::array sizes{"cannot tell", "wrong sign", "not at all",
@@ -127,11 +127,10 @@ inline estimated<double> mean_of(const std::vector<double>& x) {
 ///   e0 = e + H c: the error as it would have been without the compensation c, H = position per command of the closed loop
 ///   at each reversal both e0 and H c are fitted by a base line and the response to one step of friction, size and time free;
 ///   scale = size(c)/size(e0), late = time(c) - time(e0), over the reversals
-/// Friction that comes over some way instead of at once has the time of its middle; it and the command are
-/// compared at the wire, so that a compensation without preview is late by the delay of the plant. An axis that
-/// gets its compensation
-/// late also breaks away later: `late` is about 0.6 of the shift that would put it right (measured on bristles
-/// and on Maxwell-slip springs).
+/// Friction that builds up over some displacement instead of at once has the time of its middle; it and the
+/// command are compared at the wire, so that a compensation without preview is late by the delay of the plant.
+/// An axis that gets its compensation late also breaks away later: `late` is about 0.6 of the shift that would
+/// put it right (measured on bristles and on Maxwell-slip springs).
 /// H, position per unit of the wire, a model (`p_pi_loop`: plant times sensitivity) or measured, asked for from
 /// 1 over the record up to half the sampling rate. Only its product with c enters, so where the compensation is
 /// right it need not be

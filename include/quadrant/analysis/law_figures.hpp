@@ -55,7 +55,7 @@ template <class Loop> law_figures frequency_figures(const Loop& loop, frequency 
 
 /// All of it at once, for any linear law in the port: frequency response, margins, bandwidth, steps.
 /// Source: [Yeung2006] section 3 (analysis of the axis control), [Franklin1998].
-/// Throws for a band that is none; a law that is not stable is analysed and told by `settles`.
+/// Throws for a band that is none; a law that is not stable is analysed and reported by `settles`.
 template <class Law>
 law_figures analysed(const law_loop<Law>& loop, frequency from = hertz(0.5),
                      const step_options<typename Law::output>& steps = {}) {

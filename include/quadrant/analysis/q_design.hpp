@@ -16,7 +16,7 @@ namespace quadrant::inline v0::analysis {
 struct q_rule {
     double margin = 0.5;          ///< largest |Q Delta|; 0 ... 1, 1 is the bound itself
     frequency from, to;           ///< lines of the FRF that count
-    double least_coherence = 0.8; ///< lines below are left out, and told
+    double least_coherence = 0.8; ///< lines below are left out, and reported
     double deviations = 2;        ///< of the lines' spread, added to |Delta|; >= 0
 };
 /// How near a Q filter comes to the bound 1/|Delta| of the axis that was measured, and on which lines that was

@@ -10,7 +10,7 @@
 
 namespace quadrant::inline v0::analysis::detail {
 
-/// Friction over the way from reversal to reversal: what `find_virgin_curve` is made of.
+/// Friction over the displacement from reversal to reversal: what `find_virgin_curve` is made of.
 struct slow_branches {
     double amplitude;                            ///< half the travel [m]
     std::vector<std::vector<double>> way, force; ///< [branch][sample] from the reversal on, halved

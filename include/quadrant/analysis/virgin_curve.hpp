@@ -12,7 +12,7 @@
 
 namespace quadrant::inline v0::analysis {
 
-/// Friction over the way from rest, springs relaxed.
+/// Friction over the displacement from rest, springs relaxed.
 struct virgin_curve {
     /// Friction force [N] after one way from rest.
     struct point {
@@ -21,7 +21,7 @@ struct virgin_curve {
         double systematic; ///< standard error that all branches share: encoder count, level [N]
         std::size_t run;   ///< index, by amplitude
     };
-    std::vector<point> points; ///< way rising
+    std::vector<point> points; ///< displacement rising
     std::vector<std::vector<double>>
         branches;       ///< [branch][point]: force [N]; not a number where it was another run
     displacement count; ///< of the encoder, the least that it moved
@@ -65,8 +65,9 @@ inline double interpolated(const std::vector<double>& x, const std::vector<doubl
 /// that
 /// reaches it: the slowest. Source: [Jamaludin2008] eq. (3.9); docs/derivations/maxwell_slip.md for the rule.
 /// `level`: a branch runs at some speed, where what slips has fallen to s(v) < Fs. What slips is where the
-/// tangent of the curve meets zero way (exact for springs that stick and slip); that part is brought to Fs, and
-/// half of the correction counts as error. Without `level` the curve is that of the speed of the run.
+/// tangent of the curve meets zero displacement (exact for springs that stick and slip); that part is brought
+/// to Fs, and half of the correction counts as error. Without `level` the curve is that of the speed of the
+/// run.
 /// Errors: from branch to branch; and what all share: half an encoder count at the reversal, the correction of
 /// level, the difference of two runs where both reach. A command that acts late by 1 ms is late by less than
 /// 0.3 um in these runs, at their slow ends by nothing.
@@ -148,7 +149,7 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
         const double factor = factors.emplace_back(lifted(r, ways[i])),
                      force = factor * mean_of(r, cut[r].force, ways[i]);
         const double steepest = std::max(slope(r, ways[i]), slope(r, std::max(0.0, ways[i] - 2 * count)));
-        const double place = steepest * count / (2 * std::sqrt(12.0)); // uniform over a count of the whole way
+        const double place = steepest * count / (2 * std::sqrt(12.0)); // uniform over a count of the whole path
         out.points.push_back({displacement::from_value(ways[i]), quantity_of<signal::force>::from_value(force),
                               std::hypot(place, 0.5 * (1 - 1 / factor) * force, disagree * force), r});
     }

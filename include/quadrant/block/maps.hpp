@@ -45,7 +45,7 @@ concept shiftable = requires(B b, quantity_of<In, Real> by) {
 };
 
 namespace detail {
-/// Settles a block at x and tells what it then gives, without stepping it.
+/// Settles a block at x and returns what it then gives, without stepping it.
 template <class Block, class X> auto settled(Block& block, const X& x) {
     block.settle(x);
     Block copy = block;

@@ -23,7 +23,7 @@ struct power_request {
 /// that.
 ///   off --enable rises--> on --enable falls--> stopping (deceleration) --at rest, brake closed--> off
 ///   on, stopping --emergency stop--> stopping (emergency_deceleration);   any --trip--> tripped --enable falls--> off
-///   stopping: v = max(0, |v| - a T), x += T (v + v_before)/2: the way is v^2/(2 a) exactly; the stream is no longer heard
+///   stopping: v = max(0, |v| - a T), x += T (v + v_before)/2: the path is v^2/(2 a) exactly; the stream is no longer heard
 /// How a loop goes with it, so that each of its boxes is in a defined state (table in docs/integrator.md):
 ///   const auto r = power({.enable = button, .emergency_stop = mushroom, .trip = guard.tripped()}, stream);
 ///   if (power.on()) u = axis(r, measured); else axis.track(r, measured, u = applied);   // applied: 0, or another's output
@@ -31,7 +31,8 @@ struct power_request {
 /// Ports: requests and the stream's reference in, the reference of the loop out; on() says that the command
 /// goes out.
 /// An enable counts when it rises: after a stop it has to be taken away and given again. An emergency stop that
-/// ends starts nothing. The stream has to wait where the axis is; a `following_error` tells if it does not.
+/// ends starts nothing. The stream has to wait where the axis is; a `following_error` reports it if it does
+/// not.
 /// State: last reference and its speed; `reset`: off, at zero; `settle(x)`: off, the stream at rest at x.
 /// `shift(by)`: the frame of positions moves (homing).
 /// Range: velocity and both decelerations finite, above 0: no stop is longer than velocity^2/(2 a), whatever

@@ -20,7 +20,7 @@ template <class Value> constexpr Value beyond(const Value& x, const Value& half)
 /// threshold is the whole width.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, odd and continuous.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
-/// `retune(next)`: another width from the next step on, J <= |half_width' - half_width|.
+/// `retune(next)`: another width from the next step on, jump <= |half_width' - half_width|.
 /// Range: half_width >= 0; 0 passes everything.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "dead_band.half_width = ...: must be finite and not below 0".

@@ -14,7 +14,7 @@ namespace quadrant::inline v0 {
 /// Ports: one scalar in, what the gain depends on beside it, one scalar out. In front of a
 /// `proportional_integral` (error to error) it scales both of its gains, and the integral, which is behind,
 /// does not jump.
-/// State: none; `reset` and `settle(x, s)` set the held output and clear the fault. `gain(s)` alone tells the
+/// State: none; `reset` and `settle(x, s)` set the held output and clear the fault. `gain(s)` alone returns the
 /// gain.
 /// Jump: none at a node. When s moves by ds the output moves by at most (steepest slope) |ds| |x| more than
 /// with a fixed gain.

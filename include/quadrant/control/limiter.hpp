@@ -12,7 +12,7 @@ namespace quadrant::inline v0 {
 /// Source: docs/formats.md (limit of cascade_p_pi).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: none; `reset` and `settle` set the held output and clear the fault. limited() = the last sample was
-/// clipped. `retune(next)`: other bounds from the next step on, J <= what they cut off or let through.
+/// clipped. `retune(next)`: other bounds from the next step on, jump <= what they cut off or let through.
 /// Range: low <= high; low of minus infinity and high of infinity are no bound. What comes out is finite,
 /// always.
 /// NaN and infinities: holds the last output, raises faulted() (an infinite input is a fault, not a large

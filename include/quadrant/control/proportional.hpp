@@ -12,7 +12,7 @@ namespace quadrant::inline v0 {
 /// Source: [Ellis2012], position-control loops (the P of a P/PI cascade).
 /// Ports: one scalar in, one scalar out; the sign is that of the gain.
 /// State: none; `reset` and `settle` set the held output and clear the fault.
-/// `retune(next)`: another gain from the next step on, J = |gain' - gain| |x[k]|; behind it a
+/// `retune(next)`: another gain from the next step on, jump = |gain' - gain| |x[k]|; behind it a
 /// `proportional_integral` can take it.
 /// Range: any finite gain, negative and zero included; the output is not limited.
 /// NaN and infinities: holds the last output, raises faulted().

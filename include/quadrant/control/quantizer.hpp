@@ -47,7 +47,7 @@ public:
         const value y = rounded(x);
         out_.settle(finite(x, y), y);
     }
-    void retune(const quantizer& next) noexcept { ///< J <= half of both steps
+    void retune(const quantizer& next) noexcept { ///< jump <= half of both steps
         step_ = next.step_;
         rounds_ = next.rounds_;
         inverse_step_ = next.inverse_step_;

@@ -12,7 +12,7 @@ namespace quadrant::inline v0 {
 /// Source: LinuxCNC limit2 (its maxv).
 /// Ports: one scalar in, one scalar out, the same signal.
 /// State: the last output; `reset` leaves 0, `settle(x)` stands at x. limited() = the last sample could not
-/// follow. `retune(next)`: another rate from the next step on, J <= |rate' - rate| T.
+/// follow. `retune(next)`: another rate from the next step on, jump <= |rate' - rate| T.
 /// Range: rate > 0, the same up and down; infinite = no bound.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "rate_limiter.rate = ...: must be above 0".

@@ -57,7 +57,7 @@ public:
         if (mass_is_known() && mass > 0 && c_.share > least_share) against_the_mass(mass / known_.mass);
     }
 
-    /// What is to be told of the units.
+    /// What is to be reported of the units.
     std::vector<std::string> notes() const {
         if (!(c_.travel > 0))
             return {fmt::format("axis {}: does not move: its units cannot be checked", a_.name)};

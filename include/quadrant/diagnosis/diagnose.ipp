@@ -462,8 +462,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             return std::make_unique<axis_case>(rigid, fitted, judged, period, excluded, limits, tell, how,
                                                before);
         };
-        // Looks at the forces along the measured motion where the predictions mislead. Returned is why it is
-        // judged by them, or nothing.
+        // Looks at the forces along the measured motion where the predictions mislead. Returns why it is
+        // evaluated on them, or nothing.
         const auto along_motion = [&](std::unique_ptr<axis_case>& found, bool exchanged) {
             const bool stands = detail::contradicts_motion(*found), little = detail::answers_too_little(*found),
                        open = detail::open_by_measured_command(*found);

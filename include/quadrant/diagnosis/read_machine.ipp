@@ -8,8 +8,8 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// One reading of a machine file, box by box. An unknown key is told before a missing one: it is often the same
-/// slip.
+/// One reading of a machine file, box by box. An unknown key is reported before a missing one: it is often the
+/// same slip.
 class machine_reader {
 public:
     machine_reader(std::string_view text, std::string_view file)

@@ -59,7 +59,7 @@ inline ordered_json files_json(std::initializer_list<read_file> files) {
 inline ordered_json place_json(const place& p) {
     ordered_json out = ordered_json::object();
     out["view"] = p.view;
-    if (!p.block.empty()) out["block"] = p.block; // what no cause tells has none
+    if (!p.block.empty()) out["block"] = p.block; // what no cause explains has none
     out["finding"] = p.finding;
     out["share"] = p.share.value;
     out["share_ci95"] = interval_json(p.share);

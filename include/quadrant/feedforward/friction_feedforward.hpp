@@ -43,7 +43,7 @@ concept static_friction = requires(const F& f, quantity_of<In, Real> v) {
 /// name.
 /// Cost: that of the law, 4 multiplications, 1 division. Laws with memory (`dahl`, `lugre`, `maxwell_slip`)
 /// turn over
-/// by themselves, along the way: use them bare, in units of the command.
+/// by themselves, over the displacement: use them bare, in units of the command.
 template <class Law, signal_tag Command = typename Law::output, class Real = typename Law::value::value_type>
 requires static_friction<Law, typename Law::input, typename Law::output, Real>
 class friction_feedforward {

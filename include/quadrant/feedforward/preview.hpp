@@ -25,8 +25,8 @@ namespace quadrant::inline v0 {
 /// had been applied for ever ({.position = x} for rest). Settle at the first position before the first step, or
 /// it reads as a jump. `lead(d)` and `retune(next)` change the lead between two steps; the reference does not
 /// move by it, the other motion by what lies between both times.
-/// Range: 0 <= lead <= Capacity periods; lead(d) and at(d) outside saturate, limited() tells for lead(d). Axes
-/// that follow one path need the same Capacity, not the same lead. Where the acceleration jumps within a
+/// Range: 0 <= lead <= Capacity periods; lead(d) and at(d) outside saturate, limited() reports it for lead(d).
+/// Axes that follow one path need the same Capacity, not the same lead. Where the acceleration jumps within a
 /// period, its value there is off by up to 1/3 of the jump.
 /// NaN and infinities: holds both motions, takes nothing in, raises faulted().
 /// Throws "preview.lead = ...: must lie between 0 and ... (capacity)".

@@ -18,8 +18,8 @@ namespace quadrant::inline v0 {
 /// Two integrators in a ring (`second_order.hpp`): a constant passes to the last bit.
 /// State: low-pass (two numbers), band and last input, in the unit of the input; `reset` leaves zero,
 /// `settle(x)` the state of a constant x. What has died out is zero.
-/// `retune(next)`: another corner from the next step on, J = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if all
-/// inputs so far had been higher by so much.
+/// `retune(next)`: another corner from the next step on, jump = |b0' - b0| |x[k] - x[k-1]|. `shift(by)`: as if
+/// all inputs so far had been higher by so much.
 /// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from
 /// 6e-16; a step overshoots by 4.3 %.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().

@@ -17,8 +17,9 @@ namespace quadrant::inline v0 {
 /// Ports: one scalar in, its rate out; sign kept.
 /// State: the last input and the last output; a rate that has died out is zero; `reset` leaves 0, so a first
 /// sample y0 reads as a jump: `settle(y0)` first. `settle(y)` stands still at y; `settle(y, rate)` has been
-/// moving at that rate and y was its last sample. `retune(next)`: another corner from the next step on, J = |b'
-/// - b| |(y[k] - y[k-1])/T - v[k-1]|, b = 2 wc T/(2 + wc T): none in even motion. `shift(by)`: the frame of
+/// moving at that rate and y was its last sample. `retune(next)`: another corner from the next step on,
+/// jump = |b' - b| |(y[k] - y[k-1])/T - v[k-1]|, b = 2 wc T/(2 + wc T): none in even motion. `shift(by)`: the
+/// frame of
 ///   positions moves, the rate does not.
 /// Range: corner > 0. Above the sampling rate / pi (wc T > 2) the pole is negative and the output rings, but
 /// decays. The gain of a ramp is exactly one; the -3 dB point lies below corner by the bilinear warp.

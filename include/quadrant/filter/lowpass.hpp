@@ -21,8 +21,8 @@ namespace quadrant::inline v0 {
 /// Source: [Franklin1998] ch. 6; LinuxCNC lowpass is the zero-order-hold form of the same filter.
 /// Ports: one scalar in, one scalar out, the same signal; sign kept, gain one at standstill.
 /// State: the last input and the last output; what has died out is zero; `reset` leaves zero, `settle(x)` the
-/// state of a constant x. `retune(next)`: another corner from the next step on, J = |b' - b| |x[k] + x[k-1] - 2
-/// y[k-1]|, b = t/(1+t). `shift(by)`: as if all inputs so far had been higher by so much.
+/// state of a constant x. `retune(next)`: another corner from the next step on, jump = |b' - b| |x[k] +
+/// x[k-1] - 2 y[k-1]|, b = t/(1+t). `shift(by)`: as if all inputs so far had been higher by so much.
 /// Range: 0 < corner < half the sampling rate, in float from 3e-7 of the sampling rate on, in double from
 /// 6e-16; zero gain at half the sampling rate.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().

@@ -17,7 +17,7 @@ namespace quadrant::inline v0 {
 ///   y = x - width band,  the band from two integrators in a ring (`second_order.hpp`), a constant passes to the last bit
 /// State: last input, how far it is ahead of the slow part, and the band, in the unit of the input; `reset`
 /// leaves zero, `settle(x)` the state of a constant x (gain one at standstill). What has died out is zero.
-/// `retune(next)`: the parameters of another notch from the next step on, J = |b0' - b0| |x[k] - x[k-1]|.
+/// `retune(next)`: the parameters of another notch from the next step on, jump = |b0' - b0| |x[k] - x[k-1]|.
 /// `shift(by)`: as if all inputs so far had been higher by so much.
 /// Range: 0 < centre < half the sampling rate, width > 0 (-3 dB over width times centre, in hertz). In
 /// float the centre may lie down to 3e-7 of the sampling rate (width 1 and above; else by width less), in

@@ -163,7 +163,7 @@ private:
             if (i > 0) require_finite("transfer_function.denominator / denominator[0]", a_[i - 1]);
             size_of_a += absolute(p.denominator[i]);
         }
-        // Closer to z = 1 than coefficients in z can tell: the sum is nothing but their rounding.
+        // Closer to z = 1 than coefficients in z can resolve: the sum is nothing but their rounding.
         integrates_ = less_equal(absolute(d.denominator[Order]), number(rounding) * size_of_a);
         set_where(!integrates_, standstill_, gain::from_value(Real(d.numerator[Order] / d.denominator[Order])));
     }

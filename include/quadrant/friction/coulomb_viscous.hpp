@@ -49,7 +49,7 @@ public:
         finite(y) ? out_.reset(y) : out_.raise();
     }
     void
-    retune(const coulomb_viscous& next) noexcept { ///< J <= the change of coulomb + that of viscous times |v|
+    retune(const coulomb_viscous& next) noexcept { ///< jump <= change of coulomb + that of viscous times |v|
         coulomb_ = next.coulomb_;
         viscous_ = next.viscous_;
         given_ = next.given_;

@@ -9,9 +9,9 @@ namespace quadrant::inline v0 {
 /// Friction that gives way like a spring before it slides: bristles that bend to a level which does not depend
 /// on speed.
 ///   dF/dx = stiffness |r|^shape sign(r), r = 1 - F sign(v)/coulomb; out = F + viscous v
-/// Source: [Dahl1968]; [Jamaludin2008] eq. (3.1), shape = 1 there. Solved exactly for a velocity that stands
-/// for the step,
-/// so a step is as good as many and only the path counts, not the speed: docs/derivations/dahl.md.
+/// Source: [Dahl1968]; [Jamaludin2008] eq. (3.1), shape = 1 there. Solved exactly for a velocity that is
+/// constant over the step, so a step is as good as many and only the path counts, not the speed:
+/// docs/derivations/dahl.md.
 /// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a
 /// plant subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see
 /// presliding.hpp.
@@ -19,10 +19,10 @@ namespace quadrant::inline v0 {
 /// had been
 /// applied for ever: +-coulomb, relaxed for v = 0.
 /// `retune(next)`: another law from the next step on; the bristles keep their force, but for what is beyond the
-/// new level. J <= max(K, K') |v| T + |viscous' - viscous| |v| + (|F| - coulomb' or 0), K = 2^shape stiffness:
-/// the step that either makes.
+/// new level. Jump <= max(K, K') |v| T + |viscous' - viscous| |v| + (|F| - coulomb' or 0), K = 2^shape
+/// stiffness: the step that either makes.
 /// Range: coulomb > 0, stiffness > 0, 0 <= shape <= 4, viscous >= 0. Shape 0: a spring up to the level; below 1
-/// the level is reached within a finite way, from 1 on never quite. Stable at any step.
+/// the level is reached within a finite displacement, from 1 on never quite. Stable at any step.
 /// Does not remember inner loops: they drift. Breakaway is the sliding level.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "dahl.<field> = ...: must ..." for period, coulomb, stiffness, shape, viscous.
@@ -41,7 +41,7 @@ public:
     /// The sliding level, and the spring that it is reached by.
     struct parameters {
         quantity_of<Out, number> coulomb{};        ///< sliding level; > 0
-        gain_rate_of<Out, In, number> stiffness{}; ///< at the start of a motion, per unit of way; > 0
+        gain_rate_of<Out, In, number> stiffness{}; ///< at the start of a motion, per unit of displacement; > 0
         double shape = 1;                          ///< exponent; 0 ... 4
         gain_of<Out, In, number> viscous{};        ///< >= 0
     };
@@ -101,7 +101,7 @@ private:
         using std::exp, std::log;
         return r > Real(0) ? Real(exp(p * log(r))) : Real(0);
     }
-    /// r after the way a: dr/da = -r^shape.
+    /// r after the displacement a: dr/da = -r^shape.
     Real remaining(Real r, Real a) const noexcept {
         using std::exp;
         if (!(r > Real(0))) return Real(0);

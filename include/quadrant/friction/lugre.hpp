@@ -10,17 +10,17 @@ namespace quadrant::inline v0 {
 ///   dz/dt = v - stiffness |v| z/g(v), g(v) = Fc + (Fs - Fc) exp(-|v/vs|^delta), Fc, Fs, vs, delta of the curve
 ///   F = stiffness z + s1(v) dz/dt + viscous v, s1 = damping, or damping exp(-(v/damping_velocity)^2)
 /// Source: [CanudasDeWit1995]; [Jamaludin2008] eq. (3.2-3.4); [LowKeck2003] with delta = 2.
-/// Explicit Euler diverges in any fast move. Here z is the exact solution for a velocity that stands for the
-/// step, and dz/dt its mean over the step: docs/derivations/lugre.md.
+/// Explicit Euler diverges in any fast move. Here z is the exact solution for a velocity that is constant over
+/// the step, and dz/dt its mean over the step: docs/derivations/lugre.md.
 /// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a
 /// plant subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see
 /// presliding.hpp.
 /// State: stiffness z, in the unit of the output. `reset` leaves it relaxed; `settle(v)` as if v had been
 /// applied for ever. `retune(next)`: another law from the next step on; the bristles keep their force, but for
-/// what is beyond the new Fs. J <= (K + K' + |viscous' - viscous|) |v| + (|stiffness z| - Fs' or 0), K = (1 +
-/// Fs/Fc) (stiffness T + damping): the step of each.
+/// what is beyond the new Fs. Jump <= (K + K' + |viscous' - viscous|) |v| + (|stiffness z| - Fs' or 0), K =
+/// (1 + Fs/Fc) (stiffness T + damping): the step of each.
 /// Range: 0 < coulomb <= static_level and the rest of `stribeck`, stiffness > 0, damping >= 0, damping_velocity
-/// >= 0 (0: the damping does not fall). Stable at any step. passive(p) tells whether no motion can get energy
+/// >= 0 (0: the damping does not fall). Stable at any step. passive(p) says whether no motion can get energy
 /// out of it; with constant damping that needs viscous >= damping (Fs - Fc)/Fc [Barahanov2000].
 /// Does not remember inner loops: they drift. Breakaway falls with the rate of the pull.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().

@@ -21,8 +21,8 @@ concept some_springs = N >
 ///   sticks: dF_i/dt = stiffness_i v, until F_i sign(v) = w_i s(v)
 ///   slips:  dF_i/dt = sign(v) attraction (w_i - |F_i|/s(v)), until v is zero or reverses
 ///   out = sum F_i + viscous v, s(v) = Fc + (Fs - Fc) exp(-|v/vs|^delta), one curve for all elements
-/// Source: [AlBender2005]; [Jamaludin2008] eq. (3.6-3.8). Solved exactly for a velocity that stands for the
-/// step, stick
+/// Source: [AlBender2005]; [Jamaludin2008] eq. (3.6-3.8). Solved exactly for a velocity that is constant over
+/// the step, stick
 /// before slip: docs/derivations/maxwell_slip.md.
 /// Ports: scalar velocity in (mean of the period that ends now), scalar out with the sign of the resistance (a
 /// plant subtracts it, a feedforward adds it). As plant friction: after(v, h) and become(next), see
@@ -31,7 +31,7 @@ concept some_springs = N >
 /// and sticking; `settle(v)` as if v had been applied for ever (relaxed for v = 0).
 /// `retune(next)`: another law from the next step on; the sum of the springs stays, but for what is beyond the
 /// new Fs: force beyond an element's limit goes to the others. A changed level is then reached as the law says:
-/// at once by what sticks, with s/C by what slips. J <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| -
+/// at once by what sticks, with s/C by what slips. Jump <= (K + K') T + |viscous' - viscous| |v| + (|sum F_i| -
 /// Fs' or 0),
 /// K = sum max(stiffness_i |v|, C w_i max(1, Fs/Fc - 1)).
 /// Shares of the level: either `weights` (their sum is 1), or `forces` at breakaway of the virgin curve, as

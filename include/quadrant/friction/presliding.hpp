@@ -38,7 +38,7 @@ template <signal_tag In, signal_tag Out, class State, class Real> struct frictio
 };
 
 namespace detail {
-/// A force that something holds which can hold no more than `most`, either way.
+/// A held force, limited to `most` in either direction.
 template <class Value> Value borne(const Value& force, const Value& most) noexcept {
     return force > most ? most : force < -most ? -most : force;
 }
@@ -107,8 +107,8 @@ concept tells_force_at_rest = std::floating_point<Real> && requires(const F& f) 
 
 /// Velocity v' after one step h of M dv/dt = drive - friction, the friction that of the end of the step:
 ///   M (v' - v)/h + after(v', h).force = drive
-/// Each law solves its own equation exactly for a velocity that stands for h; which velocity that is, is found
-/// here implicitly. So a stiff contact neither rings nor needs a small h, and no step adds energy.
+/// Each law solves its own equation exactly for a velocity that is constant over h; which velocity that is, is
+/// found here implicitly. So a stiff contact neither rings nor needs a small h, and no step adds energy.
 /// Newton's method from v, kept between rest and the far side of the solution: 2 to 4 passes, one or two more
 /// where an element breaks away; to 2e-14 of the speeds in it (float: 3e-7). The derivatives of a dual take one
 /// more. Where several v' solve it, one near v is taken.

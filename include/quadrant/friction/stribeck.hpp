@@ -64,7 +64,7 @@ public:
         const value y = at(v);
         out_.settle(finite(y), y);
     }
-    void retune(const stribeck& next) noexcept { ///< J: what the curve changes at v
+    void retune(const stribeck& next) noexcept { ///< jump: what the curve changes at v
         const held_output<value> out = out_;
         *this = next;
         out_ = out;

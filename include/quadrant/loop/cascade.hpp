@@ -98,7 +98,7 @@ template <signal_tag Command, class Real> struct cascade_wires {
 /// allow). `track`, `retune`, `shift`: enabled without a bump, other parameters while it runs, homing; see
 /// docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
-/// Cost: that of the boxes. limited() tells that the amplifier clipped; the PI learns what was applied.
+/// Cost: that of the boxes. limited() reports that the amplifier clipped; the PI learns what was applied.
 template <axis_boxes Boxes> struct cascade {
     using real = real_of_boxes<Boxes>;
     using position = quantity_of<signal::position, real>;

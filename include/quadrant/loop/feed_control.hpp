@@ -132,7 +132,7 @@ template <signal_tag Command, class Real> struct feed_control_wires {
 /// gains change goes into what holds the axis in the law: the last step, done once more, would give the same
 /// command.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
-/// Cost: that of the boxes. limited() tells that the command was clipped; the law learns it.
+/// Cost: that of the boxes. limited() reports that the command was clipped; the law learns it.
 template <control_boxes Boxes> struct feed_control {
     using command_signal = typename decltype(Boxes::law)::output;
     using real = real_of<decltype(Boxes::law)>;

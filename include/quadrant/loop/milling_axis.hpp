@@ -34,7 +34,7 @@ concept fed_the_acceleration = requires(D d, quantity_of<signal::acceleration, R
     { d.command() } -> std::same_as<quantity_of<Command, Real>>;
 };
 /// A box for the slot `disturbance`: estimate of what acts beside the command, in units of the command. Either
-/// of two inputs, d(measured, u), which then tells which u it is fed (`fed_the_wish`, `fed_the_last_applied`),
+/// of two inputs, d(measured, u), which then states which u it is fed (`fed_the_wish`, `fed_the_last_applied`),
 /// or of one, which `absent` is; or of acceleration and command (`fed_the_acceleration`).
 template <class D, class Command, class Real>
 concept observes_disturbance = maps<D, signal::position, Command, Real> ||
@@ -177,7 +177,8 @@ template <signal_tag Command, class Real> struct milling_wires {
 /// same place gives u again. `track`, `retune`, `shift`: enabled without a bump, other parameters while it
 /// runs, homing; see docs/integrator.md.
 /// NaN and infinities: returns the last command, no box moves, raises faulted() until reset or settle.
-/// Cost: that of the boxes. limited() tells that the amplifier clipped; PI and observer learn what was applied.
+/// Cost: that of the boxes. limited() reports that the amplifier clipped; PI and observer learn what was
+/// applied.
 template <milling_boxes Boxes> struct milling_axis {
     using real = real_of_boxes<Boxes>;
     using position = quantity_of<signal::position, real>;
@@ -373,7 +374,7 @@ private:
         wire.linear = wire.feedback + wire.inertia + wire.drag;
         wire.disturbance = estimate(measured, wire.linear, last_applied(), accelerated);
         wire.compensated = wire.linear - wire.disturbance; // what the observer takes for applied
-        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts way
+        wire.travel = box.travel(ahead.position); // mean velocity of the last period: friction counts path
         if constexpr (requires { box.friction(wire.travel, -wire.disturbance); })
             wire.friction =
                 box.friction(wire.travel, -wire.disturbance); // it learns what the observer is left with

@@ -29,8 +29,8 @@ concept holds_a_cycle = Capacity >= 8;
 /// State: the last Capacity + 4 inputs, d, P. `reset`: as new, with the cycle of the parameters; `settle(x)`: a
 /// wire that stands at x, with the cycle as it is.
 /// Range: the true cycle within `range` of the one given, and nearer than half the period of the fastest strong
-/// harmonic, or d ends in a neighbouring valley. d is held within the range (limited() tells), until a whole
-/// cycle has been seen, and while the rms of s is not above `least`.
+/// harmonic, or d ends in a neighbouring valley. d is held within the range (limited() reports it), until a
+/// whole cycle has been seen, and while the rms of s is not above `least`.
 /// NaN and infinities: holds the last output, takes nothing in, raises faulted().
 /// Throws "cycle_tracker.<field> = ...: must ..." for cycle, range, settles_in, least and the period.
 /// Cost: 14 multiplications, 1 division, 8 (Capacity + 6) bytes.

@@ -19,9 +19,10 @@ namespace quadrant::inline v0 {
 /// parameters, `settle(x)` fills it with x. `length(n)` changes the length between two steps: a longer delay
 /// reads inputs that were really there (zeros before the first), a shorter one skips some; nothing is ever read
 /// that was not put in. At a change the output jumps by x[k-n'] - x[k-n]: at most |n' - n| times the largest
-/// step of those inputs. `retune(next)`: the length that `next` has, with the same J.
+/// step of those inputs. `retune(next)`: the length that `next` has, with the same jump.
 /// `shift(by)`: the frame moves.
-/// Range: 0 <= length <= Capacity; length(n) above saturates, and limited() tells. Length 0 is a piece of wire.
+/// Range: 0 <= length <= Capacity; length(n) above saturates, and limited() reports it. Length 0 is a piece of
+/// wire.
 /// NaN and infinities: holds the last output, takes nothing in (the line stands still), raises faulted().
 /// Throws "delay_line.length = ...: must not exceed the capacity (...)".
 /// Cost: no arithmetic, 8 (Capacity + 2) bytes of state. For a delay that is no whole number of periods:

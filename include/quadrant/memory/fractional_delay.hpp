@@ -27,9 +27,10 @@ concept delay_order = Order == 1 || (Order == 3 && Capacity >= 1);
 /// parameters, `settle(x)` fills it with x. `delay(d)` changes the delay between two steps.
 /// At a change the output jumps by at most g |d' - d|/T times the largest step of the inputs that are read
 /// between, and beside, both delays: g = 1 (Order 1), 4/3 (Order 3), the steepest slope of the cubic.
-/// `retune(next)`: the delay that `next` has, with the same J. `shift(by)`: the frame moves.
+/// `retune(next)`: the delay that `next` has, with the same jump. `shift(by)`: the frame moves.
 /// Range: Order 1 (straight line): 0 <= delay <= Capacity periods; Order 3 (cubic): one period <= delay <=
-/// Capacity periods, because it needs a sample on either side. delay(d) outside saturates, and limited() tells.
+/// Capacity periods, because it needs a sample on either side. delay(d) outside saturates, and limited()
+/// reports it.
 /// Exact for polynomials up to Order, for any signal at whole periods; gain at 1/8 of the sampling rate and
 /// half a period between
 /// samples: 0.924 (Order 1), 0.992 (Order 3), never above one.

@@ -38,10 +38,10 @@ concept repeats = Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1;
 /// the old and the new way and one is faded into the other during `fade`, so y never jumps. A change asked for
 /// during a fade starts after it; the last one asked for wins. The r that L reads then moves by 1/F of what the
 /// two ways differ by, each of the F steps of the fade, y by sum |l| times that. `retune(next)`: other filters,
-/// weights and cycle (by fading), the same ahead; what was learnt stays. J = |sum l_j' r_j' - l_j r_j| <= sum
-/// |l' - l| max |r| + 1.25 |l_0'| sum |w' - w| max |p|, p = Q (e + r); the new Q is heard a cycle later.
+/// weights and cycle (by fading), the same ahead; what was learnt stays. Jump = |sum l_j' r_j' - l_j r_j| <=
+/// sum |l' - l| max |r| + 1.25 |l_0'| sum |w' - w| max |p|, p = Q (e + r); the new Q is heard a cycle later.
 /// Range: (ahead + (SmoothingTaps - 1)/2 + 2) periods <= cycle <= Capacity periods; cycle(d) outside saturates,
-/// and limited() tells. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity:
+/// and limited() reports it. Stable where |Q W (1 - L T)| < 1, T the loop's complementary sensitivity:
 /// analysis/repetitive_design.hpp.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "repetitive.<field> = ...: must ..." for period, cycle, fade, weights, learning, ahead, smoothing.

@@ -34,7 +34,7 @@ namespace quadrant::inline v0 {
 /// `reset`: at rest at zero, nothing pushes; `settle(z)`: at rest at z, nothing pushes; `settle(z, d)`: at rest
 /// at z while -d is applied against d (a following step with wanted = 0 gives d). A plant that does not
 /// integrate needs the wanted command z/Gn(0) to stay there. `retune(next)`: another corner, another plant from
-/// the next step on; nothing changes at rest and in even motion, else the coming d is off by J = |p0 (x[k] -
+/// the next step on; nothing changes at rest and in even motion, else the coming d is off by |p0 (x[k] -
 /// x[k-1]) - q0 (u[k] - u[k-1])| / (1 - q0'), x: z or its difference, p0 and q0: what the first coefficients of
 /// Q/Gn and Q change, q0' the new one. `shift(by)`: the frame of positions moves.
 /// Range: 0 < corner < half the sampling rate (in float from 3e-7 of it on, in double from 6e-16); n - m not

@@ -22,7 +22,8 @@ namespace quadrant::inline v0 {
 /// argument is `left`, in the unit and with the sign of the output, default 0. A `milling_axis` feeds it the
 /// velocity of the reference and what its observer says.
 /// State: that of the model, and the level. `reset`: relaxed, level 1; `settle(v)`: as if v had acted for
-/// ever, the level as it is. `retune(next)`: another model, the level held to its bounds, J as `maxwell_slip`.
+/// ever, the level as it is. `retune(next)`: another model, the level held to its bounds, the jump as of
+/// `maxwell_slip`.
 /// Range: friction as `maxwell_slip`; settles_in > 0; 0 < lowest <= 1 <= highest.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
 /// Throws "maxwell_slip_observer.<field> = ...: must ...", and what `maxwell_slip` throws.

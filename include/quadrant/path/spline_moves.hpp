@@ -11,7 +11,7 @@
 
 namespace quadrant::inline v0::path::detail {
 
-/// A run of places in a program, as moves that join without a corner. The way to each place has the feed and
+/// A run of places in a program, as moves that join without a corner. The path to each place has the feed and
 /// the line of that place.
 class spline_moves {
 public:

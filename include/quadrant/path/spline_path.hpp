@@ -93,7 +93,7 @@ private:
         const point tangent = first / speed;
         return {at.place, tangent, (second - dot(second, tangent) * tangent) / (speed * speed)};
     }
-    /// The way from the place before to place i.
+    /// The path from the place before to place i.
     void join(std::size_t i) {
         while (window_.size() > around) window_.pop_front();
         const spline_knot to = knot(i);

@@ -77,12 +77,12 @@ public:
     using argument = current;
     using value = position;
 
-    /// Motor, inertia and friction at the screw, and the way of one turn.
+    /// Motor, inertia and friction at the screw, and the travel per turn.
     struct parameters {
         quantity<si::moment_of_inertia, number> inertia;                     ///< J; > 0
         gain_of<signal::torque, signal::angular_velocity, number> viscous{}; ///< B; >= 0
         gain_of<signal::torque, signal::current, number> torque_constant;    ///< Kt; > 0
-        quantity_of<signal::position, number> pitch;                         ///< way per turn; > 0
+        quantity_of<signal::position, number> pitch;                         ///< travel per turn; > 0
         typename Friction::parameters friction{};                            ///< of the friction box
         std::size_t substeps = 4;                                            ///< per servo period; 1 ... 1000
     };

@@ -29,7 +29,7 @@ namespace quadrant::inline v0 {
 /// the
 ///   held command is averaged inside the sub-step where it changes).
 /// NaN and infinities in a command or force, or a motion beyond all numbers: holds the last reading, keeps the
-/// state, raises faulted(). Commands beyond the limit are clipped, limited() tells.
+/// state, raises faulted(). Commands beyond the limit are clipped, limited() reports it.
 /// Throws "linear_motor.<field> = ...: must ..." for every field and the period; friction box and load throw in
 /// their own name.
 /// Cost: about 12 multiplications and 3 divisions a sub-step; Capacity + 6 numbers. With scale and encoder as

@@ -26,7 +26,8 @@ public:
     using value = quantity_of<Signal, Real>;
     using number = parameter_real<Real>; ///< of parameters
 
-    /// How strong the noise is, in the unit of the wire, and the seed that tells its sequence from all others.
+    /// How strong the noise is, in the unit of the wire, and the seed that distinguishes its sequence from all
+    /// others.
     struct parameters {
         quantity_of<Signal, number> deviation{}; ///< standard deviation; >= 0
         std::uint64_t seed = 1;

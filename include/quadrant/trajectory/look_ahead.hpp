@@ -18,8 +18,8 @@ namespace quadrant::inline v0::trajectory {
 /// without acceleration along the path.
 /// Backwards over the window: the highest speed at the start of a piece from which that at its end can be
 /// reached; forwards,
-/// when a piece is begun: what can be reached from the speed there is. More of the path known never makes a
-/// joint slower, so that what is under way stays valid.
+/// when a piece is begun: what can be reached from the speed there is. A longer look-ahead never lowers the
+/// speed of a joint, so that what is under way stays valid.
 /// Source: [Altintas2012]; [Tajima2016] for the joints (`corner`).
 /// Refused, with the line: a gap in the path, no feed, a corner to be driven through with no tolerance.
 /// Plain SI numbers; only `push` may throw, nothing allocates. For the motion itself: `interpolator`.
@@ -43,7 +43,7 @@ public:
         double leg_out = 0; ///< of the joint ahead [m]
         speed_profile body; ///< between the two
     };
-    /// A place on the path: the segment, the way along it [m], its line in the program.
+    /// A place on the path: the segment, the distance along it [m], its line in the program.
     struct place {
         const path::segment* path;
         double s; ///< along it

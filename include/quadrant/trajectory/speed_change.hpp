@@ -13,7 +13,7 @@ struct along {
 };
 
 /// From one speed to another, at rest in acceleration at both ends: the acceleration goes up along a ramp,
-/// stays, and goes down along the same ramp; its peak is (to - from) / (duration - ramp). Half the way of the
+/// stays, and goes down along the same ramp; its peak is (to - from) / (duration - ramp). Half the change of
 /// speed is made in half the time, so that the distance is (from + to)/2 duration whatever the ramp.
 /// Ramp of the acceleration, x = t / ramp: x (trapezoidal) or 3 x^2 - 2 x^3 (cubic, jerk 1.5 times the mean at
 /// x = 1/2).

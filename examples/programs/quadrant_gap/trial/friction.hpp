@@ -41,7 +41,7 @@ public:
             elements_.resize(f.weights.size());
         }
     }
-    /// Force against the motion after a way of v h.
+    /// Force against the motion after a displacement of v h.
     double operator()(double v, double h, double level) {
         if (stiff_level_ <= 0) return 0;
         const double before = force_;

@@ -32,7 +32,7 @@ struct friction_truth {
     contact_law law = contact_law::lugre;
     double length = 3e-7;                  ///< deflection at 63 % of the level, loaded for the first time
     double exponent = 1;                   ///< of Dahl
-    std::vector<double> weights{}, ways{}; ///< Maxwell-slip: shares of the level, relative ways to slip
+    std::vector<double> weights{}, ways{}; ///< Maxwell-slip: shares of the level, relative paths to slip
     double damping = 0.2;                  ///< of the contact, relative
 };
 

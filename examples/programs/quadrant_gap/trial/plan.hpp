@@ -59,7 +59,7 @@ struct planned {
     logs how = logs::plain;
 };
 
-/// Names that one log can hardly tell apart: never both in one machine.
+/// Names that one log can hardly distinguish: never both in one machine.
 inline bool near_relatives(std::string_view a, std::string_view b) {
     static const std::vector<std::vector<std::string_view>> families{
         {"mass", "force_constant"},

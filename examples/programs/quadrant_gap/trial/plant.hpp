@@ -105,7 +105,7 @@ private:
     std::vector<double> wander_;
 };
 
-/// The moving mass: half a step of way, the forces there, half a step of way. Second order, and keeps the
+/// The moving mass: half a step of motion, the forces there, half a step of motion. Second order, and keeps the
 /// energy of a mode.
 class mechanics {
 public:

@@ -39,7 +39,7 @@ struct get_bool_simd_register<T, quadrant::detail::lane_set<avx512f, Extensions>
 } // namespace xsimd::types
 
 // The argument of sin and cos, brought near zero. xsimd's own way depends on the largest of the lanes and calls
-// functions that are no templates, which the linker could not tell apart between sets; this one is each lane's
+// functions that are no templates, which the linker could not distinguish between sets; this one is each lane's
 // own.
 namespace xsimd::kernel::detail {
 template <class Set, unsigned Extensions>

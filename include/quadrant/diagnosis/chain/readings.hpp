@@ -39,7 +39,7 @@ public:
     /// Place on the travel, -1 to 1 from end to end.
     double along(double x) const { return 2 * (x - middle_) / travel_; }
 
-    /// Where what lies behind the play stands beside what drives it. With a force its sign tells which side is
+    /// Where what lies behind the play stands beside what drives it. With a force its sign shows which side is
     /// in contact; without, friction holds the load where it is.
     std::vector<double> offset(const link_model& m, std::span<const double> driven, double width) const {
         if (link_.force.empty()) return play_of(driven, width).offset;

@@ -15,7 +15,7 @@ namespace quadrant::inline v0::diagnosis::chain {
 struct finding {
     term what;
     double probability = 0;       ///< of this name
-    double group_probability = 0; ///< of it or one that this record does not tell from it
+    double group_probability = 0; ///< of it or one that this record does not distinguish from it
     std::vector<term> same{};     ///< those
     double before = 0, after = 0; ///< what is left without it and with it, on top of the findings before it [m]
 };

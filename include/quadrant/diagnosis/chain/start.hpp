@@ -14,7 +14,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l);
 /// Positions at which what is left was read, of the first reading or of the scale.
 QUADRANT_DIAGNOSIS_DECL std::vector<double> places(const readings& r, bool of_scale);
 
-/// Whether a period is not told from a turn or a fraction of it on this travel.
+/// Whether a period is not distinguished from a turn or a fraction of it on this travel.
 QUADRANT_DIAGNOSIS_DECL bool is_fraction(const readings& r, double p, double turn);
 
 /// The period at which what a model leaves repeats best along the travel; 0: none. Those near a fraction of

@@ -8,7 +8,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l) {
     if (l.asked) out.insert(out.end(), {term::delay, term::first_order, term::steps});
     if (l.geared) {
         out.insert(out.end(), {term::scale, term::play, term::pitch, term::smooth});
-        if (l.turn > 0) out.push_back(term::cyclic); // else it is told as a pitch error
+        if (l.turn > 0) out.push_back(term::cyclic); // else it is reported as a pitch error
         if (!l.force.empty()) out.insert(out.end(), {term::spring, term::motor_friction});
         if (!l.asked) out.push_back(term::steps);
         if (!l.asked && l.force.empty()) out.push_back(term::delay); // two registers, read one after the other

@@ -182,7 +182,7 @@ private:
 
 /// Circles diagnosed as a ball-bar would: which errors make up the radial deviation of all runs, how large each
 /// is with its 95 % interval, ranked by the circular error that it would leave alone. Runs clockwise and
-/// counterclockwise, at two feeds or more, tell apart what one run does not (docs/circle.md). Throws bad_input
+/// counterclockwise, at two feeds or more, distinguish what one run does not (docs/circle.md). Throws bad_input
 /// when the runs are none, or not of one source.
 inline circle_result ball_bar(std::vector<circle_run> runs, const circle_options& options = {}) {
     if (runs.empty()) throw bad_input("", "no circle to diagnose");

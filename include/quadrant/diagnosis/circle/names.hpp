@@ -6,12 +6,12 @@
 #include <array>
 #include <string_view>
 
-/// What each error of a circle is called, what its sign means, what tells it from others and what may be behind
-/// it.
+/// What each error of a circle is called, what its sign means, what distinguishes it from others and what may
+/// be behind it.
 namespace quadrant::inline v0::diagnosis {
 
-/// The words for one error of a circle: its name, what a positive value means, what tells it from others, what
-/// may cause it.
+/// The words for one error of a circle: its name, what a positive value means, what distinguishes it from
+/// others, what may cause it.
 struct circle_error_words {
     std::string_view name, sign, needs;
     std::array<std::string_view, 4> effects; ///< of the machine file; empty ones are none

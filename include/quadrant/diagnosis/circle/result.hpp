@@ -7,7 +7,7 @@ namespace quadrant::inline v0::diagnosis {
 enum class circle_verdict {
     found,         ///< above its detection limit
     below_limit,   ///< not above it: `limit` says what would have been seen
-    not_separable, ///< these runs cannot tell it from `together_with`, which carries what both are
+    not_separable, ///< these runs cannot distinguish it from `together_with`, which carries what both are
     not_visible,   ///< to encoders: lies behind them
     not_tested     ///< the runs hold nothing that would show it
 };
@@ -40,8 +40,8 @@ struct circle_error {
     double limit = 0;       ///< what would be found is at least so large; in the error's unit
     double circularity = 0; ///< circular error if this were the only one, largest of all runs [m]
     double share = 0;       ///< of the sum of all circularities
-    std::vector<std::string> together_with; ///< what these runs cannot tell from it
-    std::string needs;                      ///< which runs tell it from others, or which instrument sees it
+    std::vector<std::string> together_with; ///< what these runs cannot distinguish from it
+    std::string needs;                      ///< which runs isolate it, or which instrument sees it
     std::string reading;                    ///< what these runs say of its cause
     std::vector<std::string> effects;       ///< names of the machine file that may be behind it
     std::vector<circle_detail> details;

@@ -41,7 +41,7 @@ struct difference {
     estimate gap_before_force_rms_N, gap_after_force_rms_N;
     estimate gap_before_position_rms_m, gap_after_position_rms_m;
     /// Log-score by which the log in which it was found is better explained with it, and the other log worse.
-    /// Zero where the two are told apart by a replay of the controller or the steps of the reading.
+    /// Zero where a replay of the controller or the steps of the reading distinguish the two.
     double gain = 0, loss = 0;
 };
 

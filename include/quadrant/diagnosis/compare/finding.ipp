@@ -116,7 +116,7 @@ QUADRANT_DIAGNOSIS_DECL void add_replayed(std::vector<difference>& to, const dir
         if (c.axis != axis || !is_replayed(c.effect) || !is_claimed(c)) continue;
         const cause* there = cause_in(*d.reference, axis, c.effect);
         if (there && !is_claimed(*there))
-            continue; // a controller that nothing mends there may be the same here
+            continue; // a controller that no key corrects there may be the same here
         if (c.effect == "controller_mismatch") {
             const cause* other_way = cause_in(back.across, axis, c.effect);
             if (!other_way || !is_claimed(*other_way)) continue;

@@ -9,7 +9,7 @@ namespace quadrant::inline v0::diagnosis::detail::beside {
 /// What a description says under the keys of these values, as numbers without an interval; empty: nothing.
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> described(const machine_description& machine,
                                                                   const cause& c);
-/// Whether an effect has the same size in both logs, as far as their intervals tell. Where something repeats
+/// Whether an effect has the same size in both logs, as far as their intervals show. Where something repeats
 /// depends on where a log begins to count; a phase is no size.
 QUADRANT_DIAGNOSIS_DECL bool same_size(const std::vector<parameter_estimate>& a,
                                        const std::vector<parameter_estimate>& b);

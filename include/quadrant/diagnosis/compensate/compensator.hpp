@@ -86,7 +86,7 @@ struct compensated_forces {
 };
 
 /// What a controller adds to its command so that the axis need not be late first: forces of a fitted plant,
-/// told from the reference alone.
+/// computed from the reference alone.
 ///   u = friction(v_ref) + (a_c Fc + a_v B |v_ref|)/kf + Fc along(r) side/kf + cogging(r) + (k r - F)/kf
 /// Ports: position reference [m] in, command out, to be added before or behind the controller's limit. Nothing
 /// measured goes in, so that no gain or delay margin changes. State: that of the blocks.

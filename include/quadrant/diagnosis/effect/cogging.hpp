@@ -10,7 +10,8 @@ namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Force periodic in position: sum of N_i sin(2 pi i x / period + phase_i), the magnets' pitch of a motor or
 /// one turn of a screw. Joins the force. Shows as a residual that repeats with position whatever the speed; as
-/// a motion it fades with the square of the speed, which tells it from an encoder's cyclic error. Periods up to
+/// a motion it fades with the square of the speed, which distinguishes it from an encoder's cyclic error.
+/// Periods up to
 /// half the travel: a longer one is a slope or an offset by another name.
 inline constexpr effect cogging{
     .name = "cogging",

@@ -9,9 +9,9 @@ inline harmonics& cutting_force_harmonics(plant_model& p) { return p.cutting; }
 namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the
-/// force. Shows as lines in the frequency of the residual that no motion shifts. The mean cannot be told from a
-/// constant force; the phase begins anew with each log. The fundamental up to three times the corner: above,
-/// rounding of the encoder makes limit cycles.
+/// force. Shows as lines in the frequency of the residual that no motion shifts. The mean cannot be
+/// distinguished from a constant force; the phase begins anew with each log. The fundamental up to three times
+/// the corner: above, rounding of the encoder makes limit cycles.
 inline constexpr effect cutting_force{
     .name = "cutting_force",
     .label = "cutting force",

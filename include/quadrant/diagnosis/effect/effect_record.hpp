@@ -54,8 +54,8 @@ struct effect {
     std::string (*advice)(const plant_model&, double, std::string_view) = nullptr;
     trial_injection trial{};
     /// Ways to start the fit; each is the parameters it frees (they replace the described machine's own of the
-    /// same key). None: it cannot be told from this record. Null: it is found by other means than a fit of the
-    /// plant.
+    /// same key). None: it cannot be identified from this record. Null: it is found by other means than a fit
+    /// of the plant.
     std::vector<std::vector<parameter>> (*starts)(const screening&) = nullptr;
     /// The machine file's keys with the values of a fitted model.
     std::vector<key_value> (*read)(const plant_model&) = nullptr;

@@ -10,7 +10,7 @@ namespace quadrant::inline v0::diagnosis::suspect {
 
 /// kf (1 + ripple sin(2 pi x / period + phase)): the force of a motor varies with the magnets. Joins the
 /// actuator's gain. Shows as a residual that repeats with position and grows with the command; without command
-/// there is none, which tells it from cogging.
+/// there is none, which distinguishes it from cogging.
 inline constexpr effect force_ripple{
     .name = "force_ripple",
     .label = "force ripple",

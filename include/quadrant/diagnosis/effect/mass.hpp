@@ -6,7 +6,7 @@ namespace quadrant::inline v0::diagnosis::suspect {
 
 /// M dv/dt with another M than described. Joins the inertia. Shows as a residual proportional to the
 /// acceleration,
-/// and only there: friction and offset keep their size, which is what tells it from the force constant.
+/// and only there: friction and offset keep their size, which is what distinguishes it from the force constant.
 inline constexpr effect mass{
     .name = "mass",
     .label = "moving mass",

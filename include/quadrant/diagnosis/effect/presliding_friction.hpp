@@ -109,8 +109,8 @@ inline constexpr effect presliding_friction{
             p.friction.contact.exponential(p.friction.contact.length);
             p.friction.contact.lengths_as_described = {};
         },
-    // After a full turn a contact that forgets (Dahl, LuGre) follows exp(-x/l) where one that remembers follows
-    // exp(-x/2l): the same branch by twice the length.
+    // After a full turn a contact without memory of past reversals (Dahl, LuGre) follows exp(-x/l) where one
+    // with memory follows exp(-x/2l): the same branch at twice the length.
     .by_another_law = 2};
 
 } // namespace quadrant::inline v0::diagnosis::suspect

@@ -98,8 +98,8 @@ std::vector<double> comb_periods(std::span<const double> signal, std::span<const
 }
 
 /// Whether the motion repeats with one of the first multiples of this period: it is then where it was one time
-/// before, and was not in between. What repeats in time with the motion cannot be told from what follows the
-/// motion.
+/// before, and was not in between. What repeats in time with the motion cannot be distinguished from what
+/// follows the motion.
 inline bool motion_repeats(std::span<const double> position, double rows) {
     const auto apart = [&](double shift) {
         const auto by = static_cast<std::size_t>(std::lround(shift));

@@ -27,11 +27,11 @@ struct rules {
     double near_best = 0.5; ///< share of the best's gain with which a first look is fitted to the end as well
     int first_look = 2;     ///< steps from each start
     /// Rows that these looks and finalists are for. A shorter record affords more of them in the same time, and
-    /// needs them: a few blocks tell little after a step or two.
+    /// needs them: a few blocks distinguish little after a step or two.
     std::size_t rows_of_a_look = 14000;
     bool near_rivals = false; ///< a cause's rivals are only those that gained something where it was found
     std::size_t forms = 4;    ///< of the forms without a name that are fitted to the end
-    /// When the search ends with what it has; the names that it did not come to are told, and count against
+    /// When the search ends with what it has; the names that it did not come to are reported, and count against
     /// what it has. With such an end the result depends on how fast the computer is.
     using clock = std::chrono::steady_clock;
     clock::time_point until = clock::time_point::max();

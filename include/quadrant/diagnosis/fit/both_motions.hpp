@@ -15,7 +15,7 @@ inline std::size_t rows_between(const axis_log& first, const axis_log& second) {
     return std::max<std::size_t>(2, std::min(first.position.size(), second.position.size()) / 10);
 }
 
-/// Two columns one behind the other, `between` rows of way apart; empty where one log has none.
+/// Two columns one behind the other, joined by `between` rows of smooth motion; empty where one has none.
 inline std::vector<double> column_of_both(const std::vector<double>& first, const std::vector<double>& second,
                                           std::size_t between) {
     if (first.empty() || second.empty()) return {};

@@ -30,7 +30,7 @@ public:
                                   .closed =
                                       (log.position[std::min<std::size_t>(2, rows_ - 1)] - log.position[0]) /
                                       (2 * period)} {
-        path_.measured.clear(); // the gain is told from it (gain_by_duty), not from the path
+        path_.measured.clear(); // the gain is identified from it (gain_by_duty), not from the path
         velocity_ = derivative(zero_phase(log.position, 0.1 / period, period), period);
         acceleration_ = rms(derivative(velocity_, period));
         speed_ = rms(velocity_);

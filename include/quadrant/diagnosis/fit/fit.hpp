@@ -95,7 +95,7 @@ private:
     void quadratics(fit_result& r, const std::vector<viewed_signal>& own, const known_slopes& known,
                     bool curvature) const;
 
-    /// The next point; `gain`: what the quadratics promise for the way there [nats].
+    /// The next point; `gain`: what the quadratics promise for the step there [nats].
     Eigen::VectorXd step(const fit_result& r, double damping, double& gain) const;
     static void add(const block_quadratics& q, const channel& c, Eigen::MatrixXd& a, Eigen::VectorXd& g);
 

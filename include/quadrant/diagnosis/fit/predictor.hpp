@@ -32,9 +32,9 @@ struct led_motion {
     double mass, force_constant;       ///< of the machine file: forces are compared in units of the command
 };
 
-/// The plant inside an observer: driven by the logged command, corrected by the logged position, judged by what
-/// the correction had to be. One pass, no drift of the double integrator, and a right model leaves only the
-/// encoder's
+/// The plant inside an observer: driven by the logged command, corrected by the logged position, evaluated on
+/// what the correction had to be. One pass, no drift of the double integrator, and a right model leaves only
+/// the encoder's
 /// rounding: the innovation
 ///   e[k] = y[k] - reading(x(t_k));  x += L1 e, v += L2 e;  then one period of the plant
 /// with both observer poles at z = exp(-2 pi corner T): L1 = 1 - z^2, L2 = (1 - z)^2 / T [Franklin1998] ch. 8.
@@ -70,9 +70,10 @@ struct predictor {
     double drift_pole =
         1; ///< of the filter that takes the drift of a drive's integral out, see drift_pole_of(); 1: none
 
-    /// Innovations; lost commands are found, and counted, by what they leave in them. Returned is what the
-    /// model chose from the log itself [nats], 0 but for lost commands. When `acceleration` is given, also the
-    /// second difference of the model's positions around each row, over the square of the period [m/s^2].
+    /// Innovations; lost commands are found, and counted, by what they leave in them. Returns the information
+    /// cost [nats] of choosing the lost samples from the log, 0 without lost commands. When `acceleration` is
+    /// given, also the second difference of the model's positions around each row, over the square of the
+    /// period [m/s^2].
     double run(const plant_model& plant, std::vector<double>& innovation,
                std::vector<double>* acceleration = nullptr) const;
     /// The same for several plants, some at a time side by side: a third of the time and less. One list of
@@ -94,7 +95,7 @@ struct predictor {
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }
 
     /// The commands that the drive acted on when it lost some, as the innovations of `plant` without a loss
-    /// tell it.
+    /// show it.
     lossy_commands commands_with_loss(const plant_model& plant, const std::vector<double>& innovation,
                                       const loss_assumption& a) const;
 

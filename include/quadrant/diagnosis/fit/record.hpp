@@ -137,7 +137,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
 QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest);
 
 /// The record with its observer stepping as finely as the described machine needs.
-/// `nearest`: to what the machine does, of the models that are known, for what is judged by its path or led
+/// `nearest`: to what the machine does, of the models that are known, for what is evaluated on its path or led
 /// along its motion; null: the described machine, and no floor but that of the reading.
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
                                                 held_by how = held_by::readings,

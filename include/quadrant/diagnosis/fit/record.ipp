@@ -224,7 +224,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
     if (!r.observer.drive->begins.empty()) unjudged.resize(rows, 0);
     for (const auto& b : r.observer.drive->begins)
         for (std::size_t k = b.row; k < std::min(rows, b.row + s.skip); ++k) unjudged[k] = 1;
-    // Where the errors of two models last differently long, the shorter one tells them apart.
+    // Where the errors of two models last differently long, the shorter one distinguishes them.
     double memory = static_cast<double>(rows);
     for (const plant_model* plant : {&described, &nearest}) {
         std::vector<double> e;

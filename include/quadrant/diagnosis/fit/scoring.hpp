@@ -12,8 +12,8 @@ namespace quadrant::inline v0::diagnosis {
 /// No law is better than some five per cent of the force that it explains.
 inline constexpr double law_error = 0.05;
 
-/// Models are told apart by their residual force while it differs by more than this share of what is left, in
-/// energy.
+/// Models are distinguished by their residual force while it differs by more than this share of what is left,
+/// in energy.
 inline constexpr double told_apart = 0.2;
 
 /// Divides scores before they become probabilities: blocks are not independent.

@@ -17,7 +17,7 @@ struct closed_loop_run {
 /// The whole simulation as its owner would run it: described controller and given plant from the logged
 /// reference, started where the log starts. Sub-steps keep stick and the held command apart from the sampling.
 /// Periods that lose their command are drawn, always the same ones: which they were on the machine only a log
-/// of it can tell. Noise of the sensor [m], one entry a row, is in the reading before it is rounded to a count.
+/// of it can show. Noise of the sensor [m], one entry a row, is in the reading before it is rounded to a count.
 /// `added`: what a feedforward adds to the controller's command, row by row, before the limit cuts the sum.
 QUADRANT_DIAGNOSIS_DECL closed_loop_run
 simulate_closed_loop(const controller_description& c, const axis_description& axis, const plant_model& plant,

@@ -41,7 +41,7 @@ private:
     static void compare(cause& c, const segment_energy& before, const segment_energy& after,
                         std::size_t segments);
     void compare(cause& c, const closed_loop_run& before, const closed_loop_run& after) const;
-    /// Where rounding falls no model can tell: its energy is taken off as a whole.
+    /// Where rounding falls no model can predict: its energy is taken off as a whole.
     void compare_rounding(cause& c, const stage& s) const;
     static double square(double x) { return x * x; }
     gap_numbers numbers(const stage& s) const;

@@ -32,7 +32,7 @@ struct axis_log {
     double command_step = 0;   ///< the same for the command column
     axis_kind kind = axis_kind::linear;
     /// Of each row: 1 where there is no reading that counts (a missing row, a wrong or repeated reading, the
-    /// drive off). The position is then filled in and nothing is judged by it. Empty: every row counts.
+    /// drive off). The position is then filled in and nothing is evaluated on it. Empty: every row counts.
     std::vector<unsigned char> left_out{};
     /// Whether the log has a position reference. Without, `reference` is the integral of the reference's speed
     /// where the log has that, else the position, and nothing is said of the controller.

@@ -32,7 +32,7 @@ public:
     /// The row of the file behind the k-th that is kept.
     std::size_t row(std::size_t k) const { return kept_[k]; }
 
-    /// What to tell of the clock.
+    /// What to report of the clock.
     std::vector<std::string> notes() const {
         std::vector<std::string> out;
         if (doubled_ > 0)

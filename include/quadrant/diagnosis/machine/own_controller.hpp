@@ -37,7 +37,7 @@ template <class Loop> void settle_at(Loop& loop, const loop_start& row) {
     } else if constexpr (requires { loop.settle(in_si(row.measured), in_si(row.command)); }) {
         loop.settle(in_si(row.measured), in_si(row.command));
     } else {
-        detail::step_of(loop, row.reference, row.measured); // nothing but the row itself can be told
+        detail::step_of(loop, row.reference, row.measured); // only the row itself can be given to it
     }
 }
 

@@ -52,7 +52,7 @@ inline std::vector<std::string> effect_keys(std::string_view box, axis_kind kind
     return out;
 }
 
-/// Puts a key of a box that has its former name under its name of today, and tells that to `note`.
+/// Puts a key of a box that has its former name under its name of today, and reports that to `note`.
 template <class Note>
 void rename_former(const machine_key& k, const json_node& box, nlohmann::json& content, Note&& note) {
     const std::string name = k.key_for(box.kind);
@@ -67,7 +67,7 @@ void rename_former(const machine_key& k, const json_node& box, nlohmann::json& c
     }
 }
 
-/// One box of an axis and what it says of effects, into a description. Notes are told to `note`.
+/// One box of an axis and what it says of effects, into a description. Notes are reported to `note`.
 template <class Note> class effect_keys_reader {
 public:
     effect_keys_reader(const json_node& node, std::string_view box, axis_description& axis, Note note)

@@ -31,15 +31,15 @@ struct friction_contact {
             out[i] = length * std::pow(spread, static_cast<double>(i) - middle);
         return out;
     }
-    /// The virgin curve: share of the level after a way z from rest.
+    /// The virgin curve: share of the level after a displacement z from rest.
     double share(double z) const {
         const auto l = lengths();
         double sum = 0;
         for (std::size_t i = 0; i < elements; ++i) sum += weights[i] * std::min(1.0, z / l[i]);
         return sum;
     }
-    /// The way at which the virgin curve reaches 1 - 1/e of the level: the length of an exponential (Dahl,
-    /// LuGre).
+    /// The displacement at which the virgin curve reaches 1 - 1/e of the level: the length of an exponential
+    /// (Dahl, LuGre).
     double way_to_63_percent() const {
         constexpr double wanted = 0.6321205588285577;
         double low = 0, high = 0;

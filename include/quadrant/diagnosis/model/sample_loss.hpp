@@ -21,7 +21,7 @@ struct loss_assumption {
         1; ///< of a pulse, in those of a lost command: others, or turned over, are no losses and show chance
 };
 
-/// The commands that a drive acted on when it lost some, as the innovations tell it; see lost_commands.
+/// The commands that a drive acted on when it lost some, as the innovations show it; see lost_commands.
 struct lossy_commands {
     std::vector<double> applied;
     double probability = 0;

@@ -29,8 +29,8 @@ inline constexpr std::array blind_spots_of_an_angle{
 };
 
 /// Where it bears on what was said of an axis: a claim that machine and simulation agree holds as far as the
-/// encoder sees, and a suspected sensor is judged by its own reading. Else nothing: the log shows enough that
-/// is unexplained.
+/// encoder sees, and a suspected sensor is evaluated on its own reading. Else nothing: the log shows enough
+/// that is unexplained.
 inline std::vector<unseen> unseen_by(const axis_result& a, const std::vector<cause>& causes) {
     const auto of_the_sensor = [](std::string_view name) {
         const effect* e = effect_named(name);

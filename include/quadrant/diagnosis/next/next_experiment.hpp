@@ -7,8 +7,8 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// The motion that tells the names apart best, whichever of them is true: the one with the largest of the least
-/// gains over all pairs and both directions.
+/// The motion that distinguishes the names best, whichever of them is true: the one with the largest of the
+/// least gains over all pairs and both directions.
 struct separation {
     std::size_t motion = 0, tried = 0;
     double gain = 0; ///< log-score
@@ -41,7 +41,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<planned_motion> motions_for(const std::vecto
 QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
                                                         const std::vector<confusable>& names);
 
-/// The motion to record next, for the first group of names that the record does not tell apart, one that is
+/// The motion to record next, for the first group of names that the record does not distinguish, one that is
 /// claimed before one that is not. A name that is only a suspect and has no second reading has nothing to be
 /// simulated against: what else it may be has no model. The motion that shows it is then named and no gain is
 /// claimed.

@@ -6,7 +6,7 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// One of the names that a record does not tell apart: its effect, and the model of the whole axis under this
+/// One of the names that a record does not distinguish: its effect, and the model of the whole axis under this
 /// name.
 struct confusable {
     const effect* name = nullptr;
@@ -49,11 +49,11 @@ public:
         return log;
     }
 
-    /// Log-score by which a record of the motion tells the truth from the other name: both fitted again to a
-    /// machine that has the truth's plant, the calibration inside its tolerance too, and judged as in every
-    /// diagnosis on motion that was not fitted. `whole`: the other name also fitted anew from the machine file,
-    /// as the diagnosis of that record would. Two names of one model (docs/formats.md) are told apart only
-    /// where their forces are, as there.
+    /// Log-score by which a record of the motion distinguishes the true name from the other: both fitted again
+    /// to a machine that has the truth's plant, the calibration inside its tolerance too, and judged as in
+    /// every diagnosis on motion that was not fitted. `whole`: the other name also fitted anew from the machine
+    /// file, as the diagnosis of that record would. Two names of one model (docs/formats.md) are distinguished
+    /// only where their forces are, as there.
     double gain(const planned_motion& m, const confusable& truth, const confusable& other, bool whole) const {
         const axis_log log = record(truth.model.fit.plant, m);
         if (log.position.empty()) return 0;

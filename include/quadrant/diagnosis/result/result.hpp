@@ -129,9 +129,9 @@ struct axis_result {
     bool driven = false; ///< its drive closes loops of its own: a box between controller and actuator
 };
 
-/// The motion to record next. A log-score of `rules::margin` counts as told apart.
+/// The motion to record next. A log-score of `rules::margin` counts as distinguished.
 struct experiment {
-    std::string motion; ///< in words, with its numbers; "none: ..." when no motion tells them apart
+    std::string motion; ///< in words, with its numbers; "none: ..." when no motion distinguishes them
     std::vector<std::string> separates;
     double expected_gain =
         0; ///< log-score by which the motion would separate them, at least; 0: not simulated, or not at all

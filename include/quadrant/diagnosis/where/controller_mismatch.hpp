@@ -8,24 +8,24 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// The controller box judged by replay: deterministic, so whatever is above rounding is a controller that is
+/// The controller box checked by replay: deterministic, so whatever is above rounding is a controller that is
 /// not the one described. Which key differs is found by fitting one at a time, on this box alone.
 struct controller_finding {
     std::vector<double> replayed; ///< the described controller on the logged r and y
     double difference_rms = 0;    ///< against the logged command
     double floor_rms = 0;         ///< what rounding of columns and command alone makes of it
     bool differs = false;
-    std::string key; ///< that mends it best; empty: none does
+    std::string key; ///< that corrects it best; empty: none does
     double described = 0, value = 0, low = 0, high = 0;
-    double after_rms = 0; ///< with the key mended
-    bool mended = false;  ///< the mended controller agrees to rounding
+    double after_rms = 0; ///< with the key corrected
+    bool mended = false;  ///< the corrected controller agrees to rounding
     /// Another key that brings the replay back to rounding as well: the log cannot distinguish the two.
     struct alternative {
         std::string key;
         double value = 0;
     };
-    std::vector<alternative> alternatives; ///< of `key`, where that mends
-    std::optional<added_finding> added{};  ///< what is added to the command, where no key mends
+    std::vector<alternative> alternatives; ///< of `key`, where that corrects it
+    std::optional<added_finding> added{};  ///< what is added to the command, where no key corrects it
     /// A signal is added to the command, and that is more probable than not.
     bool is_added() const { return added && added->probability >= 0.5; }
 };

@@ -48,7 +48,7 @@ template <class... Numbers> std::string worded(const char* format, Numbers... nu
 } // namespace detail
 
 /// In which regime a residual force lives: one entry a view, its share of the energy with a 95 % interval. The
-/// remainder of a view is what that view does not tell; views overlap and do not add up with each other.
+/// remainder of a view is what that view does not explain; views overlap and do not add up with each other.
 QUADRANT_DIAGNOSIS_DECL std::vector<place> regimes(const std::vector<double>& residual, const axis_record& r);
 
 /// Amplitude density of a signal [unit/sqrt(Hz)] by averaged periodograms with a Hann window, half overlapped,

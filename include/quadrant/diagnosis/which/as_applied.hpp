@@ -8,7 +8,7 @@ namespace quadrant::inline v0::diagnosis {
 namespace detail {
 
 /// These effects on top of `from`, each time the one that takes most off the force on held-out motion. One that
-/// cannot be told without the others comes after them.
+/// cannot be identified without the others comes after them.
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate> by_share(const axis_case& c, const candidate& from,
                                                         std::vector<const effect*> effects);
 

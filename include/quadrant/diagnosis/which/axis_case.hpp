@@ -25,7 +25,7 @@ public:
     axis_case& operator=(const axis_case&) = delete;
 
 private:
-    /// The log made ready. How many independent readings a path holds, only a model near the machine tells: the
+    /// The log made ready. How many independent readings a path holds, only a model near the machine shows: the
     /// error of a wrong one is one long wave. So a first search looks for one. Along a motion it is the nearest
     /// of the models that were found `before`, and of their causes fitted again along it.
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
@@ -106,7 +106,7 @@ public:
     bool command_is_added() const { return controller_differs() && controller->is_added(); }
     bool controller_open() const { return controller_differs() && !controller->mended && !command_is_added(); }
     double floor_force() const { return models.floor_force(noise); }
-    /// The described controller with the found key mended.
+    /// The described controller with the found key corrected.
     controller_description mended() const;
     /// What the corrected controller commands otherwise than this log, as a force on the axis [N]: with the
     /// signal that is added to the command taken off, or not. A constant of the unknown first integral is no

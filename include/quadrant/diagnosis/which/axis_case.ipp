@@ -10,8 +10,8 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
       record(record_of(period, excluded, tell, how, before)), models(record, a, excluded, r, tell) {
-    // A velocity drive's controller commands set-points; how far a difference there moves the axis no force
-    // tells. What was measured behind an amplifier is not what the controller asked for.
+    // A velocity drive's controller commands set-points; no force shows how far a difference there moves the
+    // axis. What was measured behind an amplifier is not what the controller asked for.
     if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
         axis.actuator.command_is == command_origin::asked)
         controller = judge_controller(*axis.controller, axis.actuator, log, record,

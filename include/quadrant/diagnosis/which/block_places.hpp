@@ -6,9 +6,9 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// The gap by box of the loop. Replay tells the controller from everything behind the command; what lies behind
-/// is told apart by what each cause takes off the residual's energy, and said so in `basis`. The largest share
-/// comes first; what no cause tells stays with an empty block.
+/// The gap by box of the loop. Replay separates the controller from everything behind the command; what lies
+/// behind is divided by what each cause takes off the residual's energy, as `basis` says. The largest share
+/// comes first; what no cause explains stays with an empty block.
 QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c);
 
 } // namespace quadrant::inline v0::diagnosis

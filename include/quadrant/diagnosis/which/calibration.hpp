@@ -28,10 +28,9 @@ inline bool is_of_record(const parameter& p) {
 }
 
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
-/// credited with mending calibration. Hard bounds at the tolerance, and a weak pull to the given value, which
-/// also
-/// settles what no log can tell: all forces, the mass and the force constant times one factor move the axis
-/// alike. `give`: of every contact, record_scales::give().
+/// credited with correcting the calibration. Hard bounds at the tolerance, and a weak pull to the given value,
+/// which also settles what no log can identify: all forces, the mass and the force constant times one factor
+/// move the axis alike. `give`: of every contact, record_scales::give().
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give);
 
 } // namespace quadrant::inline v0::diagnosis

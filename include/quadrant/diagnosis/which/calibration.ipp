@@ -72,9 +72,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
             if (key.of && key.tolerance)
                 for (double value : numbers_of(axis, key, *e))
                     within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
-    // Every contact gives way a little before it slips; up to ten times that it is no cause, nor is any way of
-    // a friction that is not described at all. One that is described as giving way further, or element by
-    // element, stays as described.
+    // Every contact gives way a little before it slips; up to ten times that it is no cause, nor is any
+    // presliding displacement of a friction that is not described at all. One that is described as giving way
+    // further, or element by element, stays as described.
     const double most = (d.describes_friction() ? 10 : 500) * give;
     const friction_contact contact = plant_model(d, give).friction.contact;
     if (contact.elements == 1 && contact.length <= most)

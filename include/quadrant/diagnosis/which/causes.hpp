@@ -14,7 +14,7 @@ struct rival {
     candidate model;
     const effect* name = nullptr;
     double weight = 0;
-    bool same = false;     ///< not told apart from the cause by this record
+    bool same = false;     ///< not distinguished from the cause by this record
     bool unlikely = false; ///< then: beside the others that are not; not told
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
@@ -81,13 +81,13 @@ struct excluded_rival {
 /// falls. One that contains the cause is no rival.
 QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, std::size_t which);
 
-/// Harmonics told with their own period: where the odd ones hold less than a hundredth of the energy, the even
-/// ones alone repeat twice as often.
+/// Harmonics reported with their own period: where the odd ones hold less than a hundredth of the energy, the
+/// even ones alone repeat twice as often.
 QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values);
 
-/// The scatter of the segments knows nothing of a law that is a little wrong. No value is better than one per
-/// cent, none better than what is left beside what its effect explains (a pull as large as the rest, all of it
-/// along this value), no length better than half a count. An angle moves by as much in radian.
+/// The scatter of the segments does not show the error of a law that is a little wrong. No value is better than
+/// one per cent, none better than what is left beside what its effect explains (worst case: the whole residual
+/// biases this parameter), no length better than half a count. An angle moves by as much in radian.
 QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
                                              const axis_case& c, double left);
 

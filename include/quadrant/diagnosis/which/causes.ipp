@@ -168,8 +168,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     };
     for (auto& r : out) {
         const auto excess = [&] { return std::max(0.0, square(c.models.held_out_force(r.model)) - energy); };
-        // A name that mends nothing is no rival. Two whose difference is smaller than what both leave
-        // unexplained are not told apart by it, nor are two that are one model (docs/formats.md) while their
+        // A name that corrects nothing is no rival. Two whose difference is smaller than what both leave
+        // unexplained are not distinguished by it, nor are two that are one model (docs/formats.md) while their
         // predictions agree.
         const bool pays = r.model.total > without.total + c.limits.margin;
         // A name that does far less than the one that it would stand in for does not stand in for it: in its
@@ -178,7 +178,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
             return &r == &out.front() || r.unlisted() || c.record.closed() ||
                    c.models.force_of(r.model, *r.name) > force_of_own() / 3;
         };
-        // Not told apart: by neither log. A name that is more flexible and no better is no second reading.
+        // Not distinguished by either log. A name that is more flexible and no better is no second reading.
         const bool leaner = r.model.penalty <= c.best().penalty || r.model.total >= c.best().total;
         const bool near = pays && leaner && !c.record.closed() && !r.unlisted() && unexplained > 0;
         const double more = near ? excess() / unexplained + excess_on_second(r.model) : 1;
@@ -446,7 +446,7 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
 }
 
 /// Whether the record leaves the frequency or the period of a cause open: its interval is as wide to either
-/// side as the value, so that none of a shorter period is told from it.
+/// side as the value, so that none of a shorter period is distinguished from it.
 inline bool is_undetermined(const std::vector<parameter_estimate>& values) {
     return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
         const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;

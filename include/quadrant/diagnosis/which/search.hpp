@@ -61,8 +61,8 @@ public:
     /// before.
     std::vector<candidate> with_these(const candidate& from, const std::vector<const effect*>& added,
                                       std::size_t most = std::numeric_limits<std::size_t>::max()) const;
-    /// The described machine with these effects, fitted one after the other. One that cannot be told without
-    /// the others comes after them; one that cannot be told at all adds nothing.
+    /// The described machine with these effects, fitted one after the other. One that cannot be identified
+    /// without the others comes after them; one that cannot be identified at all adds nothing.
     candidate with(const std::vector<const effect*>& effects) const;
 
     /// A model with one of its effects taken off. The fit begins at the numbers of the others; where the same

@@ -466,7 +466,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         path.push_back(std::move(kept));
     }
     std::reverse(path.begin(), path.end());
-    for (std::size_t i = 1; i < path.size(); ++i) { // the order in which the causes are told
+    for (std::size_t i = 1; i < path.size(); ++i) { // the order in which the causes are reported
         auto order = path[i - 1].effects;
         for (const effect* e : path[i].effects)
             if (!has(path[i - 1], e)) order.push_back(e);
@@ -487,7 +487,7 @@ QUADRANT_DIAGNOSIS_DECL bool search::pays(const candidate& more, const candidate
 }
 
 QUADRANT_DIAGNOSIS_DECL bool search::shrinks(const candidate& more, const candidate& less) const {
-    if (record_.closed()) { // judged by its path; the forces of a gear that friction holds say little
+    if (record_.closed()) { // evaluated on its path; the forces of a gear that friction holds say little
         const double law = square(record_.score.channels.front().floor);
         const auto left = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms.front()) - law); };
         return left(more) < square(1 - rules_.least_shrink) * left(less);
@@ -600,7 +600,7 @@ QUADRANT_DIAGNOSIS_DECL std::size_t search::effort() const {
     if (!record_.replayed()) return 1;
     const std::size_t affords =
         std::max<std::size_t>(1, rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
-    // The valleys of a path are narrow: few steps from a start tell little, but three times as many are enough.
+    // The valleys of a path are narrow: few steps from a start show little, but three times as many are enough.
     return record_.closed() ? std::min<std::size_t>(3, affords) : affords;
 }
 

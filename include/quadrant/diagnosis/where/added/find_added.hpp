@@ -67,7 +67,7 @@ public:
         if (best.score == top && best.ms < 0.5 * before_ms_) {
             const double explained = std::max(before_ms_ - best.ms, std::numeric_limits<double>::min());
             const double left = std::sqrt(std::max(0.0, best.ms - 4 * floor_.ms) / explained);
-            // As for every cause: what is left may come from what the name stands in for.
+            // As for every cause: an unexplained residual may come from the same unknown cause.
             const double known = 1 - std::min(0.03 + left, 0.95);
             return added_finding{std::move(wave.form), known * scores / all,
                                  known * weight(of_key.score) / all};
