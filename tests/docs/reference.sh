@@ -23,7 +23,7 @@ says() { # PAGE TEXT, as it stands in the comment
 }
 says index.html 'it says why a machine does not do what its simulation says'
 says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear'
-says classquadrant_1_1notch.html "J = |b0' - b0| |x[k] - x[k-1]|"
+says classquadrant_1_1notch.html "jump = |b0' - b0| |x[k] - x[k-1]|"
 says classquadrant_1_1notch.html 'The state that belongs to these values, without a step'
 says structquadrant_1_1notch_1_1parameters.html 'deepest point; 0 < centre < half the sampling rate'
 says conceptquadrant_1_1signal__tag.html 'signal_tag'
