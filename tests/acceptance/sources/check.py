@@ -13,7 +13,10 @@ FRICTION = {"coulomb_friction", "stribeck_friction"}
 DEFAULT = ("table.raised.attraction.sine100", "cnc.diamond")
 
 # What is not as it should be, and why. A case of these that is as it should be fails the check: its line then goes.
-NOT_YET = {}
+NOT_YET = {
+    # y, 100 mm/s, friction that reaches its level at once: the force is at its floor (0.87 N), one band is not
+    "table.cascade.no_bound.sine100": "a delay 0.1 ms below the file's is claimed at 0.64, though nothing differs",
+}
 
 
 def run(*words):
