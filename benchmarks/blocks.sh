@@ -194,12 +194,12 @@ $(cat "$here/march.txt")
 
 - Take \`-march=x86-64-v3\` where the processor has AVX2 and FMA (Intel since 2013, AMD since 2015), and the lanes: less than half the time of the typed
   loop without \`-march\`.
-- \`-march=native\` is slower on processors with AVX-512 for what is not in lanes: g++ then sums the FIR filters in registers of 512 bits. Such a
-  load spans the sample that has just been stored, and waits until the store has reached the cache. \`-mprefer-vector-width=256\` takes that away (158.8 for
-  241.6 ns). In lanes g++ keeps comparisons in mask registers and moves them back for each choice, some 8 ns, which no option of g++ 12 takes away; \`v3\` does
-  not have these registers. clang++ prefers 256 bits by itself.
-- Blocks alone, with g++: \`-fno-tree-slp-vectorize\`. g++ stores two states in one register and loads them one by one in the next sample, or the
-  reverse, and waits for the store. With \`-march=x86-64-v3\` it takes \`backward_difference\` from 4.4 to 1.4 ns, \`pid\` from 8.5 to 4.4, \`notch\` from 10.1 to 8.1.
+- \`-march=native\` is slower on processors with AVX-512 for what is not in lanes; \`-mprefer-vector-width=256\` takes that away (158.8 for 241.6 ns).
+  Our reading, which no hardware counter has confirmed: g++ then sums the FIR filters in registers of 512 bits, such a load spans the sample that has
+  just been stored, and waits until the store has reached the cache. In lanes \`native\` stays some 7 ns above \`v3\`; we take comparisons in mask
+  registers, which \`v3\` does not have, for the reason. clang++ prefers 256 bits by itself.
+- Blocks alone, with g++: \`-fno-tree-slp-vectorize\`. Our reading: g++ stores two states in one register and loads them one by one in the next sample,
+  or the reverse, and waits for the store. With \`-march=x86-64-v3\` it takes \`backward_difference\` from 4.4 to 1.4 ns, \`pid\` from 8.5 to 4.4, \`notch\` from 10.1 to 8.1.
 - \`typed_lanes\` takes 1.08 (g++) and 1.10 (clang++) times the expert's time, 1.42 and 1.32 without FIR filters. There it is the work that the expert does
   not do: 18 wires that can be read, faults by axis, and what lets states die out; the filters hide it.
 
