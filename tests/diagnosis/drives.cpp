@@ -279,6 +279,14 @@ TEST_CASE(
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"drive_gain", "force_constant", "supply_voltage"});
 }
+TEST_CASE("position servo: what its loop is said to have commanded, and nobody logged, judges no claim") {
+    auto m = servo;
+    m.duty_gain = 17; // the motion alone says so: the command of the described loop is no better with it
+    const auto d = diagnosed(of_servo, recorded(takes::servo, m));
+    REQUIRE(d.causes.size() == 1);
+    CHECK(d.causes[0].group_probability >= 0.9);
+    CHECK(d.verdict == verdict::explained);
+}
 TEST_CASE("position servo: a profile velocity in its registers is found") {
     auto m = servo;
     m.rate_limit = 0.1;

@@ -77,8 +77,8 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     claims = path.size() - 1;
     noise = models.noise(best());
     const auto ms = detail::beside_own_noise(best().fit.ms, record, log, best().fit.plant);
-    settled = models.settled(ms, record.score, noise) &&
-              (best().effects.empty() || models.near_its_laws(best()));
+    settled =
+        models.settled(ms, record.score, noise) && (best().effects.empty() || models.near_its_laws(best()));
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
     if (tested_apart()) settled_on_second = second_log(best()).settled;
 }
@@ -126,13 +126,23 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
     return within_its_laws(*second, plants);
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
-    if (record.replayed() || !models.near_its_laws(path.front())) return false;
-    auto plants = beside_stronger_friction(path.front().fit.plant);
+QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws_as_fitted(const candidate& m) const {
+    if (record.replayed() || !models.near_its_laws(m)) return false;
+    auto plants = beside_stronger_friction(m.fit.plant);
     if (!within_its_laws(record, plants)) return false;
     if (!tested_apart()) return true;
     for (plant_model& p : plants) p = restarted(p, *second);
     return within_its_laws(*second, plants);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
+    return within_its_laws_as_fitted(path.front());
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::is_error_of_its_law(const effect& e) const {
+    const bool described = axis.plant.presliding_length_m || !axis.plant.gms_weights.empty();
+    return e.of_described_friction && described && best().effects.size() > 1 &&
+           within_its_laws_as_fitted(models.without(best(), &e));
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {

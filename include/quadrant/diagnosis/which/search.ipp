@@ -222,6 +222,9 @@ search::exchanged(const candidate& whole, const effect* own, const std::vector<c
     }
     sketch_each(from, all, out, when_late::go_on);
     finish_best(all, all.size(), out, when_late::go_on);
+    for (candidate& known : tried_)
+        for (const candidate& again : out)
+            if (same(known, again) && again.total > known.total) known = again;
     return out;
 }
 
