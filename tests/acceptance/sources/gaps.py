@@ -99,7 +99,7 @@ def page(cases):
         "simulation cannot tell what the real machine had. It tells what its log would have had to show.")
     say("How to read a row: the figure is what the source would have seen with this cause; a number behind a name is its probability. **named**: the cause, "
         "or an effect that says the same of this motion, is claimed with 0.5 or more, and nothing else is. **named in a group**: another name is the likelier "
-        "one, and the diagnosis says that this record does not tell the two apart. **wrong name**: something else is claimed, too. "
+        "one, and the diagnosis says that this record cannot distinguish the two. **wrong name**: something else is claimed, too. "
         "A log in which the cause is named when it is there, and is not claimed, excludes it at this size.")
     for key, (title, text, figure) in PUZZLES.items():
         of = [c for c in cases if c["puzzle"] == key]
