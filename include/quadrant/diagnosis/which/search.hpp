@@ -71,7 +71,8 @@ public:
     /// The same for each of these effects, fitted side by side.
     std::vector<candidate> without_each(const candidate& whole, const std::vector<const effect*>& each) const;
     /// A model with one of its effects exchanged for each of these other names of the same force; the others
-    /// keep their numbers where the fits begin. Where the same names were fitted before, the better fit is kept.
+    /// keep their numbers where the fits begin. Where the same names were fitted before, the better of the
+    /// two is kept.
     std::vector<candidate> exchanged(const candidate& whole, const effect* own,
                                      const std::vector<const effect*>& added) const;
 
