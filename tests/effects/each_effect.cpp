@@ -103,6 +103,18 @@ TEST_CASE("diagnose: friction that changes while the machine warms up") {
     real.friction_drift = -0.4;
     named(diagnosed(file, real), "friction_drift", "friction_drift", -0.4, 0.1);
 }
+TEST_CASE("diagnose: friction that grows evenly, and says nothing of where it would end") {
+    machine real;
+    const auto file = described(real);
+    real.friction_drift = 20;
+    real.friction_drift_time = 100;
+    const auto d = diagnosed(file, real);
+    CAPTURE(said(d));
+    REQUIRE(claims(d) == std::vector<std::string>{"friction_drift"});
+    const double rate = value_of(d.causes.front(), "friction_drift").value /
+                        value_of(d.causes.front(), "friction_drift_time_s").value;
+    CHECK(rate == doctest::Approx(0.2).epsilon(0.1));
+}
 TEST_CASE("diagnose: a second mass on a spring") {
     machine real;
     real.mass = 150;

@@ -253,6 +253,8 @@ private:
     /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
     /// effect had moved in the machine file is as described.
     candidate taken_off(const candidate& whole, const effect* own) const;
+    /// Whether a number of a model is one of the description that its tolerance lets move, and none of a name.
+    bool is_calibrated(const parameter& p) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);
