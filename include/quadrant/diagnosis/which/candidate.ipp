@@ -50,8 +50,8 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
         low[i] = std::min(p.to_fit(p.low) - x, 0.0);
         high[i] = std::max(p.to_fit(p.high) - x, 0.0);
         if (!(p.spread > 0)) {
-            // A fold may leave a number open. That it lies within its bounds is known all the same, and is worth
-            // the inverse variance of an even spread over them.
+            // A fold may leave a number open. That it lies within its bounds is known all the same, and is
+            // worth the inverse variance of an even spread over them.
             if (const double width = high[i] - low[i]; width > 0 && std::isfinite(width))
                 all.a(i, i) += 12 / (width * width);
             continue;
