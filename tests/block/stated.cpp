@@ -111,6 +111,35 @@ TEST_CASE("turning_phase: whole turns are exact") {
     CHECK(tried >= trials);
     CHECK(off == 0);
 }
+TEST_CASE(
+    "stream_limiter: in float they exceed none by more than what positions within range() are rounded by") {
+    dice roll;
+    double over = 0; // as a share of what three positions, or four, are rounded by at most
+    int tried = 0, faults = 0;
+    while (tried < trials) {
+        const double v = roll.decades(0.01, 2), a = roll.decades(0.1, 20), T = 1e-3, j = a / roll(2e-3, 60e-3);
+        trajectory::stream_limiter<128, float> block(
+            {quantity<si::velocity, float>::from_value(float(v)),
+             quantity<si::acceleration, float>::from_value(float(a)),
+             quantity<trajectory::jerk_unit, float>::from_value(float(j))},
+            1_ms);
+        const double reach = block.range().value();
+        double x = 0, y1 = 0, y2 = 0, y3 = 0;
+        for (int k = 0; k < 2000; ++k, ++tried) {
+            if (!roll.often() && !roll.often()) x = roll(-1, 1) * reach;
+            const double y = block(quantity_of<signal::position, float>::from_value(float(x))).value();
+            const double d1 = y - y1, d2 = y - 2 * y1 + y2, d3 = y - 3 * y1 + 3 * y2 - y3, step = a * T * T;
+            over =
+                std::max({over, (std::abs(d1) - v * T) / (0.02 * step), (std::abs(d2) - step) / (0.04 * step),
+                          (std::abs(d3) - j * T * T * T) / (0.08 * step)});
+            y3 = y2, y2 = y1, y1 = y;
+        }
+        faults += block.faulted();
+    }
+    CHECK(tried >= trials);
+    CHECK(over < 1);
+    CHECK(faults == 0);
+}
 TEST_CASE("stream_limiter: differences of the output exceed no limit, always") {
     dice roll;
     double over = 0;
