@@ -176,9 +176,14 @@ stick_slip(Friction&& friction, quantity<si::mass, Real> mass, quantity_of<signa
             const Real along = forward ? v.value() : -v.value(), most = size.value();
             const bool goes_on = along > Real(0);
             if (!goes_on && most <= friction.breakaway().value()) return velocity();
-            const Real next = detail::fastest_sliding<Real>(friction, slope.value(), most,
-                                                            goes_on ? along : Real(most / slope.value()))
-                                  .value();
+            Real start{};
+            if (!goes_on)
+                start = most / slope.value();
+            else if constexpr (requires { friction.foreseen(v); })
+                start = friction.foreseen(velocity::from_value(along)).value();
+            else
+                start = along;
+            const Real next = detail::fastest_sliding<Real>(friction, slope.value(), most, start).value();
             return velocity::from_value(forward ? next : -next);
         }
     // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A
