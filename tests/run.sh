@@ -170,6 +170,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
 [ "$tests" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
 [ "$tests" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
 [ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page.* will be skipped"
+[ "$tests" != all ] || sh examples/install.sh clang-22 || echo "going on without: symbols.nonblocking will be skipped"
 [ "$tests" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
 
 for phase; do
