@@ -4,11 +4,13 @@
 
 #include <emscripten.h>
 
-EM_JS(void, quadrant_tell, (const char* line), { postMessage({tell : UTF8ToString(line)}); });
+EM_JS(void, quadrant_tell, (const char* line, double done),
+      { postMessage({tell : UTF8ToString(line), done : done}); });
 
 namespace {
 quadrant_web::session& the_session() {
-    static quadrant_web::session s([](const std::string& line) { quadrant_tell(line.c_str()); });
+    static quadrant_web::session s(
+        [](const std::string& line, double done) { quadrant_tell(line.c_str(), done); });
     return s;
 }
 } // namespace

@@ -32,7 +32,8 @@ def gallery(docs):
             picture = re.fullmatch(r"!\[(.*)\]\((.*)\)", text)
             if picture:
                 uri = "data:image/svg+xml," + urllib.parse.quote((docs / picture[2]).read_text(), safe=" =:/,;()'")
-                parts.append(f'<img alt="{html.escape(picture[1])}" width="560" loading="lazy" src="{uri}">')
+                parts.append(f'<div class="wide" tabindex="0" role="region" aria-label="{html.escape(title)}: picture">'
+                             f'<img alt="{html.escape(picture[1])}" width="560" loading="lazy" src="{uri}"></div>')
                 break
             parts.append(f"<p>{html.escape(text)}</p>")
         parts.append("</section>")

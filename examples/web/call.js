@@ -24,7 +24,7 @@ function start_worker() {
     waiting = new Map();
     sent = 0;
     worker.onmessage = ({data}) => {
-        if (data.tell) return on_tell(data.tell);
+        if (data.tell) return on_tell(data.tell, data.done);
         const resolve = waiting.get(data.id);
         waiting.delete(data.id);
         resolve(data.answer);

@@ -13,7 +13,7 @@ function form_values() {
 
 async function ask_machine() {
     const answer = await call({do: 'form', log: form_log, values: form_values(), measured: form.elements.measured?.checked || false});
-    if (answer.error) { begun = null; the('machine').querySelector('.fault').textContent = answer.error; return; }
+    if (answer.error) { begun = null; the('machine').querySelector('.fault').textContent = answer.error.replace(/^init: /, ''); return; }
     if (!form.childElementCount) lay_out(answer.fields);
     for (const input of form.querySelectorAll('input[data-option]')) {
         const found = answer.found?.[input.dataset.option]?.[input.dataset.axis];

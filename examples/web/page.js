@@ -45,6 +45,15 @@ function run_state(on) {
     the('cancel').hidden = !on;
     the('go').disabled = on;
     the('progress').classList.toggle('busy', on);
+    the('progress').setAttribute('aria-live', on ? 'off' : 'polite'); // a screen reader hears the end, not every line
+    the('share').hidden = !on;
+}
+
+// "42 %, about 12 s left", as the program says it.
+function in_per_cent(share, seconds) {
+    const whole = share < 1 ? Math.min(99, Math.floor(100 * share)) : 100, left = seconds * (1 - share) / share;
+    if (!(share >= 0.05 && share < 1 && seconds > 0.5)) return `${whole} %`;
+    return `${whole} %, about ${left < 90 ? `${left.toFixed(0)} s` : `${(left / 60).toFixed(0)} min`} left`;
 }
 
 async function diagnose() {
@@ -55,8 +64,11 @@ async function diagnose() {
     for (const id of ['verdict', 'what-if', 'report']) the(id).hidden = true;
     const began = performance.now();
     const since = () => `${((performance.now() - began) / 1000).toFixed(1)} s`;
-    on_tell = line => { the('progress').textContent = `${since()}: ${line}`; };
-    on_tell('reading');
+    on_tell = (line, share) => {
+        the('share').value = share;
+        the('progress').textContent = `${in_per_cent(share, (performance.now() - began) / 1000)}: ${line}`;
+    };
+    on_tell('reading', 0);
     const known = !by_form || begun, machine = {machine: !known ? '' : by_form ? 'the form' : the('with').value, ...(by_form && begun ? {machine_text: begun} : {})};
     const answer = await call({...(beside ? {do: 'compare', beside} : {do: 'diagnose', holdout}), log, ...machine, fast: the('fast').checked});
     run_state(false);

@@ -23,7 +23,7 @@ namespace quadrant_web {
 /// name first. A refusal is an answer, too: {"error": "..."}.
 class session {
 public:
-    /// `tell` gets one short line of what is being tried.
+    /// `tell` hears how far a diagnosis is.
     explicit session(progress tell) : tell_(std::move(tell)) {}
 
     /// A file as it was dropped; `sha256` may be empty.

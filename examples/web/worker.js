@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Runs the diagnosis off the page's thread. First message: {wasm}, the gzipped module in base64. Then {id, put} or
-// {id, ask}; each is answered with {id, answer}. {tell} is a line of what is being tried.
+// {id, ask}; each is answered with {id, answer}. {tell, done} is a line of
+// what is being tried, and the share of the work that is done.
 'use strict';
 let module;
 

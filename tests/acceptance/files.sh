@@ -63,7 +63,10 @@ sed '1s/x_ref_m,x_pos_m/x_ref_rad,x_pos_rad/' short.csv >turning.csv
 sed 's/mass_kg/inertia_kg_m2/; s/force_constant_N_per_V/torque_constant_Nm_per_V/; s/N_s_per_m/Nm_s_per_rad/; s/coulomb_N"/coulomb_Nm"/
     s/"mass"/"inertia"/; s/"force_constant"/"torque_constant"/; s/resolution_m"/resolution_rad"/; s/_per_m"/_per_rad"/g' \
     "$data/machine.json" >turning.json
-"$program" diagnose --verbose --machine turning.json --log turning.csv --json found_turning.json --report turned.html >turned.txt 2>/dev/null
+"$program" diagnose --verbose --machine turning.json --log turning.csv --json found_turning.json --report turned.html >turned.txt 2>turned.err
+# How far it is never falls, and is all of it at the end; in between it says how long it will take.
+awk '{ if ($1 + 0 < last || $2 !~ /^%/) exit 1; last = $1 + 0 } END { exit !(NR > 20 && last == 100) }' turned.err
+grep -q ' %, about [0-9]* s left: x: trying ' turned.err
 grep -q '"torque_rms_Nm"' found_turning.json
 grep -q '"kind": "rotary"' found_turning.json
 ! grep -E '_N"|_m"|_kg"|force_rms' found_turning.json

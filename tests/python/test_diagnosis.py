@@ -150,6 +150,12 @@ def test_progress_is_heard_and_what_it_raises_ends_the_search(data):
     assert len(lines) == 3 and time.monotonic() - began < 60
 
 
+def test_progress_never_falls_and_ends_with_all(data):
+    shares = []
+    quadrant.diagnose(data / "log.csv", data / "machine.json", progress=lambda line, done: shares.append(done))
+    assert shares == sorted(shares) and shares[-1] == 1 and len(set(shares)) > 10
+
+
 def test_refusals_name_what_is_wrong(data, columns, tmp_path):
     with pytest.raises(quadrant.BadInput, match="column x_pos_m is missing"):
         quadrant.read_log({"t_s": [0, 1, 2], "x_cmd_V": [1, 2, 3]})

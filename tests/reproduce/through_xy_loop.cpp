@@ -3,8 +3,11 @@
 #include "quadrant_reproduce/experiment/dob_force.hpp"
 #include "quadrant_reproduce/experiment/feedforward.hpp"
 #include "quadrant_reproduce/experiment/harmonics_cases.hpp"
+#include "quadrant_reproduce/experiment/identify.hpp"
+#include "quadrant_reproduce/frequency_response.hpp"
 #include "quadrant_reproduce/milling_table.hpp"
 #include "quadrant_reproduce/push_run.hpp"
+#include "quadrant_reproduce/wrong_y_axis.hpp"
 
 #include <doctest/doctest.h>
 
@@ -152,6 +155,94 @@ private:
 template <class Boxes, class Motor> using as_x = axis_of_loop<Boxes, Motor, false>;
 template <class Boxes, class Motor> using as_y = axis_of_loop<Boxes, Motor, true>;
 
+/// What an experiment with instruments takes: an axis of an `xy_loop` that is read through them. The other axis
+/// has the same ones and swings.
+template <class Boxes, class Motor, class Instruments, bool OfY> class measured_axis_of_loop {
+    using slide = table_axis_boxes<Motor>;
+    using table = thesis::measured_table<xy_table<slide, slide>, Instruments>;
+    using loop_type = xy_loop<Boxes, Boxes, table, thesis::told_force>;
+
+public:
+    measured_axis_of_loop(const typename Boxes::parameters& controller, const typename Motor::parameters& motor,
+                          const Instruments& instruments)
+        : loop_({.control = {controller, controller},
+                 .table = {.table = {.x = {.motor = motor}, .y = {.motor = motor}},
+                           .x = instruments,
+                           .y = instruments}},
+                thesis::period) {}
+
+    void settle(quantity<si::length> at) { loop_.settle({.x = on_x(at), .y = on_y(at)}); }
+    void step(const axis_motion<>& now, quantity_of<signal::force> push = {}) {
+        const double t = double(count_++) * thesis::period.value();
+        const axis_motion<> other{1_mm * (1 - std::cos(7 * t)), 7_mmps * std::sin(7 * t),
+                                  49e-3 * std::cos(7 * t) * 1_mps2};
+        (OfY ? loop_.process_y() : loop_.process_x()).now = push;
+        const auto seen = loop_.table().reading();
+        reading_ = OfY ? seen.y.plain() : seen.x.plain();
+        if constexpr (OfY)
+            loop_({.x = other, .y = now});
+        else
+            loop_({.x = now, .y = other});
+    }
+    auto& boxes() { return control().box; }
+    auto now() const {
+        struct {
+            quantity<si::length> x;
+        } here{OfY ? loop_.table().y().wire.place : loop_.table().x().wire.place};
+        return here;
+    }
+    auto reading() const { return reading_; }
+    auto command() { return control().wire.command; }
+    bool stopped() const { return loop_.faulted() || loop_.limited(); }
+
+private:
+    auto& control() {
+        if constexpr (OfY)
+            return loop_.control().y();
+        else
+            return loop_.control().x();
+    }
+    loop_type loop_;
+    quantity<si::length> reading_{};
+    long count_ = 0;
+};
+template <class Boxes, class Motor, class Instruments>
+using measured_as_x = measured_axis_of_loop<Boxes, Motor, Instruments, false>;
+template <class Boxes, class Motor, class Instruments>
+using measured_as_y = measured_axis_of_loop<Boxes, Motor, Instruments, true>;
+
+/// What the measurement of a frequency response drives: an axis of an `xy_table` whose other axis is driven, too.
+template <class Friction, bool OfY> class driven_axis {
+    using slide = table_axis_boxes<linear_motor<Friction>>;
+
+public:
+    driven_axis(const typename linear_motor<Friction>::parameters& p, quantity<si::length> encoder)
+        : table_({.x = {.motor = p, .encoder_step = encoder}, .y = {.motor = p, .encoder_step = encoder}},
+                 thesis::period) {}
+    quantity<si::length> operator()(quantity_of<signal::voltage> u) {
+        const auto other = 0.3 * noise_() * 1_V;
+        const auto at = table_({.x = on_x(OfY ? other : u), .y = on_y(OfY ? u : other)});
+        return OfY ? at.y.plain() : at.x.plain();
+    }
+
+private:
+    xy_table<slide, slide> table_;
+    thesis::white_noise noise_{7};
+};
+template <class Friction> using driven_x = driven_axis<Friction, false>;
+template <class Friction> using driven_y = driven_axis<Friction, true>;
+
+/// The log of a sinusoid of 15 um at 0.1 Hz, seen through noisy instruments.
+template <template <class, class, class> class Axis> auto identified_log(const thesis::axis& a) {
+    const double w = 2 * thesis::pi_ * 0.1;
+    return thesis::identification::rig_of<Axis>(a, 5).follow(
+        [=](double t) -> std::array<double, 3> {
+            return {15e-6 * (1 - std::cos(w * t)), 15e-6 * w * std::sin(w * t),
+                    15e-6 * w * w * std::cos(w * t)};
+        },
+        10);
+}
+
 template <class Slot> void same_pushes() {
     for (const bool tracking : {false, true}) {
         CAPTURE(tracking);
@@ -214,4 +305,56 @@ TEST_CASE("xy_loop: what the Ferraris estimator says of the force (Fig. 5.10) is
     CHECK(one.estimated.y != one.given.y);
     CHECK(one.estimated.y == ferraris_run<as_x>().estimated.y);
     CHECK(one.estimated.y == ferraris_run<as_y>().estimated.y);
+}
+TEST_CASE(
+    "xy_loop: the logs from which friction is identified, with noise of encoder and amplifier, are the same "
+    "on one axis of the whole loop, bit for bit") {
+    for (const thesis::axis* a : {&thesis::x, &thesis::y}) {
+        CAPTURE(a->name);
+        const auto one = identified_log<thesis::measured_axis>(*a), as_x = identified_log<measured_as_x>(*a),
+                   as_y = identified_log<measured_as_y>(*a);
+        REQUIRE(one.position.size() == 20000);
+        CHECK(*std::max_element(one.position.begin(), one.position.end()) > 29_um);
+        CHECK(one.position == as_x.position);
+        CHECK(one.command == as_x.command);
+        CHECK(one.position == as_y.position);
+        CHECK(one.command == as_y.command);
+    }
+}
+TEST_CASE(
+    "xy_loop: a y axis that differs from its tables, with cogging, noise and jitter, errs at its reversals "
+    "as one axis of the whole loop does, bit for bit") {
+    const thesis::difference d{.level = 1.2,
+                               .mass = 1.1,
+                               .lag = 2e-4,
+                               .dac = 20.0 / 65536,
+                               .noise = 1e-7,
+                               .jitter = 1e-6,
+                               .cogging = 3};
+    const auto one = thesis::reversals_with(d), as_x = thesis::reversals_with<measured_as_x>(d),
+               as_y = thesis::reversals_with<measured_as_y>(d), without = thesis::reversals_with({});
+    REQUIRE((one && as_x && as_y && without));
+    CHECK(one->glitch != without->glitch);
+    CHECK(one->glitch == as_x->glitch);
+    CHECK(one->between == as_x->between);
+    CHECK(one->glitch == as_y->glitch);
+    CHECK(one->between == as_y->between);
+}
+TEST_CASE(
+    "xy_table: the frequency responses of the thesis, whose loop is open, are the same on one axis of the "
+    "whole table, bit for bit") {
+    const auto values = [](const quadrant::analysis::measured_frf& frf) {
+        std::vector<std::complex<double>> out;
+        for (const auto& line : frf.lines) out.push_back(line.value);
+        return out;
+    };
+    for (const thesis::axis* a : {&thesis::x, &thesis::y}) {
+        CAPTURE(a->name);
+        using thesis::gms_beside, thesis::measured_response;
+        const auto one = values(measured_response<gms_beside>(*a, a->A, 1, 0.2));
+        REQUIRE(one.size() > 500);
+        CHECK(std::abs(one[100]) > 0);
+        CHECK(one == values(measured_response<gms_beside, driven_x>(*a, a->A, 1, 0.2)));
+        CHECK(one == values(measured_response<gms_beside, driven_y>(*a, a->A, 1, 0.2)));
+    }
 }

@@ -253,11 +253,20 @@ def without_a_machine(driver, page, data, shots):
     shoot(driver, shots / "web_form.png")
     element(driver, "#go").click()
     wait(lambda: element(driver, "#cancel").is_displayed(), 5, "cancel")
-    wait(lambda: " s: " in element(driver, "#progress").text and "reading" not in element(driver, "#progress").text, 20, "progress")
+    wait(lambda: " %" in element(driver, "#progress").text and "reading" not in element(driver, "#progress").text, 20, "progress")
+    check(element(driver, "#share").is_displayed(), "a bar beside the words")
     element(driver, "#cancel").click()
     wait(lambda: element(driver, "#progress").text == "Cancelled.", 5, "cancelled")
+    driver.execute_script("""
+        window.heard = [];
+        new MutationObserver(() => heard.push([the('share').value, the('progress').textContent]))
+            .observe(the('progress'), {childList: true, characterData: true, subtree: true});""")
     element(driver, "#go").click()
     wait(lambda: verdict_or_fault(driver), 60, "a verdict after a cancelled one")
+    shares, words = zip(*driver.execute_script("return heard.filter(([, words]) => words.includes(' %'))"))
+    check(len(shares) > 10 and list(shares) == sorted(shares) and shares[-1] == 1, f"shares of the work: {shares}")
+    check(any(" s left: x: trying " in w for w in words), f"the time that is left, and what is tried: {words}")
+    check(not element(driver, "#share").is_displayed(), "no bar when all is done")
     check(element(driver, "#verdict").is_displayed(), element(driver, "#start .fault").text)
 
 

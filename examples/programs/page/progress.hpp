@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <string>
@@ -15,6 +17,15 @@ inline std::string about(double seconds) {
                             : fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// "  7 %", " 42 %, about 12 s left": of work of which a share is done after some time. The time that is left is
+/// said once there is something to tell it from. 100 % only when all is done.
+inline std::string in_per_cent(double share, double seconds) {
+    const double whole = share < 1 ? std::min(99.0, std::floor(100 * share)) : 100;
+    const bool known = share >= 0.05 && share < 1 && seconds > 0.5;
+    return fmt::format("{:3.0f} %{}", whole,
+                       known ? ", about " + about(seconds * (1 - share) / share) + " left" : "");
+}
+
 /// How far a program is, on standard error: one line that is overwritten on a terminal, else a line every ten
 /// seconds.
 class progress_line {
@@ -26,11 +37,11 @@ public:
 
     /// `done` of `of` pieces of about equal work: in per cent, with the time that is left.
     void operator()(std::size_t done, std::size_t of, const std::string& what) {
-        const double share = of > 0 ? static_cast<double>(done) / static_cast<double>(of) : 0;
-        const std::string left =
-            done > 0 && done < of ? ", about " + about(since() * (1 - share) / share) + " left" : "";
-        say(fmt::format("{:3.0f} %{}: {}", 100 * share, left, what));
+        (*this)(what, of > 0 ? static_cast<double>(done) / static_cast<double>(of) : 0);
     }
+    /// The share of the work that is done, and the time that is left if the rest goes on as fast.
+    void operator()(const std::string& what, double share) { say(so_far(share) + ": " + what); }
+    std::string so_far(double share) const { return in_per_cent(share, since()); }
     /// Of work whose amount is not known: with the time that has gone.
     void operator()(const std::string& what) { say(fmt::format("{}: {}", about(since()), what)); }
 

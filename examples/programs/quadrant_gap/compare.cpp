@@ -37,7 +37,10 @@ void run(const compare_options& o) {
     r.threads = o.threads;
     auto result = compare(
         machine.contents, first.contents, second.contents,
-        [&](const std::string& s) { o.say.verbose ? void(fmt::print(stderr, "{}\n", s)) : line(s); }, r);
+        [&](const std::string& s, double done) {
+            o.say.verbose ? void(fmt::print(stderr, "{}: {}\n", line.so_far(done), s)) : line(s, done);
+        },
+        r);
     line.clear();
     result.machine_sha256 = machine.sha256;
     result.first_sha256 = first.sha256;

@@ -47,7 +47,9 @@ void run(const diagnose_options& o) {
     quadrant_page::progress_line line(o.say.quiet);
     auto result = diagnose(
         machine.contents, log.contents, holdout ? &holdout->contents : nullptr,
-        [&](const std::string& s) { o.say.verbose ? void(fmt::print(stderr, "{}\n", s)) : line(s); },
+        [&](const std::string& s, double done) {
+            o.say.verbose ? void(fmt::print(stderr, "{}: {}\n", line.so_far(done), s)) : line(s, done);
+        },
         chosen(o));
     line.clear();
     result.machine_sha256 = machine.sha256;

@@ -4,6 +4,7 @@
 #include "white_noise.hpp"
 
 #include <quadrant/analysis/fit_plant.hpp>
+#include <quadrant/control/quantizer.hpp>
 #include <quadrant/friction/coulomb_viscous.hpp>
 #include <quadrant/plant/linear_motor.hpp>
 
@@ -31,18 +32,34 @@ struct gms_beside {
     }
 };
 
+/// A motor by itself, with its encoder. Tests put an axis of an `xy_table` in its place: the loop is open here,
+/// and of an `xy_loop` only the table is left.
+template <class Friction> class driven_motor {
+public:
+    using motor = linear_motor<Friction>;
+    driven_motor(const typename motor::parameters& p, quantity<si::length> encoder)
+        : motor_(p, period), encoder_({encoder}, period) {}
+    quantity<si::length> operator()(quantity_of<signal::voltage> u) {
+        motor_(u);
+        return encoder_(motor_.now().x);
+    }
+
+private:
+    motor motor_;
+    quantizer<signal::position> encoder_;
+};
+
 /// The frequency response of a simulated axis under white noise of so many volts rms. The hold is half a period
 /// of Td.
-template <class Plant>
+template <class Plant, template <class> class Driven = driven_motor>
 analysis::measured_frf measured_response(const axis& a, per_second pole, double rms,
                                          double minutes = frf_minutes) {
-    linear_motor<typename Plant::friction> motor({.mass = a.kf / a.B,
-                                                  .force_constant = a.kf,
-                                                  .friction = Plant::of(a, pole),
-                                                  .delay = a.delay - 0.5 * period,
-                                                  .encoder_step = 250_nm,
-                                                  .substeps = 5},
-                                                 period);
+    Driven<typename Plant::friction> motor({.mass = a.kf / a.B,
+                                            .force_constant = a.kf,
+                                            .friction = Plant::of(a, pole),
+                                            .delay = a.delay - 0.5 * period,
+                                            .substeps = 5},
+                                           250_nm);
     analysis::frf<signal::voltage, signal::position> estimate(
         {.samples = frf_window, .remove = analysis::trend::line}, period);
     white_noise noise(1);

@@ -14,6 +14,15 @@ inline std::string html(std::string_view text) {
     quadrant_page::replace_all(safe, " %", "\u00a0%"); // no break before it
     return safe;
 }
+/// The same of the name of a row; a line breaks between its words.
+inline std::string html_of_id(std::string_view id) {
+    std::string out;
+    for (const char c : html(id)) {
+        out += c;
+        if (c == '.' || c == '_') out += "<wbr>";
+    }
+    return out;
+}
 
 inline std::string given_cell(const char* label, const row& r, const std::optional<double>& given,
                               double tolerance) {
@@ -48,11 +57,11 @@ inline std::string table(const section& s) {
         std::string quantity = html(r.quantity), cells;
         std::replace(quantity.begin(), quantity.end(), '_', ' ');
         if (alone)
-            quantity = fmt::format("<code>{}</code> <small>{}</small>", html(r.id), quantity);
+            quantity = fmt::format("<code>{}</code> <small>{}</small>", html_of_id(r.id), quantity);
         else if (r.id != id)
             rows += fmt::format(
                 "<tr class=\"id\"><th colspan=\"{}\" scope=\"rowgroup\"><code>{}</code></th></tr>\n",
-                2 + given.size(), html(r.id));
+                2 + given.size(), html_of_id(r.id));
         id = r.id;
         for (const given_column& c : given)
             cells += given_cell(c.name, r, r.*c.figure,

@@ -2,6 +2,7 @@
 #pragma once
 #include "divergence_guard.hpp"
 #include "friction_run.hpp"
+#include "measured_axis.hpp"
 #include "white_noise.hpp"
 
 #include <optional>
@@ -30,19 +31,35 @@ struct reversal_error { // um
     double glitch;      ///< mean of the largest errors after the reversals but the first, as friction_run.hpp
     double between;     ///< largest error half-way between reversals
 };
+/// The encoder of that machine: noisy, jittering, and it counts. It begins at rest and as if on a count.
+class wrong_encoder {
+public:
+    explicit wrong_encoder(const difference& d) : d_(d) {}
+    quantity<si::length> reading(quantity<si::length> place, quantity<si::velocity> v) {
+        if (std::exchange(first_, false)) return place;
+        double seen = place.value();
+        if (d_.noise > 0) seen += d_.noise * gauss_();
+        if (d_.jitter > 0) seen += d_.jitter * gauss_() * v.value();
+        return d_.encoder * std::round(seen / d_.encoder) * 1_m;
+    }
+    quantity_of<signal::voltage> command(quantity_of<signal::voltage> u) const { return u; }
+
+private:
+    difference d_;
+    white_noise gauss_{1};
+    bool first_ = true;
+};
+
 /// Drives that machine along `wanted(t)` for so long [s], from rest where it begins. `tell(t, wanted, at,
 /// reading, command)` hears every sample: the axis [m], what its encoder reads [m], what the controller answers
 /// [V]; false stops. False when it was stopped, by that or by a clipped command or a box at fault.
-template <class Wanted, class Tell>
+template <template <class, class, class> class Axis = measured_axis, class Wanted, class Tell>
 bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&& tell) {
-    using loop_type = milling_axis<milling_axis_boxes<gms_model::box>>;
+    using boxes = milling_axis_boxes<gms_model::box>;
     using motor_type = linear_motor<maxwell_slip<4>>;
-    auto controller = controller_of<decltype(loop_type::box)>(y);
+    auto controller = controller_of<boxes>(y);
     controller.friction = gms_model::of(y);
     controller.dac_step = d.dac * 1_V;
-    loop_type loop{.box = {controller, period}};
-    const double corner = 942.5 / (1 + 942.5 * d.lag);
-    loop.box.measured_velocity = {{corner / (2 * pi_) * 1_Hz}, period};
 
     axis machine = d.table;
     machine.curve.coulomb *= d.level * d.coulomb;
@@ -59,33 +76,26 @@ bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&&
                                  gms<signal::force>(machine, gain_of<signal::force, signal::force>(1.0)),
                              .delay = 0.4_ms + d.delay * 1_s};
     p.friction.curve.viscous += y.A_gms * believed + d.viscous * 1_N / 1_mps;
-    motor_type motor{p, period};
+    Axis<boxes, motor_type, wrong_encoder> run(controller, p, wrong_encoder(d));
+    const double corner = 942.5 / (1 + 942.5 * d.lag);
+    run.boxes().measured_velocity = {{corner / (2 * pi_) * 1_Hz}, period};
 
-    white_noise gauss(1);
     const double T = period.value();
-    auto reading = wanted(0).position;
-    if (reading.value() != 0) { // else as new
-        motor.settle(reading);
-        loop.settle(reading);
-    }
+    if (const auto from = wanted(0).position; from.value() != 0) run.settle(from); // else as new
     const auto samples = static_cast<int>(lasts / T);
     for (int k = 0; k < samples; ++k) {
-        const typename loop_type::motion now = wanted(k * T);
-        const double at = motor.now().x.value();
-        if (motor.faulted() || loop.faulted() || loop.limited()) return false;
-        const auto command = loop(now, reading);
-        if (!tell(k * T, now, at, reading.value(), command.value())) return false;
-        motor(command, d.cogging * std::sin(2 * pi_ * at / 0.032) * 1_N);
-        double seen = motor.now().x.value();
-        if (d.noise > 0) seen += d.noise * gauss();
-        if (d.jitter > 0) seen += d.jitter * gauss() * motor.now().v.value();
-        reading = d.encoder * std::round(seen / d.encoder) * 1_m;
+        const axis_motion<> now = wanted(k * T);
+        const double at = run.now().x.value();
+        if (run.stopped()) return false;
+        run.step(now, d.cogging * std::sin(2 * pi_ * at / 0.032) * 1_N);
+        if (!tell(k * T, now, at, run.reading().value(), run.command().value())) return false;
     }
     return true;
 }
 
 /// Nothing when it was stopped: an error beyond 1 mm or growing, a clipped command, or a box at fault.
-inline std::optional<reversal_error> reversals_with(const difference& d) {
+template <template <class, class, class> class Axis = measured_axis>
+std::optional<reversal_error> reversals_with(const difference& d) {
     const double amplitude = 0.03, w = 0.1 / amplitude, T = period.value();
     const auto wanted = [&](double t) {
         return axis_motion<>{amplitude * (1 - std::cos(w * t)) * 1_m, amplitude * w * std::sin(w * t) * 1_mps,
@@ -95,7 +105,7 @@ inline std::optional<reversal_error> reversals_with(const difference& d) {
     reversal_error found{0, 0};
     double peak = 0;
     int reversals = 0;
-    const bool whole = drive_wrong(
+    const bool whole = drive_wrong<Axis>(
         d, wanted, 3 * 2 * pi_ / w, [&](double t, const axis_motion<>& asked, double at, double, double) {
             const double turns = w * t / pi_, error = 1e6 * (asked.position.value() - at);
             if (runs_away(error)) return false;

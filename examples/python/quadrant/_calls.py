@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import html
+import inspect
 import json
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -16,8 +17,19 @@ import numpy as np
 from . import _core
 from ._files import Log, LogLike, Machine, MachineLike, columns_of, read_log, read_machine, write_whole
 
-Progress = Callable[[str], None]
+Progress = Union[Callable[[str], Any], Callable[[str, float], Any]]
 Signals = dict[str, dict[str, "np.ndarray[Any, np.dtype[np.float64]]"]]
+
+
+def _heard(progress: Optional[Progress]) -> Optional[Callable[[str, float], Any]]:
+    """Of a line and a share. A function of a line alone hears the line alone."""
+    if progress is None:
+        return None
+    try:
+        inspect.signature(progress).bind("", 0.0)
+    except (TypeError, ValueError):  # it takes one, or is of C and does not say
+        return lambda line, done: progress(line)  # type: ignore[call-arg, misc]
+    return progress  # type: ignore[return-value]
 
 
 def in_frame(page: str) -> str:
@@ -119,12 +131,12 @@ def diagnose(log: LogLike, machine: MachineLike, holdout: Optional[LogLike] = No
 
     holdout: a log of another motion of the same machine, to judge the forecast on. fast: fewer models tried. threads: at
     most; 0: as many as there are cores; the answer is the same. seconds: end the search after this time; 0: as long as it
-    takes. progress: gets a short line of what is being tried.
+    takes. progress: gets a short line of what is being tried and, if it takes two, the share of the work that is done, 0 to 1.
     """
     described, record = read_machine(machine), read_log(log)
     second = read_log(holdout) if holdout is not None else None
     core = _core.diagnose(described.text, described.name, record._core, second._core if second else None, fast, threads,
-                          seconds, progress)
+                          seconds, _heard(progress))
     core.digests(hashlib.sha256(described.text.encode()).hexdigest() if described._text is not None else "",
                  record._sha256, second._sha256 if second else "")
     return Diagnosis(core, described, record)
@@ -231,7 +243,7 @@ def compare(first: LogLike, second: LogLike, machine: Optional[MachineLike] = No
     """Names what differs between two logs; without a machine, the first log describes its own."""
     described = read_machine(machine) if machine is not None else None
     return Comparison(_core.compare(read_log(first)._core, read_log(second)._core, described.text if described else "",
-                                    described.name if described else "", fast, threads, progress))
+                                    described.name if described else "", fast, threads, _heard(progress)))
 
 
 @dataclass(frozen=True)
@@ -273,12 +285,13 @@ def trial(machines: int = 20, *, seed: int = 1, only: Optional[Iterable[int]] = 
         hidden = json.dumps(truth)
         return (hidden, said, *_core.trial_judge(hidden, said))
 
-    answers = []
+    answers, heard = [], _heard(progress)
     with ThreadPoolExecutor(jobs or os.cpu_count() or 1) as pool:
         for index, answer in zip(chosen, pool.map(one, chosen)):
             answers.append(answer)
-            if progress:
-                progress(f"{len(answers)} of {len(chosen)}: machine {index} {'right' if answer[2] else 'NOT RIGHT'}: {answer[3]}")
+            if heard:
+                heard(f"{len(answers)} of {len(chosen)}: machine {index} {'right' if answer[2] else 'NOT RIGHT'}: {answer[3]}",
+                      len(answers) / len(chosen))
     figures, words = _core.trial_tally([(truth, said) for truth, said, _, _ in answers])
     cases = [{"index": i, "right": right, "said": said, "truth": json.loads(truth)}
              for i, (truth, _, right, said) in zip(chosen, answers)]

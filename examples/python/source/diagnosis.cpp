@@ -102,10 +102,10 @@ machine_log motion_of(const machine_log& log) {
 
 /// Lines of what is being tried go to Python, and an interruption there ends the search.
 progress heard_by(py::handle tell) { // of the caller, who holds it
-    return [tell](const std::string& line) {
+    return [tell](const std::string& line, double done) {
         const py::gil_scoped_acquire python;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!tell.is_none()) tell(line);
+        if (!tell.is_none()) tell(line, done);
     };
 }
 

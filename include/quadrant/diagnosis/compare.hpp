@@ -15,9 +15,9 @@ namespace quadrant::inline v0::diagnosis {
 /// `rules::least_shrink`, and no machine that either log shows explains both as well. What lies inside the
 /// owner's tolerances is no difference. Machine and logs match (match.hpp); the second log may have another
 /// period (it is resampled). Costs four diagnoses.
-QUADRANT_DIAGNOSIS_DECL comparison_result compare(
-    const machine_description& machine, const machine_log& first, const machine_log& second,
-    const progress& tell = [](const std::string&) {}, const rules& r = {});
+QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& machine, const machine_log& first,
+                                                  const machine_log& second, const progress& tell = {},
+                                                  const rules& r = {});
 
 } // namespace quadrant::inline v0::diagnosis
 

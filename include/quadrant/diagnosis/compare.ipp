@@ -17,8 +17,11 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
     const machine_log second = has_period_of(machine, second_as_read)
                                    ? second_as_read
                                    : at_period(second_as_read, machine.sample_period_s);
+    double begun = 0; // of four diagnoses, and the comparison of what they found
     const auto in = [&](const char* what) {
-        return [&tell, what](const std::string& line) { tell(std::string(what) + ": " + line); };
+        constexpr double each = 0.24;
+        begun += each;
+        return tell.part(begun - each, begun, std::string(what) + ": ");
     };
     comparison_result out;
     out.machine_file = machine.file;
@@ -59,7 +62,7 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         if (axis.positions_only || axis.drive.closes()) {
             for (std::size_t i = 0; i < 2; ++i) f[i] = beside::by_names(ways[i], a.name);
         } else {
-            tell("axis " + a.name + ": both ways");
+            tell("axis " + a.name + ": both ways", begun);
             beside::log_of_axis one(machine, axis, first, r), other(machine, axis, second, r);
             f[0] = beside::by_scores(ways[0], a.name, one, other, r);
             f[1] = beside::by_scores(ways[1], a.name, other, one, r);
@@ -95,6 +98,7 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         std::move(f.undecided.begin(), f.undecided.end(), std::back_inserter(out.undecided));
     }
     out.across = std::move(ways[way].across);
+    tell("done", 1);
     return out;
 }
 

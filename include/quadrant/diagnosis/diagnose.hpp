@@ -14,9 +14,9 @@ namespace quadrant::inline v0::diagnosis {
 /// (pieces.hpp). Cost: linear in rows; each suspect costs a few dozen passes of the plant over the log. A
 /// controller of your own (own_controller.hpp) and effects of your own (own_effect.hpp) stand in the machine;
 /// what is wrong with them is an std::invalid_argument.
-QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(
-    const machine_description& machine, const machine_log& log, const machine_log* holdout = nullptr,
-    const progress& tell = [](const std::string&) {}, const rules& r = {});
+QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& machine, const machine_log& log,
+                                                  const machine_log* holdout = nullptr,
+                                                  const progress& tell = {}, const rules& r = {});
 
 } // namespace quadrant::inline v0::diagnosis
 

@@ -198,15 +198,35 @@ inline bool shows_transmission(const axis_description& axis, const axis_log& log
     return !log.motor.empty() && (axis.transmission != transmission_description{} || log.motor_unit == "rad");
 }
 
-/// `of_transmission`: what the two encoders of the axis say, where it has two.
-inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encoders* of_transmission = nullptr) {
+/// Up to which share of an axis' work each of its stages goes (CPU, measured on the practice logs). A look
+/// along the motion is part of the search where the record may ask for one.
+struct stages {
+    double first_look, search, rivals = 0.8, causes = 0.9, gap = 0.92;
+};
+inline stages stages_of(bool may_look_again) {
+    return may_look_again ? stages{.first_look = 0.35, .search = 0.6}
+                          : stages{.first_look = 0.6, .search = 0.6};
+}
+
+/// `tell` is of the whole axis. `of_transmission`: what the two encoders of the axis say, where it has two.
+inline void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell, const stages& stage,
+                          chain::two_encoders* of_transmission = nullptr) {
+    const auto names = static_cast<double>(std::max<std::size_t>(1, c.best().effects.size()));
+    const auto begins = [&](double from, double to, const std::string& what) {
+        const progress part = tell.part(from, to);
+        part("axis " + c.axis.name + ": " + what, 0);
+        c.models.begins(part, names);
+    };
+    begins(stage.search, stage.rivals, "what else may cause it");
     axis_result result;
     result.name = c.axis.name;
     result.kind = c.axis.kind;
     result.command_unit = c.axis.command_unit;
     result.driven = c.axis.drive.closes();
     auto rivals = rivals_by_weight(c);
+    begins(stage.rivals, stage.causes, "how sure each cause is");
     auto causes = plant_causes(c, rivals);
+    begins(stage.causes, stage.gap, "how far the gap shrinks");
     const bool guess = untested(c);
     if (guess) detail::to_suspects(causes);
     const how_far shrinks(c);
@@ -259,6 +279,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
     out.verdict = std::max(out.verdict, result.verdict);
     if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+        begins(stage.gap, 1, "what is left, and the next experiment");
         if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
         if (!c.axis.drive.closes() && !c.models.over() && behind > verdict::within_tolerance)
@@ -396,11 +417,14 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         const axis_log* logged = detail::named(log.axes, axis.name);
         return logged && !logged->still;
     });
+    const auto all_axes = static_cast<double>(axes_left);
     for (axis_description axis : machine.axes) {
         const axis_log* logged = detail::named(log.axes, axis.name);
         if (!logged || logged->still) continue;
+        const auto behind = all_axes - static_cast<double>(axes_left);
+        const progress of_axis = tell.part(behind / all_axes, (behind + 1) / all_axes);
         if (axis.positions_only) {
-            tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+            of_axis("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
             detail::diagnose_positions(out, axis, *logged, machine, log.file,
                                        detail::for_one_of(r, axes_left--));
             if (holdout)
@@ -444,7 +468,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             std::erase_if(out.notes, [&](const std::string& note) {
                 return note.starts_with(fmt::format("axis {}: controller kind ", axis.name));
             });
-        tell("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
+        of_axis("axis " + axis.name + ": " + std::to_string(log.samples) + " samples");
         exclusions excluded{machine.excluded_effects};
         if (transmission) excluded.by_readings = {"backlash", "structural_resonance"}; // of the two encoders
         const axis_description rigid = transmission ? transmission->rigid(axis) : axis;
@@ -456,10 +480,15 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
         if (soft && other && !transmission)
             both = both_motions(axis, *detail::named(as_read.axes, axis.name),
                                 *detail::named(as_read_too->axes, axis.name), machine.sample_period_s);
+        const detail::stages stage =
+            detail::stages_of(axis.actuator.command_is == command_origin::measured && !axis.drive.closes());
         const auto look = [&](held_by how, const axis_case* before, bool exchanged) {
+            const bool again = before || exchanged;
+            const progress part =
+                of_axis.part(again ? stage.first_look : 0, again ? stage.search : stage.first_look);
             const axis_log& fitted = exchanged ? *other : both ? *both : coupled;
             const axis_log* const judged = exchanged ? &coupled : other ? &*other : nullptr;
-            return std::make_unique<axis_case>(rigid, fitted, judged, period, excluded, limits, tell, how,
+            return std::make_unique<axis_case>(rigid, fitted, judged, period, excluded, limits, part, how,
                                                before);
         };
         // Looks at the forces along the measured motion where the predictions mislead. Returns why it is
@@ -468,7 +497,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             const bool stands = detail::contradicts_motion(*found), little = detail::answers_too_little(*found),
                        open = detail::open_by_measured_command(*found);
             if (!stands && !little && !open) return "";
-            tell("axis " + axis.name + ": again, along the measured motion");
+            of_axis("axis " + axis.name + ": again, along the measured motion");
             auto led = look(held_by::motion, found.get(), exchanged);
             const double least =
                 (open ? 1 + r.least_shrink : 1 - r.least_shrink) * (stands ? 1 : found->left_along_motion());
@@ -487,7 +516,7 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                             axis.name));
         const char* why_along = along_motion(found, false);
         if (!both && detail::hides_what_the_other_shows(*found)) {
-            tell("axis " + axis.name + ": again, fitted to the hold-out log");
+            of_axis("axis " + axis.name + ": again, fitted to the hold-out log");
             auto exchanged = look(held_by::readings, nullptr, true);
             if (exchanged->at_floor() ||
                 detail::left_in_both(*exchanged) < (1 - r.least_shrink) * detail::left_in_both(*found)) {
@@ -506,8 +535,10 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 "axis {}: judged by the forces along the measured motion: models corrected by the readings "
                 "predicted best by {}.",
                 axis.name, why_along));
-        detail::diagnose_axis(out, *found, transmission ? &*transmission : nullptr);
+        detail::diagnose_axis(out, *found, of_axis, stage, transmission ? &*transmission : nullptr);
+        of_axis("axis " + axis.name + ": done", 1);
     }
+    tell("done", 1);
     return out;
 }
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../thesis.hpp"
+#include "../measured_axis.hpp"
 
 #include <quadrant/analysis/fit_gms.hpp>
 #include <quadrant/analysis/fit_stribeck.hpp>
-#include <quadrant/loop/milling_axis_boxes.hpp>
-#include <quadrant/plant/linear_motor.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,17 +17,33 @@
 /// slow sinusoids, and what the procedures of `quadrant::analysis` make of the logs, beside what was simulated.
 namespace thesis::identification {
 
+/// An encoder that counts and jitters, and a noisy amplifier.
+class noisy_instruments {
+public:
+    static constexpr double encoder = 0.25e-6;
+
+    explicit noisy_instruments(unsigned seed) : random_(seed) {}
+    quantity<si::length> reading(quantity<si::length> place, quantity<si::velocity>) {
+        const double exact = place.value() + 20e-9 * gauss_(random_);
+        return quantity<si::length>::from_value(encoder * std::round(exact / encoder));
+    }
+    quantity_of<signal::voltage> command(quantity_of<signal::voltage> u) {
+        return u + 1e-3 * gauss_(random_) * 1_V;
+    }
+
+private:
+    std::mt19937 random_;
+    std::normal_distribution<double> gauss_;
+};
+
 /// A simulated axis on Generalized Maxwell-slip friction in the thesis' cascade, without friction feedforward.
-/// It has an encoder that counts and jitters, a command that is noisy, and a DAC; the controller's plant is 2 %
-/// off.
-class rig {
+/// Its instruments are noisy, it has a DAC, and the controller's plant is 2 % off.
+template <template <class, class, class> class Axis = measured_axis> class rig_of {
 public:
     using motor = linear_motor<maxwell_slip<4>>;
-    using loop = milling_axis<milling_axis_boxes<>>;
     using log = analysis::axis_log<>;
 
-    rig(const axis& a, unsigned seed)
-        : loop_{.box = {controller(a), period}}, motor_(machine(a), period), random_(seed) {}
+    rig_of(const axis& a, unsigned seed) : axis_(controller(a), machine(a), noisy_instruments(seed)) {}
 
     /// Follows x(t), v(t), a(t) for `length` seconds from rest at x(0) = 0.
     template <class Motion> log follow(const Motion& motion, double length) {
@@ -37,16 +51,11 @@ public:
         const auto samples = std::size_t(length / period.value());
         for (std::size_t i = 0; i < samples; ++i) {
             const auto [x, v, a] = motion(double(i) * period.value());
-            const double exact = motor_.now().x.value() + 20e-9 * gauss_(random_), count = encoder;
-            const auto reading = quantity<si::length>::from_value(count * std::round(exact / count));
-            const auto u = loop_({x * 1_m, v * 1_mps, a * 1_mps2}, reading);
-            motor_(u + 1e-3 * gauss_(random_) * 1_V);
-            out.position.push_back(reading), out.command.push_back(u);
+            axis_.step({x * 1_m, v * 1_mps, a * 1_mps2});
+            out.position.push_back(axis_.reading()), out.command.push_back(axis_.command());
         }
         return out;
     }
-
-    static constexpr double encoder = 0.25e-6;
 
 private:
     static milling_axis_boxes<>::parameters controller(const axis& a) {
@@ -56,21 +65,20 @@ private:
         p.dac_step = 20_V / 65536.0;
         return p;
     }
-    static motor::parameters machine(const axis& a) {
-        motor::parameters p{.mass = a.kf / a.B,
-                            .force_constant = a.kf,
-                            .friction = gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0)),
-                            .delay = 0.4_ms,
-                            .substeps = 5};
+    static typename motor::parameters machine(const axis& a) {
+        typename motor::parameters p{.mass = a.kf / a.B,
+                                     .force_constant = a.kf,
+                                     .friction =
+                                         gms<signal::force>(a, gain_of<signal::force, signal::force>(1.0)),
+                                     .delay = 0.4_ms,
+                                     .substeps = 5};
         p.friction.curve.viscous += a.A_gms * p.mass; // A' beside sigma
         return p;
     }
 
-    loop loop_;
-    motor motor_;
-    std::mt19937 random_;
-    std::normal_distribution<double> gauss_;
+    Axis<milling_axis_boxes<>, motor, noisy_instruments> axis_;
 };
+using rig = rig_of<>;
 
 /// The speeds of [Jamaludin2008] section 3.3.2 [m/s].
 inline constexpr std::array map_speeds{1e-5, 4e-5, 8e-5, 2e-4,   4e-4,   5e-4, 1e-3,   2e-3, 4e-3,

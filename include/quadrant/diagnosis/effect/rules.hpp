@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../text/progress.hpp"
+
 #include <chrono>
 #include <cstddef>
-#include <functional>
-#include <string>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -51,7 +51,5 @@ inline rules fast_rules() {
     r.in_pairs = 2;
     return r;
 }
-
-using progress = std::function<void(const std::string&)>; ///< one short line of what is going on
 
 } // namespace quadrant::inline v0::diagnosis

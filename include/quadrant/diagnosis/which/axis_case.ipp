@@ -3,6 +3,16 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+namespace detail {
+
+/// What making the record ready is of a look at it: along a motion, and behind a loop, a first search is part
+/// of that.
+constexpr double share_of_record(held_by how) {
+    return how == held_by::readings ? 0.02 : how == held_by::motion ? 0.1 : 0.3;
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period, const exclusions& excluded,
                                              const rules& r, const progress& tell, held_by how,
@@ -24,6 +34,7 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
         second = for_machine(in_pieces(prepare(*holdout, period, resolution, record.scale), motions_of_second),
                              axis, how, nearest_ ? &*nearest_ : nullptr);
     count_unnamed = coarse() && excluded.contains("encoder_quantization");
+    models.begins(tell.part(detail::share_of_record(how), 1));
     follow(models.run());
     if (!tested_apart() || !record.replayed() || best().effects.empty()) return;
     const auto worth_of = [&](const candidate& m) { return worth(m); };
@@ -37,14 +48,18 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     const axis_record ready =
         in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);
     axis_record out = for_machine(ready, axis, how);
+    const auto first = [&] {
+        search s(out, axis, excluded, limits, tell);
+        s.begins(tell.part(0, detail::share_of_record(how)), 1);
+        return s;
+    };
     if (how == held_by::motion && before) {
-        std::vector<plant_model> known{
-            search(out, axis, excluded, limits, tell).with(before->best().effects).fit.plant};
+        std::vector<plant_model> known{first().with(before->best().effects).fit.plant};
         for (const candidate& m : before->path) known.push_back(m.fit.plant);
         const auto left = before->left_along_motion(known);
         nearest_ = known[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
     } else if (how == held_by::loop) {
-        nearest_ = search(out, axis, excluded, limits, tell).nearest();
+        nearest_ = first().nearest();
     }
     return nearest_ ? for_machine(ready, axis, how, &*nearest_) : out;
 }

@@ -7,11 +7,13 @@
 #include "candidate.hpp"
 #include "chance.hpp"
 
+#include <atomic>
 #include <deque>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <set>
+#include <thread>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -56,6 +58,9 @@ public:
     bool cut() const { return cut_; }
     /// Suspects that the search did not come to before the time was up.
     const std::set<const effect*>& missed() const { return missed_; }
+    /// What is tried from here on is `part` of the work: at most so many rounds, each of which adds every
+    /// suspect to one model. None: nobody knows how many, and each is half of what is left.
+    void begins(const progress& part, std::optional<double> rounds = {}) const;
     candidate with(const candidate& from, const effect* added) const;
     /// `from` with each of these added, the most promising fitted to the end, `most` of those that were not met
     /// before.
@@ -215,6 +220,8 @@ private:
     static void begin_at(candidate& c, plant_model known);
     /// How many times the looks and finalists of a long record this one affords.
     std::size_t effort() const;
+    /// How many models a round fits to the end, at most, of those that a first look found.
+    std::size_t most_fitted() const { return rules_.finalists * effort(); }
     /// A model with the numbers of the machine file as they are described. Where calibration stops at the end
     /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there.
     static candidate as_described(candidate c);
@@ -276,6 +283,25 @@ private:
             use(which.subspan(first, std::min(size, which.size() - first)));
         });
     }
+    /// The same, with what it does of a round: `each` of its looks for every model.
+    template <class Use>
+    void in_groups(std::span<const std::size_t> which, std::size_t size, const Use& use, double each,
+                   const std::vector<candidate>& models) const {
+        const auto caller = std::this_thread::get_id();
+        const double before = looks_;
+        std::atomic<std::size_t> done = 0;
+        in_groups(which, size, [&](std::span<const std::size_t> some) {
+            use(some);
+            const std::size_t all = done += some.size();
+            if (std::this_thread::get_id() != caller) return;
+            looks_ = before + each * static_cast<double>(all);
+            says("trying " + names_of(some, models));
+        });
+        looks_ = before + each * static_cast<double>(which.size());
+    }
+    void says(const std::string& line) const;
+    /// What is added in each of these.
+    static std::string names_of(std::span<const std::size_t> some, const std::vector<candidate>& models);
     /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
@@ -290,7 +316,9 @@ private:
     const axis_description& axis_;
     exclusions excluded_;
     rules rules_;
-    progress tell_;
+    mutable progress tell_;
+    mutable double looks_ = 0, looks_of_a_round_ = 1; ///< done of this part of the work
+    mutable std::optional<double> rounds_{};          ///< of it, at most
     candidate given_;
     mutable candidate calibrated_; ///< a step of the search may show where its fit stopped short
     mutable std::deque<candidate> tried_;

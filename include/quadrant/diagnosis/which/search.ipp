@@ -35,6 +35,36 @@ QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_des
     finish(record_, calibrated_);
 }
 
+namespace detail {
+
+/// CPU of fitting a model to the end and testing it, in first looks (measured on the practice logs).
+inline constexpr double looks_of_a_fit = 3;
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL void search::begins(const progress& part, std::optional<double> rounds) const {
+    tell_ = part;
+    looks_ = 0;
+    looks_of_a_round_ =
+        static_cast<double>(suspects().size()) + detail::looks_of_a_fit * static_cast<double>(most_fitted());
+    rounds_ = rounds;
+}
+
+QUADRANT_DIAGNOSIS_DECL void search::says(const std::string& line) const {
+    const double done = looks_ / looks_of_a_round_;
+    tell_(axis_.name + ": " + line, rounds_ ? done / std::max(*rounds_, done) : 1 - std::exp2(-done));
+}
+
+QUADRANT_DIAGNOSIS_DECL std::string search::names_of(std::span<const std::size_t> some,
+                                                     const std::vector<candidate>& models) {
+    std::string out;
+    for (const std::size_t i : some) {
+        const effect& added = *models[i].effects.back();
+        (out += out.empty() ? "" : ", ") += added.label.empty() ? added.name : added.label;
+    }
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL std::vector<double> search::residual(const candidate& c) const {
     std::vector<double> out;
     residuals({c.fit.plant}, [&](std::size_t, std::vector<double> r) { out = std::move(r); });
@@ -101,15 +131,15 @@ search::with_each(const candidate& from, const std::vector<const effect*>& among
         out.push_back(known ? *known : joined(from, e));
     }
     sketch_each(from, rank, out, when_late::leave_out);
-    finish_best(rank, rules_.finalists * effort(), out, when_late::leave_out);
-    finish_near(rank, rules_.finalists * effort(), from, out);
+    finish_best(rank, most_fitted(), out, when_late::leave_out);
+    finish_near(rank, most_fitted(), from, out);
     mend_from_parts(out, rank, from);
     for (std::size_t i : rank) {
         if (out[i].missed) {
             missed_.insert(out[i].effects.back());
             continue;
         }
-        tell_(describe(out[i]));
+        says(describe(out[i]));
         tried_.push_back(out[i]);
     }
     std::erase_if(out, [](const candidate& c) { return !std::isfinite(c.total); });
@@ -133,7 +163,7 @@ search::with_these(const candidate& from, const std::vector<const effect*>& adde
     finish_best(fresh, most, out, when_late::go_on);
     mend_from_parts(out, fresh, from);
     for (std::size_t i : fresh) {
-        tell_(describe(out[i]));
+        says(describe(out[i]));
         tried_.push_back(out[i]);
     }
     return out;
@@ -756,7 +786,7 @@ QUADRANT_DIAGNOSIS_DECL void search::sketch_each(const candidate& from, const st
         left.push_back(residual_behind_drive(origin));
         innovation.push_back(std::move(here.innovation.rows));
     }
-    in_groups(which, 4, [&](std::span<const std::size_t> some) {
+    const auto sketch = [&](std::span<const std::size_t> some) {
         const bool late = how == when_late::leave_out && over();
         for (const std::size_t i : some) {
             models[i].total = -std::numeric_limits<double>::infinity();
@@ -782,7 +812,8 @@ QUADRANT_DIAGNOSIS_DECL void search::sketch_each(const candidate& from, const st
             fit_result& kept = models[some[j / origins.size()]].fit;
             if (j % origins.size() == 0 || best.objective < kept.objective) kept = std::move(best);
         }
-    });
+    };
+    in_groups(which, 4, sketch, 1, models);
 }
 
 QUADRANT_DIAGNOSIS_DECL void search::finish_best(std::vector<std::size_t>& which, std::size_t most,
@@ -790,14 +821,15 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_best(std::vector<std::size_t>& which
     std::stable_sort(which.begin(), which.end(),
                      [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
     const std::size_t fitted = std::min(most, which.size());
-    in_groups(std::span(which).first(fitted), 4, [&](std::span<const std::size_t> some) {
+    const auto fit = [&](std::span<const std::size_t> some) {
         std::vector<candidate*> pair;
         for (const std::size_t i : some) pair.push_back(&models[i]);
         if (how == when_late::leave_out && over())
             for (candidate* c : pair) judge(record_, *c);
         else
             finish(record_, pair);
-    });
+    };
+    in_groups(std::span(which).first(fitted), 4, fit, detail::looks_of_a_fit, models);
     in_groups(std::span(which).subspan(fitted), 1,
               [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
 }
@@ -811,12 +843,13 @@ QUADRANT_DIAGNOSIS_DECL void search::finish_near(const std::vector<std::size_t>&
     std::vector<std::size_t> near;
     for (std::size_t j = std::min(fitted, which.size()); j < which.size(); ++j)
         if (models[which[j]].total - from.total > rules_.near_best * most) near.push_back(which[j]);
-    in_groups(near, 4, [&](std::span<const std::size_t> some) {
+    const auto fit = [&](std::span<const std::size_t> some) {
         if (over()) return;
         std::vector<candidate*> each;
         for (const std::size_t i : some) each.push_back(&models[i]);
         finish(record_, each);
-    });
+    };
+    in_groups(near, 4, fit, detail::looks_of_a_fit, models);
 }
 
 QUADRANT_DIAGNOSIS_DECL void search::mend_from_parts(std::vector<candidate>& models,
@@ -855,8 +888,8 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, co
 }
 
 QUADRANT_DIAGNOSIS_DECL std::string search::describe(const candidate& c) const {
-    std::string out = axis_.name + ":";
-    for (const effect* e : c.effects) (out += ' ') += e->name;
+    std::string out;
+    for (const effect* e : c.effects) (out += out.empty() ? "" : " ") += e->name;
     if (!std::isfinite(c.total)) return out += " cannot be told from this record";
     return (out += ' ') += std::to_string(static_cast<long>(c.total - calibrated_.total));
 }
