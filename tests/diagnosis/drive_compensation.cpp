@@ -25,10 +25,11 @@ cause named(const char* effect, const char* key, double x, double half) {
     c.parameters = {{key, {{x, x - half, x + half}}}};
     return c;
 }
-diagnosis_result found(std::vector<cause> causes) {
+diagnosis_result found(std::vector<cause> causes, axis_kind kind = axis_kind::linear) {
     diagnosis_result d;
     d.verdict = verdict::explained;
     d.axes.emplace_back().name = "q";
+    d.axes[0].kind = kind;
     d.causes = std::move(causes);
     return d;
 }
@@ -47,8 +48,7 @@ const std::string of_servo = R"({"schema": "quadrant.machine/1", "sample_period_
 
 axis_log recorded(takes kind, const drive_simulator::machine& m) {
     const double period = kind == takes::servo ? 0.002 : 0.001;
-    std::istringstream text(
-        drive_simulator::log(kind, m, period, 1, 1, kind == takes::servo ? "rad" : "m"));
+    std::istringstream text(drive_simulator::log(kind, m, period, 1, 1, kind == takes::servo ? "rad" : "m"));
     return read_log(text, "log.csv").axes[0];
 }
 double setting(const compensation& c, const std::string& key) {
@@ -64,7 +64,10 @@ std::vector<double> sum(const std::vector<double>& r, double period, double velo
         const auto ago = [&](std::size_t back) { return r[k > back ? k - back : 0]; };
         const double v = (ago(0) - ago(1)) / period;
         const double a = k > 1 ? (ago(0) - 2 * ago(1) + ago(2)) / (period * period) : 0;
-        out.push_back(velocity * v + acceleration * a + (v > 0 ? coulomb : v < 0 ? -coulomb : 0) +
+        out.push_back(velocity * v + acceleration * a +
+                      (v > 0   ? coulomb
+                       : v < 0 ? -coulomb
+                               : 0) +
                       gravity * std::sin(r[k]));
     }
     return out;
@@ -138,20 +141,17 @@ TEST_CASE("compensate: a position drive is told shifted set-points, and a force 
     }
 }
 TEST_CASE("compensate: a hobby servo is told set-points with a bias against its weight, as forecast to 15 %") {
-    drive_simulator::machine m{.mass = 0.004,
-                               .coulomb = 0.03,
-                               .viscous = 0.01,
-                               .duty_gain = 20,
-                               .delay = 2e-3,
-                               .count = 1e-4};
+    drive_simulator::machine m{
+        .mass = 0.004, .coulomb = 0.03, .viscous = 0.01, .duty_gain = 20, .delay = 2e-3, .count = 1e-4};
     m.gravity = 0.4;
     const auto before = recorded(takes::servo, m);
     machine_log log;
     log.file = "log.csv";
     log.samples = before.position.size();
     log.axes = {before};
-    const auto r = compensate(read_machine(of_servo, "machine.json"),
-                              found({named("gravity", "gravity_torque_Nm", 0.39, 0.02)}), log);
+    const auto r =
+        compensate(read_machine(of_servo, "machine.json"),
+                   found({named("gravity", "gravity_torque_Nm", 0.39, 0.02)}, axis_kind::rotary), log);
     const auto& a = r.axes.at(0);
     REQUIRE(a.compensations.size() == 1);
     CHECK(a.others.empty());
@@ -160,6 +160,55 @@ TEST_CASE("compensate: a hobby servo is told set-points with a bias against its 
     const auto json = to_json(r)["axes"]["q"];
     CHECK(json["measured"].contains("rms_rad"));
     CHECK(json["compensations"][0]["after"].contains("peak_rad"));
+}
+TEST_CASE("compensate: LinuxCNC's pid gets a dead band of a count and the noise, which leaves a standing axis "
+          "alone; what it costs is forecast to 15 %") {
+    drive_simulator::machine m{
+        .coulomb = 30, .viscous = 60, .gain = 100 * bandwidth, .integral = 1263309.4, .delay = 1e-3};
+    m.stock_pid = true;
+    auto file = nlohmann::json::parse(linear(R"("kind": "velocity", "velocity_per_V": 0.02,
+                                                "velocity_integral_N_per_m": 1263309.4)"));
+    file["axes"]["q"]["controller"] = {{"kind", "linuxcnc_pid"},
+                                       {"Pgain", 1},
+                                       {"units_per_m", 1000},
+                                       {"maxoutput", 10},
+                                       {"error-previous-target", false}};
+    const auto before = recorded(takes::volts, m);
+    machine_log log;
+    log.file = "log.csv";
+    log.samples = before.position.size();
+    log.axes = {before};
+    const auto r = compensate(read_machine(file.dump(), "machine.json"),
+                              found({named("coulomb_friction", "coulomb_N", 29, 2)}), log);
+    const auto& ways = r.axes.at(0).compensations;
+    REQUIRE(ways.size() == 3);
+    CHECK(ways[1].by_keys() == false); // the force that is added
+    const auto key = [](const compensation& c, const std::string& name) {
+        for (const key_value& k : c.keys)
+            if (k.key == name) return k.values[0];
+        return 0.0;
+    };
+    CHECK(key(ways[2], "deadband") >= 1e-3); // a count of 1 um in millimetres
+    CHECK(key(ways[2], "deadband") < 2e-3);
+    CHECK(key(ways[2], "FF1") == key(ways[0], "FF1"));
+    CHECK(controller_patch(r)["axes"]["q"]["controller"]["deadband"] == key(ways[2], "deadband"));
+    m.ff1 = 1000 * key(ways[2], "FF1");
+    m.ff2 = 1000 * key(ways[2], "FF2");
+    const auto chatter = [](const axis_log& l) { // of the command, in the last tenth of each rest
+        double most = 0;
+        for (std::size_t k = 1; k < l.command.size(); ++k)
+            if (k % 3000 > 2900) most = std::max(most, std::abs(l.command[k] - l.command[k - 1]));
+        return most;
+    };
+    const auto without = recorded(takes::volts, m);
+    m.deadband = key(ways[2], "deadband") / 1000;
+    const auto with = recorded(takes::volts, m);
+    CHECK(chatter(without) > 0);
+    CHECK(chatter(with) == 0);
+    const figures now = following(with);
+    CHECK(now.rms < 0.5 * following(before).rms);
+    CHECK(ways[2].after.rms_m.value == doctest::Approx(now.rms).epsilon(0.15).scale(0));
+    CHECK(ways[2].after.peak_m.value == doctest::Approx(now.peak).epsilon(0.15).scale(0));
 }
 TEST_CASE("compensate: what no input of a drive pays is said, and claims nothing") {
     const drive_simulator::machine m{

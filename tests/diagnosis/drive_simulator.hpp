@@ -25,7 +25,8 @@ struct machine {
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
     double ff1 = 0, ff2 = 0;
-    double gravity = 0; ///< torque -gravity sin x
+    double deadband = 0; ///< of the position error of that component [m]
+    double gravity = 0;  ///< torque -gravity sin x
     /// Of each row: what is added to the set-point, and to the force of the velocity loop; empty: nothing.
     std::vector<double> shift{}, added{};
 };
@@ -64,7 +65,9 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
         const auto ago = [&](std::size_t back) { return reference[k > back ? k - back : 0]; };
-        const double sum = m.stock_pid ? 1000 * (reference[k] - read) + m.ff1 * (ago(0) - ago(1)) / period +
+        const double behind = reference[k] - read,
+                     kept = std::copysign(std::max(0.0, std::abs(behind) - m.deadband), behind);
+        const double sum = m.stock_pid ? 1000 * kept + m.ff1 * (ago(0) - ago(1)) / period +
                                              m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period)
                                        : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
         const double volts = std::clamp(sum, -10.0, 10.0);

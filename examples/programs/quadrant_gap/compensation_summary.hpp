@@ -44,11 +44,11 @@ inline std::string sentence(const compensation& c, const compensated_axis& a) {
         text +=
             fmt::format("takes the error from {} to {} rms, {} off; with every fitted value at an end of its "
                         "interval at least {} off.",
-                        quantity(a.measured.rms_m.value, m), ranged(c.after.rms_m, m),
-                        percent(c.gain.value), percent(c.gain_at_ends));
+                        quantity(a.measured.rms_m.value, m), ranged(c.after.rms_m, m), percent(c.gain.value),
+                        percent(c.gain_at_ends));
     else if (a.forecast)
-        text += fmt::format("no gain is claimed: {} rms now, {} with it.",
-                            quantity(a.measured.rms_m.value, m), ranged(c.after.rms_m, m));
+        text += fmt::format("no gain is claimed: {} rms now, {} with it.", quantity(a.measured.rms_m.value, m),
+                            ranged(c.after.rms_m, m));
     else
         text += "nothing is forecast without a controller.";
     return text;
@@ -92,7 +92,8 @@ inline std::string summary(const compensation_result& r, bool verbose) {
             if (c.of_drive()) text += wrapped("to the drive: " + settings(c.settings), 4);
             if (c.block.empty() && c.keys.empty() && !c.of_drive()) // in a control that takes positions
                 text += wrapped("in the control: " + settings(short_of(c.settings)), 4);
-            if (!c.settings.empty() && verbose && !c.of_drive()) text += wrapped(c.block + ": " + settings(c.settings), 4);
+            if (!c.settings.empty() && verbose && !c.of_drive())
+                text += wrapped(c.block + ": " + settings(c.settings), 4);
         }
         for (const advice& o : a.others)
             text += wrapped(fmt::format("{}: no feedforward. {}.", name_of_effect(o.effect), o.text), 2);

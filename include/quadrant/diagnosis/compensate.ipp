@@ -83,7 +83,9 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         if (axis.kind == axis_kind::rotary && !axis.drive.closes())
             throw bad_input(
                 machine.file,
-                fmt::format("axes.{}: is rotary; feedforwards behind no drive's loops are built for linear axes only", axis.name));
+                fmt::format(
+                    "axes.{}: is rotary; feedforwards behind no drive's loops are built for linear axes only",
+                    axis.name));
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
     compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
@@ -136,8 +138,8 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 detail::for_position_drive(forecast.plant(), axis, machine.sample_period_s, causes);
         } else if (axis.drive.closes()) {
             if (axis.controller)
-                a.compensations = detail::for_velocity_drive(
-                    forecast.plant(), axis, machine.sample_period_s, coupled.drive->in_volts, causes);
+                a.compensations = detail::for_velocity_drive(forecast.plant(), axis, machine.sample_period_s,
+                                                             coupled.drive->in_volts, causes);
         } else {
             detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s,
                                           std::move(causes));
@@ -148,9 +150,10 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                      fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
         }
         if (axis.controller)
-            if (auto quiet = detail::with_dead_band(controller, a.compensations,
-                                                    detail::least_dead_band(forecast.resolution(), forecast.noise(),
-                                                                            forecast.plant().backlash)))
+            if (auto quiet =
+                    detail::with_dead_band(controller, a.compensations,
+                                           detail::least_dead_band(forecast.resolution(), forecast.noise(),
+                                                                   forecast.plant().backlash)))
                 a.compensations.push_back(std::move(*quiet));
         if (!logged->has_reference) {
             out.notes.push_back(fmt::format("axis {}: the log has no reference: nothing is forecast", a.name));

@@ -261,7 +261,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, chain::two_encode
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
-        // A drive that is judged by its path has no residual force that a motion could show.
+        // Where the path alone is compared, there is no residual force that a motion could show.
         const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
         if (by_force && !c.models.over() && behind > verdict::within_tolerance)
             propose(out, c, causes, rivals);

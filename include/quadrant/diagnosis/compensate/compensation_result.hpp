@@ -41,7 +41,7 @@ struct advice {
 /// One axis: how it follows now, and what each compensation would do.
 struct compensated_axis {
     std::string name, command_unit;
-    axis_kind kind = axis_kind::linear; ///< of a rotary axis every m below is rad
+    axis_kind kind = axis_kind::linear;      ///< of a rotary axis every m below is rad
     bool forecast = false;                   ///< a controller is described, so that there is a loop to simulate
     bool positions_only = false;             ///< forecast on the readings of two positions, without a loop
     tracking measured;                       ///< on the log as it is

@@ -12,9 +12,10 @@ namespace quadrant::inline v0::diagnosis {
 
 /// What is added to one input of a drive that closes loops of its own, from the reference r alone:
 ///   velocity r' + acceleration r'' + force S(r, r')
-/// S is the force that the axis needs beside mass and viscous friction [N]: dry friction in the direction of r',
-/// and what its weight, a spring, a constant force and cogging pull at r. r' and r'' are differences of the last
-/// two and three rows. At rest friction is left out: what still pushes there makes a stopped axis creep on.
+/// S is the force that the axis needs beside mass and viscous friction [N]: dry friction in the direction of
+/// r', and what its weight, a spring, a constant force and cogging pull at r. r' and r'' are differences of the
+/// last two and three rows. At rest friction is left out: what still pushes there makes a stopped axis creep
+/// on.
 struct reference_sum {
     double velocity = 0, acceleration = 0, force = 0;
     double overcome = 0; ///< of the dry friction the drive pays this much by itself [N]
@@ -92,16 +93,16 @@ struct drive_addition {
 
 namespace detail {
 
-/// How late a drive uses what it is given: its delay, and what holding a set-point or drawing a line through the
-/// last ones takes [s].
+/// How late a drive uses what it is given: its delay, and what holding a set-point or drawing a line through
+/// the last ones takes [s].
 inline double lateness(const drive_model& d, double period) {
     const double every = d.set_point_period > 0 ? d.set_point_period : period;
     const double line = d.between == interpolation::hold ? 0.5 : d.between == interpolation::linear ? 1 : 2;
     return d.delay + line * every;
 }
 
-/// velocity r' + acceleration r'' asked for `late` earlier, to the second derivative, and the differences of the
-/// reference, which are half a row and a row late.
+/// velocity r' + acceleration r'' asked for `late` earlier, to the second derivative, and the differences of
+/// the reference, which are half a row and a row late.
 inline void ahead(reference_sum& s, double late, double period) {
     const double velocity = s.velocity, acceleration = s.acceleration;
     s.velocity = velocity + late;
@@ -111,7 +112,8 @@ inline void ahead(reference_sum& s, double late, double period) {
 /// The loop of a drive that takes positions, read backwards: the set-points with which the axis moves as the
 /// reference r does. With F = M r'' + B r' + S:
 ///   P inside:   set-point = r + ((1 - feedforward) r' + F / gain) / position_gain
-///   PI inside:  set-point = r + ((1 - feedforward) r' + (B / integral) r'') / position_gain, the integral holds S
+///   PI inside:  set-point = r + ((1 - feedforward) r' + (B / integral) r'') / position_gain;
+///               the integral holds S
 ///   servo:      set-point = r + F / (duty_gain supply force_constant)
 /// and all of it so much earlier as the drive uses it late. `pushed`: the drive is told the force beside it.
 inline reference_sum shifted_set_point(const plant_model& p, double period, bool pushed) {
@@ -144,9 +146,8 @@ inline reference_sum shifted_set_point(const plant_model& p, double period, bool
 /// The force that the axis needs, told to the drive; it is held over a row and acts with the drive's delay.
 inline reference_sum pushed_force(const plant_model& p, double period) {
     const double viscous = p.friction.viscous_slope;
-    return {.velocity = viscous,
-            .acceleration = p.moving_mass() + viscous * (p.drive.delay + period),
-            .force = 1};
+    return {
+        .velocity = viscous, .acceleration = p.moving_mass() + viscous * (p.drive.delay + period), .force = 1};
 }
 
 } // namespace detail

@@ -50,8 +50,8 @@ QUADRANT_DIAGNOSIS_DECL void tracking_forecast::run(compensated_axis& out,
         plant.drive.start_force = plant_.drive.start_force;
         const auto bare = loop(axis, plant, {}, {});
         for (std::size_t c = 0; c < n; ++c)
-            after[c][i] = changed(bare, loop(axis, plant, out.compensations[c].keys, added[c],
-                                                out.compensations[c].drive));
+            after[c][i] = changed(
+                bare, loop(axis, plant, out.compensations[c].keys, added[c], out.compensations[c].drive));
     });
     for (std::size_t c = 0; c < n; ++c) {
         const figures as_found = changed(

@@ -111,7 +111,8 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
     if (axis.controller) axis.controller = c.mended();
     const proving_ground ground(axis, period, c.resolution, c.noise, c.record.scale, proven_limits(c.log));
     const separation best = best_motion(ground, motions, names, c.limits.threads);
-    const auto inside = worded("%zu motions inside the travel, speed, acceleration and command of this log", best.tried);
+    const auto inside =
+        worded("%zu motions inside the travel, speed, acceleration and command of this log", best.tried);
     const auto take = [&](std::size_t motion) {
         out.motion = motions[motion].words;
         out.period_s = period;

@@ -54,7 +54,8 @@ public:
           sigma_(std::sqrt(std::max(0.0, noise * noise - resolution * resolution / 12))) {
         axis_.encoder.resolution_m = resolution;
         if (!axis_.controller && !axis_.drive.takes_position())
-            axis_.controller = axis_.drive.closes() ? stand_in(axis.drive, axis.plant.mass_kg) : stand_in(axis.plant);
+            axis_.controller =
+                axis_.drive.closes() ? stand_in(axis.drive, axis.plant.mass_kg) : stand_in(axis.plant);
     }
 
     /// A record of the motion as a machine with this plant would leave it, one step a period as in the fits;
@@ -121,9 +122,9 @@ private:
         log.kind = axis_.kind;
         log.reference = m.reference;
         log.position.assign(n, start);
-        log.command_unit = !asks                         ? std::string()
+        log.command_unit = !asks                        ? std::string()
                            : axis_.drive.velocity_per_V ? std::string("V")
-                                                         : key_of("m_per_s", axis_.kind);
+                                                        : key_of("m_per_s", axis_.kind);
         if (asks) log.command.assign(n, 0.0);
         std::vector<double> asked(n);
         log.drive = detail::with_drive(axis_, log, period_).drive;
@@ -133,8 +134,8 @@ private:
         if (asks) log.command = std::move(asked);
         return detail::with_drive(axis_, log, period_);
     }
-    /// P on position for a velocity drive whose controller is not described, an eighth as fast as its loop, with
-    /// the whole velocity fed forward.
+    /// P on position for a velocity drive whose controller is not described, an eighth as fast as its loop,
+    /// with the whole velocity fed forward.
     static controller_description stand_in(const drive_description& d, double mass) {
         const double per_unit = d.velocity_per_V.value_or(1);
         controller_description c;
