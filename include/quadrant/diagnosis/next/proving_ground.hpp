@@ -105,10 +105,10 @@ private:
     static constexpr int first_look = 6; ///< steps of a fit
 
     bool follows(const closed_loop_run& run, const planned_motion& m) const {
-        const auto [low, high] = std::minmax_element(m.reference.begin(), m.reference.end());
-        const double far = std::max(*high - *low, 1000 * resolution_);
+        const auto ends = std::minmax_element(m.reference.begin(), m.reference.end());
+        const double low = *ends.first, high = *ends.second, far = std::max(high - low, 1000 * resolution_);
         return std::all_of(run.position.begin(), run.position.end(),
-                           [&](double y) { return y > *low - far && y < *high + far; }) &&
+                           [&](double y) { return y > low - far && y < high + far; }) &&
                limits_.hold(run, 3 * sigma_ + resolution_);
     }
     /// The same where a drive closes its loops on the plant: what it was asked for, and the motion.
