@@ -2,6 +2,11 @@
 #pragma once
 #include "compensation.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// The error that a controller has to ignore so that a standing axis is left alone: the reading goes to and fro

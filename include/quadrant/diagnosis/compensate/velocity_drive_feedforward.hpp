@@ -2,6 +2,13 @@
 #pragma once
 #include "compensation.hpp"
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a velocity drive has to be asked for, beside the controller's feedback, so that its motor moves as the
