@@ -81,11 +81,9 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                                               log.samples, seconds, shortest_s));
     for (const axis_description& axis : machine.axes)
         if (axis.kind == axis_kind::rotary && !axis.drive.closes())
-            throw bad_input(
-                machine.file,
-                fmt::format(
-                    "axes.{}: is rotary; feedforwards behind no drive's loops are built for linear axes only",
-                    axis.name));
+            throw bad_input(machine.file, fmt::format("axes.{}: is rotary; feedforwards are built for linear "
+                                                      "axes only, and for drives that close loops of their own",
+                                                      axis.name));
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
     compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
