@@ -9,9 +9,9 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// The error that a controller has to ignore so that a standing axis is left alone: the reading goes to and fro
-/// between two counts and by its noise (three standard deviations), and where the encoder reads behind a play,
-/// an integral hunts through half of it. [m]
+/// The error that a controller has to ignore so as not to answer the reading of an axis that stands where it
+/// was asked to: the reading goes to and fro between two counts and by its noise (three standard deviations),
+/// and where the encoder reads behind a play, an integral hunts through half of it. [m]
 inline double least_dead_band(double count, double noise, double play) {
     return std::max({count, count / 2 + 3 * noise, play / 2});
 }
