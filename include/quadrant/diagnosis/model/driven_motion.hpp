@@ -147,6 +147,9 @@ struct driven_motion {
     /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing
     /// was.
     std::vector<double> measured;
+    /// Force that the drive is told to add to what its velocity loop gives, of each row [N]; empty: none. Only
+    /// a forecast has it.
+    std::vector<double> added{};
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
     /// Rows at which another log begins, and with which velocity [m/s]: the machine stands there anew.
