@@ -107,7 +107,7 @@ TEST_CASE("diagnose: another controller, by replay, with its key") {
     abstains(diagnosed(excluding, real));
 }
 
-TEST_CASE("diagnose: a command measured behind the amplifier is not held against the controller") {
+TEST_CASE("diagnose: a command measured behind the amplifier is no mismatch of the controller") {
     machine real;
     auto file = described(real);
     file.axes[0].actuator.command_is = quadrant::diagnosis::command_origin::measured;

@@ -169,7 +169,7 @@ constexpr own_law of_the_list = [] {
 
 } // namespace
 
-TEST_CASE("own effect: it is named with its number, is written and read, and the mended machine predicts "
+TEST_CASE("own effect: it is named with its number, is written and read, and the corrected machine predicts "
           "another log" *
           doctest::test_suite("all")) {
     workshop::machine real;
