@@ -163,7 +163,7 @@ callgrind() { # the typed axis loop needs no more instructions than the hand-wri
     done
 }
 tidy() { # clang-tidy over every header
-    build_preset tidy quadrant_headers && count 1 0 0
+    build_preset tidy quadrant_headers quadrant_tidy && count 1 0 0
 }
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
