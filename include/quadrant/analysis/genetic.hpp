@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one search: its operators, its state and how the state is kept.
 #pragma once
 #include "../base/error.hpp"
 

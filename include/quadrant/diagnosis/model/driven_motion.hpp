@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class for each way in which a drive takes its set-points, row by row.
 #pragma once
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
