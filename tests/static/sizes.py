@@ -36,7 +36,6 @@ long_functions = {
     "include/quadrant/analysis/genetic.hpp",
     "examples/programs/quadrant_gap/fleet.cpp",
     "examples/programs/quadrant_gap/trial.cpp",
-    "examples/programs/quadrant_gap/trial/judge.hpp",
     "examples/programs/quadrant_gap/trial/loop.hpp",
     "examples/programs/quadrant_reproduce/experiment/circle.hpp",
     "examples/programs/quadrant_reproduce/experiment/harmonic_observer.hpp",
