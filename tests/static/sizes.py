@@ -34,7 +34,6 @@ long_files = {
 }
 long_functions = {
     "include/quadrant/analysis/genetic.hpp",
-    "examples/programs/quadrant_gap/fleet.cpp",
     "examples/programs/quadrant_gap/trial.cpp",
     "examples/programs/quadrant_gap/trial/loop.hpp",
     "examples/programs/quadrant_reproduce/experiment/circle.hpp",
