@@ -165,7 +165,7 @@ TEST_CASE("stream_limiter: differences of the output exceed no limit, always") {
     CHECK(over < 1e-3); // rounding of four positions of a metre beside 2e-9 m, the smallest jerk's
 }
 TEST_CASE(
-    "dahl, lugre, maxwell_slip: solved exactly for a velocity that stands for the step: one step is any two") {
+    "dahl, lugre, maxwell_slip: solved exactly for a velocity constant over the step: one step is any two") {
     dice roll;
     int tried = 0;
     double of_dahl = 0, of_lugre = 0, of_springs = 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the settings of LinuxCNC, of a drive, and of a compensation table, one after the other.
 #pragma once
 #include "report/html.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class for each way in which a drive takes its set-points, row by row.
 #pragma once
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
@@ -225,8 +226,9 @@ struct driven_motion {
         drive_model best = d;
         double least = drive_model::none;
         for (int i = 0; i < 49; ++i) {
-            d.reading_age = (i / 7 - 3) * period / 4;
-            d.tap_lateness = (i % 7 - 3) * period / 4;
+            const int age = i / 7 - 3, lateness = i % 7 - 3;
+            d.reading_age = age * period / 4;
+            d.tap_lateness = lateness * period / 4;
             double sum = 0;
             for (double e : run(d).beside) sum += e * e;
             if (sum < least) best = d;
