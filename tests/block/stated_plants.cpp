@@ -34,8 +34,8 @@ auto speed_of(double w) { return quantity_of<signal::angular_velocity>::from_val
 auto amps_of(double i) { return quantity_of<signal::current>::from_value(i); }
 auto stiffness_of(double k) { return gain_rate_of<signal::force, signal::velocity>::from_value(k); }
 
-/// By how much M (v' - v)/h + force(v') = drive is missed, as a share of what stands in it; 0 where the law jumps
-/// across it at v'.
+/// By how much M (v' - v)/h + force(v') = drive is missed, as a share of what stands in it; 0 where the law
+/// jumps across it at v'.
 template <class Law> double missed(const Law& law, dice& roll, double level) {
     const double mass = roll.decades(0.1, 1000), h = roll.decades(1e-6, 1e-3), v = roll(-1, 1) * 1e-2,
                  drive = roll(-3, 3) * level, inertia = mass / h;

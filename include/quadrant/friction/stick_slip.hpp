@@ -108,10 +108,10 @@ fastest_sliding(Friction& friction, const Real slope, const Real size, const Rea
 }
 
 /// The fastest v' >= 0 with slope v' + slip(v') = size, where the level may rise: 0 when there is none. From
-/// above, as stick_slip does: the falling part is convex, so that its tangent at a speed that is known to be too
-/// fast leaves too much for the rest, whose speed is again too fast, and nearer. The rest is a concave equation:
-/// Newton's method from below. The last pass is Newton's for the whole, once the curvature says that it is
-/// exact.
+/// above, as stick_slip does: the falling part is convex, so that its tangent at a speed that is known to be
+/// too fast leaves too much for the rest, whose speed is again too fast, and nearer. The rest is a concave
+/// equation: Newton's method from below. The last pass is Newton's for the whole, once the curvature says that
+/// it is exact.
 template <class Real, class Friction>
 quantity_of<signal::velocity, Real>
 fastest_in_direction(const Friction& friction, const gain_of<signal::force, signal::velocity, Real>& slope,
