@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: callgrind.sh [BOUND]     instructions per servo period of the typed loops beside the hand-written ones
+# usage: [COMPILERS=g++] callgrind.sh [BOUND]     instructions per servo period of the typed loops beside the hand-written ones
 # Builds axis_loop_count and xy_loop_count with every compiler that is there, counts instructions with valgrind for two
 # numbers of samples (their difference is free of the start-up), prints tables: one axis, both axes with the memory's
 # FIR filters, both without; one axis and both axes parked for 32 000 periods. Then both axes for x86-64-v3 (products and
@@ -30,7 +30,7 @@ per_sample() { # PROGRAM WHICH [MOTION]
 worst=0
 table() { # TARGET THIRD SUFFIX [MOTION]
     printf '%-20s %-10s %10s %14s %24s %8s\n' "${1%_count}$3${4:+ $4}" compiler typed hand_written "$2" ratio
-    for compiler in g++ clang++; do
+    for compiler in ${COMPILERS:-g++ clang++}; do
         command -v $compiler >/dev/null || continue
         here=$build/count-$compiler
         cmake -S "$root" -B "$here" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE=Release \
@@ -58,7 +58,7 @@ mkdir -p "$v3"
 for row in ':' '_without_fir:' ':standing'; do
     fir=${row%:*} motion=${row#*:}
     printf '%-20s %-10s %10s %12s %14s %10s %18s\n' "xy_loop v3$fir${motion:+ $motion}" compiler typed typed_lanes hand_written expert "lanes / expert"
-    for compiler in g++ clang++; do
+    for compiler in ${COMPILERS:-g++ clang++}; do
         command -v $compiler >/dev/null || continue
         grep -q avx2 /proc/cpuinfo || continue
         program=$v3/xy_loop_count-$compiler

@@ -15,7 +15,7 @@ count() { # PROGRAM WHICH: instructions a period; a second has 2000
     done | awk 'NR == 1 { few = $1 } NR == 2 { printf "%.1f", ($1 - few) / 2000 }'
 }
 failed=0
-for compiler in g++ clang++; do
+for compiler in ${COMPILERS:-g++ clang++}; do
     command -v $compiler >/dev/null || continue
     $compiler -std=c++20 -O3 -DNDEBUG -ffp-contract=off "-I$root/include" "$root/benchmarks/sub_steps.cpp" -o "$dir/sub_steps"
     "$dir/sub_steps" errors >"$dir/errors"

@@ -148,16 +148,22 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
         fi
     done
 }
-callgrind() { # the typed axis loop needs no more instructions than the hand-written one
-    QUADRANT_BUILD="$build" sh benchmarks/callgrind.sh >"$logs/callgrind.txt" 2>&1
-    case $? in
-    0) cat "$logs/callgrind.txt"; count 1 0 0 ;;
-    77) left_out "$(cat "$logs/callgrind.txt")" ;;
-    *) broken "callgrind" "$logs/callgrind.txt" ;;
-    esac
+callgrind() { # the typed axis loop needs no more instructions than the hand-written one; the compilers side by side
+    for compiler in g++ clang++; do
+        { QUADRANT_BUILD="$build" COMPILERS=$compiler sh benchmarks/callgrind.sh; echo $? >"$logs/callgrind-$compiler.code"; } \
+            >"$logs/callgrind-$compiler.txt" 2>&1 &
+    done
+    wait
+    for compiler in g++ clang++; do
+        case $(cat "$logs/callgrind-$compiler.code") in
+        0) cat "$logs/callgrind-$compiler.txt"; count 1 0 0 ;;
+        77) left_out "$(cat "$logs/callgrind-$compiler.txt")" ;;
+        *) broken "callgrind of $compiler" "$logs/callgrind-$compiler.txt" ;;
+        esac
+    done
 }
 tidy() { # clang-tidy over every header
-    build_preset tidy quadrant_headers && count 1 0 0
+    build_preset tidy quadrant_headers quadrant_tidy && count 1 0 0
 }
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
@@ -170,6 +176,7 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
 [ "$tests" != all ] || sh examples/install.sh libmujoco-dev || echo "going on without: unit.mujoco will be skipped"
 [ "$tests" != all ] || sh examples/install.sh libopenmpi-dev openmpi-bin || echo "going on without: fleet.mpi will be skipped"
 [ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page.* will be skipped"
+[ "$tests" != all ] || sh examples/install.sh clang-22 || echo "going on without: symbols.nonblocking will be skipped"
 [ "$tests" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
 
 for phase; do

@@ -55,6 +55,8 @@ inline nlohmann::json drawn(const compensation_result& r, const nlohmann::ordere
             std::string text = quadrant_gap::sentence(c, a);
             if (!c.keys.empty() && c.by_keys())
                 text += " In the controller: " + quadrant_gap::settings(c.keys) + ".";
+            else if (c.of_drive())
+                text += " To the drive: " + quadrant_gap::settings(c.settings) + ".";
             else if (!c.settings.empty())
                 text += " Block " + c.block + ": " + quadrant_gap::settings(c.settings) + ".";
             says.push_back(text);

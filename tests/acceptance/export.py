@@ -57,7 +57,11 @@ truth = {"position-gain": kp, "velocity-gain": kv, "velocity-integral": ki, "not
          "plant-pole": b / m, "friction-coulomb": c / kf, "friction-static": s / kf, "friction-velocity": 0.003, "delay": 0.0005}
 expect(set(pins) == set(truth) and all(near(pins[k], v) for k, v in truth.items()), f"pins of quadrant_axis: {pins}")
 expect(all(near(float(entries[k.upper().replace("-", "_")]), v) for k, v in truth.items()), "the same in the INI file")
-expect(near(float(entries["BACKLASH"]), 0.03), "backlash in machine units")
+expect("BACKLASH" not in entries, "no BACKLASH where the encoder reads behind the play: it would move the load")
+expect("reads behind the play of 0.03 mm" in done.stdout, "and the play is told")
+play = export({"schema": "quadrant.machine/1", "sample_period_s": 0.01,
+               "axes": {"z": {"encoder": {"resolution_m": 1e-6}, "transmission": {"backlash_m": 4e-5}}}}, "--linuxcnc", folder / "z.txt")
+expect("BACKLASH = 0.04\n" in (folder / "z.txt").read_text(), f"the play before the scale in machine units: {play.stderr}")
 pid = {k: float(v) for k, v in re.findall(r"# setp pid\.0\.(\S+)\s+(\S+)", hal)}
 
 

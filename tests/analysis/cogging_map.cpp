@@ -226,7 +226,8 @@ TEST_CASE("identify_cogging: refuses one direction, half a pitch, gaps, and says
     CHECK(refusal({bad, back}).find("identify_cogging.unknown") ==
           0); // one speed: direction and velocity are one
 }
-TEST_CASE("identify_cogging: with velocities of two speeds the viscous slope is told from the Coulomb level") {
+TEST_CASE("identify_cogging: with velocities of two speeds the viscous slope and the Coulomb level are "
+          "distinguished") {
     std::vector<run> runs;
     for (const double v : {0.002, -0.002, 0.01, -0.01}) {
         runs.push_back(drawn(v > 0 ? 0 : 0.04, v > 0 ? 0.04 : 0, 800,

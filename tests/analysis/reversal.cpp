@@ -188,7 +188,7 @@ TEST_CASE("friction compensation: with a nominal plant 30 % off what is right is
         CHECK(judge(simulate(lugre_friction{}, {.scale = 1.5}), off).size == size::too_strong);
     }
 }
-TEST_CASE("friction compensation: cannot tell from too few reversals, from noise alone, from an error of "
+TEST_CASE("friction compensation: gives no answer from too few reversals, from noise alone, from an error of "
           "another kind") {
     auto log = simulate(lugre_friction{}, {}, 2);
     const auto few = judge(log);

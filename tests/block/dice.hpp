@@ -3,11 +3,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <string_view>
 
-/// Repeatable numbers for what is claimed over a million trials.
+/// Repeatable numbers for what is claimed over a million trials: so many with `all`, a tenth of it by default.
 namespace stated {
 
-constexpr int trials = 1'000'000;
+inline const int trials = [] {
+    const char* const tests = std::getenv("QUADRANT_TESTS");
+    return tests && std::string_view(tests) == "all" ? 1'000'000 : 100'000;
+}();
 
 class dice {
 public:

@@ -51,38 +51,42 @@ template <class Law> void shake(Law& law, dice& roll, double scale) { // to some
 
 TEST_CASE("limiter: what comes out is finite, always, and within its bounds, whatever comes in") {
     dice roll;
-    int bad = 0;
-    for (int made = 0; made < trials / 100; ++made) {
+    int bad = 0, tried = 0;
+    while (tried < trials) {
         double low = roll.often() ? roll(-1e3, 1e3) : -infinite,
                high = roll.often() ? roll(-1e3, 1e3) : infinite;
         if (low > high) std::swap(low, high);
         limiter<signal::force> block({force_of(low), force_of(high)}, 1_ms);
-        for (int k = 0; k < 100; ++k) {
+        for (int k = 0; k < 100; ++k, ++tried) {
             const double x = roll.often() ? roll(-2e3, 2e3) : roll.any_number();
             const double y = block(force_of(x)).value();
             bad += !std::isfinite(y) || (std::isfinite(x) && (y < low || y > high));
         }
     }
+    CHECK(tried >= trials);
     CHECK(bad == 0);
 }
 TEST_CASE("lowpass: the gain at standstill is one exactly") {
     dice roll;
+    int tried = 0;
     int off = 0;
-    for (int n = 0; n < trials; ++n) {
+    for (; tried < trials; ++tried) {
         lowpass<signal::force> block({frequency::from_value(roll.decades(1e-3, 499))}, 1_ms);
         const auto x = force_of(roll(-1, 1) * roll.decades(1e-200, 1e200));
         block.settle(x);
         off += block(x).value() != x.value() || block(x).value() != x.value();
     }
+    CHECK(tried >= trials);
     CHECK(off == 0);
 }
 TEST_CASE("line: exact at both ends; arc: exact at the start") {
     using path::point;
     dice roll;
+    int tried = 0;
     int off = 0;
     const auto place = [&] { return point{roll(-2, 2), roll(-2, 2), roll(-2, 2)}; };
     const auto same = [](point a, point b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-    for (int n = 0; n < trials; ++n) {
+    for (; tried < trials; ++tried) {
         const point from = place(), to = place();
         const path::line straight(from, to);
         off += !same(straight.position(0), from) || !same(straight.position(straight.length()), to) ||
@@ -91,30 +95,62 @@ TEST_CASE("line: exact at both ends; arc: exact at the start") {
         const path::arc bent(from, to, roll(0.1, 6), roll(-1, 1));
         off += !same(bent.position(0), from);
     }
+    CHECK(tried >= trials);
     CHECK(off == 0);
 }
 TEST_CASE("turning_phase: whole turns are exact") {
     dice roll;
+    int tried = 0;
     int off = 0;
-    for (int n = 0; n < trials; ++n) { // so many turns in 2^k samples
+    for (; tried < trials; ++tried) { // so many turns in 2^k samples
         const int k = int(roll(8, 20));
         const double turns = std::floor(roll(1, 200));
         const turning_phase phase(frequency::from_value(turns), duration::from_value(std::ldexp(1.0, -k)));
         off += (phase.increment() << k) != 0;
     }
+    CHECK(tried >= trials);
     CHECK(off == 0);
+}
+TEST_CASE(
+    "stream_limiter: in float they exceed none by more than what positions within range() are rounded by") {
+    dice roll;
+    double over = 0; // as a share of what three positions, or four, are rounded by at most
+    int tried = 0, faults = 0;
+    while (tried < trials) {
+        const double v = roll.decades(0.01, 2), a = roll.decades(0.1, 20), T = 1e-3, j = a / roll(2e-3, 60e-3);
+        trajectory::stream_limiter<128, float> block(
+            {quantity<si::velocity, float>::from_value(float(v)),
+             quantity<si::acceleration, float>::from_value(float(a)),
+             quantity<trajectory::jerk_unit, float>::from_value(float(j))},
+            1_ms);
+        const double reach = block.range().value();
+        double x = 0, y1 = 0, y2 = 0, y3 = 0;
+        for (int k = 0; k < 2000; ++k, ++tried) {
+            if (!roll.often() && !roll.often()) x = roll(-1, 1) * reach;
+            const double y = block(quantity_of<signal::position, float>::from_value(float(x))).value();
+            const double d1 = y - y1, d2 = y - 2 * y1 + y2, d3 = y - 3 * y1 + 3 * y2 - y3, step = a * T * T;
+            over =
+                std::max({over, (std::abs(d1) - v * T) / (0.02 * step), (std::abs(d2) - step) / (0.04 * step),
+                          (std::abs(d3) - j * T * T * T) / (0.08 * step)});
+            y3 = y2, y2 = y1, y1 = y;
+        }
+        faults += block.faulted();
+    }
+    CHECK(tried >= trials);
+    CHECK(over < 1);
+    CHECK(faults == 0);
 }
 TEST_CASE("stream_limiter: differences of the output exceed no limit, always") {
     dice roll;
     double over = 0;
-    constexpr int machines = 500;
-    for (int m = 0; m < machines; ++m) {
+    int tried = 0;
+    while (tried < trials) {
         const double v = roll.decades(0.01, 2), a = roll.decades(0.1, 20), T = 1e-3, j = a / roll(2e-3, 60e-3);
         trajectory::stream_limiter<128> block({velocity_of(v), quantity<si::acceleration>::from_value(a),
                                                quantity<trajectory::jerk_unit>::from_value(j)},
                                               1_ms);
         double x = 0, drift = 0, y1 = 0, y2 = 0, y3 = 0;
-        for (int k = 0; k < trials / machines; ++k) {
+        for (int k = 0; k < 2000; ++k, ++tried) {
             if (!roll.often() && !roll.often()) drift = roll(-3, 3) * v;
             x = std::clamp(!roll.often() && !roll.often() && !roll.often() ? roll(-1, 1) : x + drift * T, -1.0,
                            1.0);
@@ -125,13 +161,15 @@ TEST_CASE("stream_limiter: differences of the output exceed no limit, always") {
             y3 = y2, y2 = y1, y1 = y;
         }
     }
+    CHECK(tried >= trials);
     CHECK(over < 1e-3); // rounding of four positions of a metre beside 2e-9 m, the smallest jerk's
 }
 TEST_CASE(
-    "dahl, lugre, maxwell_slip: solved exactly for a velocity that stands for the step: one step is any two") {
+    "dahl, lugre, maxwell_slip: solved exactly for a velocity constant over the step: one step is any two") {
     dice roll;
+    int tried = 0;
     double of_dahl = 0, of_lugre = 0, of_springs = 0;
-    for (int n = 0; n < trials; ++n) {
+    for (; tried < trials; ++tried) {
         const double level = roll.decades(1, 300), k = level / roll.decades(1e-6, 1e-4);
         const double v = roll(-1, 1) * roll.decades(1e-5, 1e-2), h = roll.decades(1e-5, 1e-2),
                      share = roll(0.05, 0.95);
@@ -151,26 +189,30 @@ TEST_CASE(
         springs.settle(velocity_of(roll(-1, 1) * 1e-3));
         of_springs = std::max(of_springs, apart(springs, std::abs(v), h, share, level));
     }
+    CHECK(tried >= trials);
     CHECK(of_dahl < 1e-9);
     CHECK(of_lugre < 1e-9);
     CHECK(of_springs < 1e-9);
 }
 TEST_CASE("stick_slip: stick is exact: a resting axis below breakaway does not creep") {
     dice roll;
+    int tried = 0;
     int crept = 0;
-    for (int n = 0; n < trials; ++n) {
+    for (; tried < trials; ++tried) {
         const double level = roll.decades(1, 300), held = level * roll(1, 3);
         const stribeck<> law({force_of(level), force_of(held), velocity_of(roll.decades(1e-4, 1e-2))}, 1_ms);
         crept += stick_slip<double>(law, quantity<si::mass>::from_value(roll.decades(0.1, 1000)),
                                     velocity_of(0), force_of(roll(-1, 1) * held),
                                     duration::from_value(roll.decades(1e-6, 1e-3))) != velocity_of(0);
     }
+    CHECK(tried >= trials);
     CHECK(crept == 0);
 }
 TEST_CASE("amplifier_lag: the mean over the step is exact: that of its two halves, and their end is its end") {
     dice roll;
+    int tried = 0;
     double off = 0;
-    for (int n = 0; n < trials; ++n) {
+    for (; tried < trials; ++tried) {
         const double h = roll.decades(1e-5, 1e-2), begin = roll(-1, 1), u = roll(-1, 1);
         const amplifier_lag<>::parameters p{.lag = duration::from_value(roll.decades(1e-5, 1e-1))};
         const amplifier_lag<> whole(p, h), half(p, h / 2);
@@ -178,5 +220,6 @@ TEST_CASE("amplifier_lag: the mean over the step is exact: that of its two halve
         const double mean = whole(once, u), first = half(twice, u), second = half(twice, u);
         off = std::max({off, std::abs(mean - (first + second) / 2), std::abs(once - twice)});
     }
+    CHECK(tried >= trials);
     CHECK(off < 1e-11); // 1 - exp(-h/lag) of a step of 1e-4 lags has lost four digits
 }

@@ -51,7 +51,7 @@ TEST_CASE("proportional_integral, clamp: bit for bit the bare loop of docs/forma
     CHECK(same);
     CHECK(reached);
 }
-TEST_CASE("proportional_integral, clamp: the output is not clipped, and limited() tells of the integral") {
+TEST_CASE("proportional_integral, clamp: the output is not clipped, and limited() reports the integral") {
     clamped pi{{.gain = gain, .integral_gain = integral_gain, .limit = 10_V}, Ts};
     CHECK(pi(1_mps).value() > 60);
     CHECK_FALSE(pi.limited());

@@ -64,7 +64,7 @@ TEST_CASE("added command: a constant from a time on is found with its size and i
     }
 }
 
-TEST_CASE("added command: a constant that goes again is found with both times") {
+TEST_CASE("added command: a constant that goes again is found with both times" * doctest::test_suite("all")) {
     const auto w = found_with(axis_of("cascade_p_pi"), [](double t) {
                        return t > 1.3 && t < 3.6 ? -0.25 : 0.0;
                    }).added->waveform;
@@ -75,7 +75,8 @@ TEST_CASE("added command: a constant that goes again is found with both times") 
     CHECK(w.to_s == doctest::Approx(3.6).epsilon(0.001));
 }
 
-TEST_CASE("added command: a square wave is found with its levels, its times and its period") {
+TEST_CASE("added command: a square wave is found with its levels, its times and its period" *
+          doctest::test_suite("all")) {
     for (const auto& kind : kinds) {
         CAPTURE(kind);
         const auto found = found_with(axis_of(kind), square(1.2, 0.5, 0.3, 0.2));
@@ -102,7 +103,8 @@ TEST_CASE("added command: short pulses are found, down to a few samples and a fe
     CHECK(w.levels[0].value == doctest::Approx(0.01).epsilon(0.05));
 }
 
-TEST_CASE("added command: a tone is found with frequency, size and phase, whole or in a part of the record") {
+TEST_CASE("added command: a tone is found with frequency, size and phase, whole or in a part of the record" *
+          doctest::test_suite("all")) {
     for (const auto& kind : kinds) {
         CAPTURE(kind);
         const auto signal = [](double t) { return t < 1 ? 0 : 0.3 * std::sin(two_pi * 7.3 * (t - 1) + 0.6); };
@@ -120,7 +122,7 @@ TEST_CASE("added command: a tone is found with frequency, size and phase, whole 
     CHECK(w.frequency_Hz == doctest::Approx(41).epsilon(0.001));
 }
 
-TEST_CASE("added command: a sweep is found with both its frequencies") {
+TEST_CASE("added command: a sweep is found with both its frequencies" * doctest::test_suite("all")) {
     const auto signal = [](double t) {
         const double s = t - 0.7;
         return s < 0 || s > 3 ? 0 : 0.2 * std::sin(two_pi * (4 * s + 0.5 * 12 * s * s));
@@ -132,7 +134,8 @@ TEST_CASE("added command: a sweep is found with both its frequencies") {
     CHECK(w.amplitude == doctest::Approx(0.2).epsilon(0.02));
 }
 
-TEST_CASE("added command: noise in a part of the record has no simple form, and its rms and times are told") {
+TEST_CASE("added command: noise in a part of the record has no simple form, and its rms and times are told" *
+          doctest::test_suite("all")) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal(0, 0.2);
     const auto signal = [&](double t) { return t > 1.5 && t < 3.2 ? normal(random) : 0.0; };
@@ -143,7 +146,8 @@ TEST_CASE("added command: noise in a part of the record has no simple form, and 
     CHECK(w.to_s == doctest::Approx(3.2).epsilon(0.04));
 }
 
-TEST_CASE("added command: a wrong key is never an added command, by a tenth, by half or doubled") {
+TEST_CASE("added command: a wrong key is never an added command, by a tenth, by half or doubled" *
+          doctest::test_suite("all")) {
     int differed = 0;
     for (const auto& kind : kinds) {
         const auto& axis = axis_of(kind);
@@ -164,7 +168,7 @@ TEST_CASE("added command: a wrong key is never an added command, by a tenth, by 
     CHECK(differed > 40);
 }
 
-TEST_CASE("added command: two wrong keys at once are no added command") {
+TEST_CASE("added command: two wrong keys at once are no added command" * doctest::test_suite("all")) {
     const auto& axis = axis_of("cascade_p_pi");
     const auto keys = detail::searched_keys(*axis.controller);
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {

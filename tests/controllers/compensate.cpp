@@ -79,13 +79,15 @@ TEST_CASE("compensate: the viscous feedforward of each kind that has one makes t
                   axis_of(kind->name).plant.viscous_N_s_per_m);
 }
 
-TEST_CASE("compensate: the acceleration feedforward of each kind that has one makes the axis follow better") {
+TEST_CASE("compensate: the acceleration feedforward of each kind that has one makes the axis follow better" *
+          doctest::test_suite("all")) {
     for (const controller_kind* kind : controller_kinds())
         if (const auto& fed = kind->acceleration; !fed.key.empty())
             check(kind->name, fed, "mass", "mass_kg", axis_of(kind->name).plant.mass_kg);
 }
 
-TEST_CASE("compensate: the Coulomb feedforward of each kind that has one makes the axis follow better") {
+TEST_CASE("compensate: the Coulomb feedforward of each kind that has one makes the axis follow better" *
+          doctest::test_suite("all")) {
     for (const controller_kind* kind : controller_kinds())
         if (const auto& fed = kind->coulomb; !fed.key.empty())
             check(kind->name, fed, "coulomb_friction", "coulomb_N", *axis_of(kind->name).plant.coulomb_N);

@@ -58,7 +58,8 @@ controller_finding judged_as(const axis_description& axis, const controller_desc
 
 } // namespace
 
-TEST_CASE("replay floor: no right controller of 13 kinds is blamed, however its log is written") {
+TEST_CASE("replay floor: no right controller of 13 kinds is blamed, however its log is written" *
+          doctest::test_suite("all")) {
     std::size_t cases = 0, blamed = 0;
     for (const writing& w : writings)
         for (const axis_description& described : machine().axes) {
@@ -110,7 +111,8 @@ TEST_CASE("replay floor: a gain that shows at a few times the floor is found whe
     CHECK(found.difference_rms < 2 * worst);
 }
 
-TEST_CASE("replay: a Coulomb feedforward that the file lacks is found from a few converter steps up") {
+TEST_CASE("replay: a Coulomb feedforward that the file lacks is found from a few converter steps up" *
+          doctest::test_suite("all")) {
     for (const char* kind : {"cascade_p_pi"})
         for (const double volts : {0.005, 0.05, 0.5}) {
             CAPTURE(volts);

@@ -104,7 +104,7 @@ TEST_CASE("controller kinds: a log that begins in the middle of a motion is repl
 
 TEST_CASE(
     "controller kinds: a key that is off by 10 % and shows in the command is found, alone or with those that "
-    "mend as well") {
+    "correct as well") {
     for (const axis_description& axis : machine().axes) {
         CAPTURE(axis.name);
         const auto& described = *axis.controller;

@@ -162,7 +162,7 @@ TEST_CASE(
     CHECK(left(weak) > 0.9 * left(given));
 }
 
-TEST_CASE("diagnose: a light motor that creeps over its cogging torque") {
+TEST_CASE("diagnose: a light motor that creeps over its cogging torque" * doctest::test_suite("all")) {
     const auto d = diagnose(motor(), record());
     CAPTURE(said(d));
     bool named = false;

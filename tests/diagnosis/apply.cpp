@@ -211,7 +211,8 @@ TEST_CASE(
           "air_drag of axis x is left out: it is an effect of your own, and a machine file has no key for it");
 }
 
-TEST_CASE("apply: the numbers of a controller of the caller's own are mended in a description, and it stays") {
+TEST_CASE(
+    "apply: the numbers of a controller of the caller's own are corrected in a description, and it stays") {
     auto machine = read_machine(std::string_view(machine_text), "m.json");
     auto& x = machine.axes[0].name == "x" ? machine.axes[0] : machine.axes[1];
     x.controller->own = own_control{{{"gain", 2}, {"lead", 3}}, {}};

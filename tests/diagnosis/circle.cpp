@@ -294,7 +294,7 @@ TEST_CASE("ball_bar: what is three times the detection limit is found, what is a
         CHECK(found(ball_bar(all_runs(m))) == (times > 1 ? "squareness" : ""));
     }
 }
-TEST_CASE("ball_bar: says what one direction, one feed or an encoder cannot tell") {
+TEST_CASE("ball_bar: says what one direction, one feed or an encoder cannot distinguish") {
     machine m;
     m.geometry = [](double& x, double& y, double, double, double) { x -= 2e-4 * y; };
     const auto single = ball_bar({drive(m, 0.06, 0.05, true)});

@@ -24,7 +24,8 @@ workshop::machine worn() {
 
 } // namespace
 
-TEST_CASE("compare: two logs of one machine are alike, whatever its description lacks") {
+TEST_CASE("compare: two logs of one machine are alike, whatever its description lacks" *
+          doctest::test_suite("all")) {
     const auto description = workshop::described(workshop::machine{});
     const auto found = compare(description, log_of(worn(), 8.15, 1), log_of(worn(), workshop::strokes, 2));
     CHECK(found.first.verdict == verdict::explained); // cogging, in both
@@ -57,7 +58,7 @@ TEST_CASE("compare: what one of two machines has is named, whichever comes first
     }
 }
 
-TEST_CASE("compare: a log at another rate is brought to the rate of the machine") {
+TEST_CASE("compare: a log at another rate is brought to the rate of the machine" * doctest::test_suite("all")) {
     const auto description = workshop::described(workshop::machine{});
     const auto as_logged = log_of(workshop::machine{}, workshop::strokes, 1);
     const auto slow = at_period(log_of(workshop::machine{}, workshop::strokes, 2), 2 * workshop::period);
@@ -67,7 +68,8 @@ TEST_CASE("compare: a log at another rate is brought to the rate of the machine"
                       [](const std::string& note) { return note.find("resampled") != note.npos; }));
 }
 
-TEST_CASE("compare: without a machine file the first log describes the machine, in units of its command") {
+TEST_CASE("compare: without a machine file the first log describes the machine, in units of its command" *
+          doctest::test_suite("all")) {
     workshop::machine lighter;
     lighter.mass *= 0.7;
     const auto one = log_of(workshop::machine{}, 8.15, 1), other = log_of(lighter, 8.15, 2);

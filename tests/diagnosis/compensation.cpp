@@ -121,7 +121,8 @@ TEST_CASE("compensate: Coulomb friction by the controller's key takes off what t
     CHECK(json["axes"]["x"]["compensations"][0]["controller"].size() == 1);
 }
 
-TEST_CASE("compensate: cogging, and friction that falls with speed, are paid by blocks as forecast") {
+TEST_CASE("compensate: cogging, and friction that falls with speed, are paid by blocks as forecast" *
+          doctest::test_suite("all")) {
     workshop::machine m;
     m.excess = 90;
     m.cogging = 40;
@@ -139,7 +140,8 @@ TEST_CASE("compensate: cogging, and friction that falls with speed, are paid by 
     CHECK(a.best()->effects.size() == 2);
 }
 
-TEST_CASE("compensate: wider intervals promise less, and plants are not the feedforward's own numbers") {
+TEST_CASE("compensate: wider intervals promise less, and plants are not the feedforward's own numbers" *
+          doctest::test_suite("all")) {
     workshop::machine m;
     m.coulomb = 90;
     auto file = workshop::described(m);
@@ -155,7 +157,8 @@ TEST_CASE("compensate: wider intervals promise less, and plants are not the feed
     CHECK(wide.gain_at_ends < wide.gain.low + 1e-12);
 }
 
-TEST_CASE("compensate: an effect without a feedforward gets advice and no gain, one below the noise no claim") {
+TEST_CASE("compensate: an effect without a feedforward gets advice and no gain, one below the noise no claim" *
+          doctest::test_suite("all")) {
     workshop::machine m;
     m.constant_force = 4;
     m.control.coulomb_feedforward = m.coulomb / m.force_constant;

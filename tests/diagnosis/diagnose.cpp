@@ -27,7 +27,8 @@ TEST_CASE("diagnose: the machine as described has no gap") {
     CHECK(d.causes.empty());
 }
 
-TEST_CASE("diagnose: a delay that splits a period leaves no more force than one of whole periods") {
+TEST_CASE("diagnose: a delay that splits a period leaves no more force than one of whole periods" *
+          doctest::test_suite("all")) {
     const auto left_by = [](double delay) {
         machine real;
         real.delay = delay;
@@ -43,7 +44,8 @@ TEST_CASE("diagnose: a delay that splits a period leaves no more force than one 
     for (const double delay : {0.00037, 0.00073}) CHECK(left_by(delay) < 1.2 * whole);
 }
 
-TEST_CASE("diagnose: a value that its tolerance stops is told, when no effect may take its place") {
+TEST_CASE("diagnose: a value that its tolerance stops is told, when no effect may take its place" *
+          doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     file.axes[0].plant.mass_kg = real.mass * 1.05; // beyond the 2 % that the owner states
@@ -68,7 +70,8 @@ TEST_CASE("diagnose: a constant force, and its second reading") {
     CHECK(d.next.expected_gain == 0);
     CHECK(d.next.reference.empty());
 }
-TEST_CASE("diagnose: what is smaller than what every law of friction is wrong by is no claim") {
+TEST_CASE("diagnose: what is smaller than what every law of friction is wrong by is no claim" *
+          doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     file.axes[0].plant.coulomb_N = real.coulomb;
@@ -81,7 +84,8 @@ TEST_CASE("diagnose: what is smaller than what every law of friction is wrong by
     named(diagnosed(file, real), "cogging", "cogging_N", 0.2 * real.coulomb, 0.1);
 }
 
-TEST_CASE("diagnose: friction's law is wrong by a force, and a delay is claimed however small its force is") {
+TEST_CASE("diagnose: friction's law is wrong by a force, and a delay is claimed however small its force is" *
+          doctest::test_suite("all")) {
     machine real;
     real.coulomb = 400;
     auto file = described(real);
@@ -103,7 +107,7 @@ TEST_CASE("diagnose: another controller, by replay, with its key") {
     abstains(diagnosed(excluding, real));
 }
 
-TEST_CASE("diagnose: a command measured behind the amplifier is not held against the controller") {
+TEST_CASE("diagnose: a command measured behind the amplifier is no mismatch of the controller") {
     machine real;
     auto file = described(real);
     file.axes[0].actuator.command_is = quadrant::diagnosis::command_origin::measured;
@@ -139,7 +143,8 @@ TEST_CASE("diagnose: when the time is up before anything was tried, it says what
     CHECK_FALSE(whole.axes[0].cut);
     CHECK(whole.causes.at(0).effect == "coulomb_friction");
 }
-TEST_CASE("diagnose: names that the time did not allow count against what was found") {
+TEST_CASE("diagnose: names that the time did not allow count against what was found" *
+          doctest::test_suite("all")) {
     using quadrant::diagnosis::rules;
     machine real;
     auto file = described(real);
@@ -166,7 +171,7 @@ TEST_CASE("diagnose: names that the time did not allow count against what was fo
     for (const cause& c : whole.causes) CHECK(c.probability > 0.9);
 }
 
-TEST_CASE("diagnose: two effects, one found on top of the other") {
+TEST_CASE("diagnose: two effects, one found on top of the other" * doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     file.axes[0].plant.coulomb_N.reset();
@@ -195,7 +200,8 @@ TEST_CASE("diagnose: a cause that the owner excludes is not replaced by the near
     real.cogging = 15;
     abstains(diagnosed(file, real, three_strokes));
 }
-TEST_CASE("diagnose: what the owner excludes speaks against a name that stands in for it, and is told") {
+TEST_CASE("diagnose: what the owner excludes speaks against a name that stands in for it, and is told" *
+          doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     real.lag = 0.004;
@@ -246,7 +252,7 @@ TEST_CASE("diagnose: what shows in the motion of the hold-out log only is found 
     CHECK(claims(other) == claims(d));
     CHECK(other.axes[0].evaluated_on == "the hold-out log");
 }
-TEST_CASE("diagnose: a sensor coarser than described is seen without dynamics") {
+TEST_CASE("diagnose: a sensor coarser than described is seen without dynamics" * doctest::test_suite("all")) {
     const machine real;
     auto file = described(real);
     file.axes[0].encoder.resolution_m = workshop::count / 8;
@@ -272,7 +278,7 @@ TEST_CASE("diagnose: without a controller the axis is judged from the command on
     CHECK(d.axes[0].gap.position_rms_m == 0);
 }
 
-TEST_CASE("diagnose: the forecast is kept on a log of another motion") {
+TEST_CASE("diagnose: the forecast is kept on a log of another motion" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.viscous = 600;
@@ -325,7 +331,8 @@ TEST_CASE("diagnose: one stroke of under a second names a cause that it shows, a
     }));
 }
 
-TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians") {
+TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians" *
+          doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     real.constant_force = 25;
@@ -366,7 +373,8 @@ TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metr
 
 TEST_CASE(
     "diagnose: what the encoder cannot know of itself is said where machine and simulation agree, or it is "
-    "suspected") {
+    "suspected" *
+    doctest::test_suite("all")) {
     axis_result a;
     a.name = "x";
     cause c;
@@ -388,7 +396,8 @@ TEST_CASE(
     CHECK(unseen_by(a, {})[0].instrument.find("autocollimator") != std::string::npos);
 }
 
-TEST_CASE("diagnose: a command in newtons is searched on its own scale, as one in volts") {
+TEST_CASE("diagnose: a command in newtons is searched on its own scale, as one in volts" *
+          doctest::test_suite("all")) {
     machine real;
     auto file = described(real);
     file.axes[0].controller.reset();

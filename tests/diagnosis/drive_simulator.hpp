@@ -25,6 +25,10 @@ struct machine {
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
     double ff1 = 0, ff2 = 0;
+    double deadband = 0; ///< of the position error of that component [m]
+    double gravity = 0;  ///< torque -gravity sin x
+    /// Of each row: what is added to the set-point, and to the force of the velocity loop; empty: nothing.
+    std::vector<double> shift{}, added{};
 };
 enum class takes { volts, set_points, servo };
 
@@ -61,11 +65,13 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
         const auto ago = [&](std::size_t back) { return reference[k > back ? k - back : 0]; };
-        const double sum = m.stock_pid ? 1000 * (reference[k] - read) + m.ff1 * (ago(0) - ago(1)) / period +
+        const double behind = reference[k] - read,
+                     kept = std::copysign(std::max(0.0, std::abs(behind) - m.deadband), behind);
+        const double sum = m.stock_pid ? 1000 * kept + m.ff1 * (ago(0) - ago(1)) / period +
                                              m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period)
                                        : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
         const double volts = std::clamp(sum, -10.0, 10.0);
-        command.push_back(kind == takes::volts ? volts : reference[k]);
+        command.push_back(kind == takes::volts ? volts : reference[k] + (m.shift.empty() ? 0 : m.shift[k]));
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
         if (kind == takes::volts) out << ',' << volts;
         for (int i = 0; i < steps; ++i) {
@@ -86,14 +92,15 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 const double asked = kind == takes::volts
                                          ? m.velocity_per_V * command[row]
                                          : m.position_gain * (before + part * (command[row] - before) - x);
-                force = m.gain * (asked - v) + integral;
+                const auto newest = static_cast<std::size_t>(std::max(0.0, at)); // a force is held over a row
+                force = m.gain * (asked - v) + integral + (m.added.empty() ? 0 : m.added[newest]);
                 integral += h * m.integral * (asked - v);
             }
             if (off) {
                 force = integral = 0;
                 followed = x;
             }
-            v += h * (force - m.viscous * v) / m.mass;
+            v += h * (force - m.viscous * v - m.gravity * std::sin(x)) / m.mass;
             const double stop = h * m.coulomb / m.mass;
             v -= std::clamp(v, -stop, stop);
             x += h * v;

@@ -83,7 +83,8 @@ TEST_CASE("init: the loops of a velocity drive come from the log, each within it
         CHECK(axis.tolerance.of("velocity_gain") < 0.1);
     }
 }
-TEST_CASE("init: the loops of a position drive come from the log, each within its interval") {
+TEST_CASE("init: the loops of a position drive come from the log, each within its interval" *
+          doctest::test_suite("all")) {
     for (const auto& m : {position(p_drive), position(pi_drive)}) {
         const auto log = recorded(takes::set_points, m);
         const auto begun = init_machine(asked(drive_kind::position, {{"mass", 100}}), &log);
@@ -95,7 +96,8 @@ TEST_CASE("init: the loops of a position drive come from the log, each within it
         CHECK(number(begun, "plant", "coulomb_N").value == doctest::Approx(m.coulomb).epsilon(0.02));
     }
 }
-TEST_CASE("init: the gain of a servo comes from its duty, its torque constant from the path") {
+TEST_CASE("init: the gain of a servo comes from its duty, its torque constant from the path" *
+          doctest::test_suite("all")) {
     for (const bool tap : {true, false}) {
         const auto log = recorded(takes::servo, servo, tap);
         auto r = asked(drive_kind::position_servo, {{"mass", 0.004}, {"supply", 12}});
@@ -130,7 +132,7 @@ TEST_CASE("init: a drive whose numbers nothing fixes is refused with what is mis
     CHECK(refusal(asked(drive_kind::velocity, {{"mass", 100}}), &against)
               .find("the velocity runs against the command") != std::string::npos);
 }
-TEST_CASE("init: a loop faster than the record can show is said, not guessed") {
+TEST_CASE("init: a loop faster than the record can show is said, not guessed" * doctest::test_suite("all")) {
     auto fast = p_drive;
     fast.gain = 100 * 2 * std::numbers::pi * 2000; // answers in a twelfth of a row
     fast.coulomb = 0;
@@ -159,7 +161,7 @@ TEST_CASE("init: a command of the wrong sign is named, not written without an in
 TEST_CASE(
     "init: a real servo, its gain to two per cent, its inertia and torque constant as its makers of models "
     "found them" *
-    doctest::skip(shared_missing())) {
+    doctest::test_suite("all") * doctest::skip(shared_missing())) {
     // shared/data/servo_pendulum: 0.0028774 duty a rad for each unit of kp; 0.0078 kg m2; 0.123 N m/V, which
     // fits of single motions miss by 10 to 15 %.
     for (const int kp : {100, 200, 400}) {

@@ -160,7 +160,8 @@ TEST_CASE("neutral: every key of the reader has a neutral value here, or says th
 }
 
 TEST_CASE(
-    "neutral: a key at its neutral value, and a billionth beside it, leaves every gap as without the key") {
+    "neutral: a key at its neutral value, and a billionth beside it, leaves every gap as without the key" *
+    doctest::test_suite("all")) {
     const workshop::machine real;
     auto log = workshop::as_log(workshop::run(real, workshop::strokes));
     axis_log other = log.axes[0]; // for the coupling

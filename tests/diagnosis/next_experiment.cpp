@@ -123,7 +123,8 @@ TEST_CASE("next experiment: friction that is known tells mass from force constan
 }
 
 // A delay turns the phase, a lag of the same length nearly as much below 20 Hz: above 100 Hz they part.
-TEST_CASE("next experiment: the multi-sine is found for a lag or a delay, and slow strokes are worth little") {
+TEST_CASE("next experiment: the multi-sine is found for a lag or a delay, and slow strokes are worth little" *
+          doctest::test_suite("all")) {
     const auto axis = described(machine{}).axes[0];
     const double late = 0.001;
     const std::vector<confusable> names{
@@ -229,7 +230,7 @@ TEST_CASE("next experiment: a record is a log of the machine: noise, steps of th
 // proposed keep 6 of the 54 that were forecast: the forecast is too high there. This fails as soon as that is
 // corrected.
 TEST_CASE("diagnose: the next experiment names what the log could not, by at least the gain that was forecast" *
-          doctest::should_fail()) {
+          doctest::test_suite("all") * doctest::should_fail()) {
     machine real;
     auto file = described(real);
     file.excluded_effects = {"stribeck_friction",

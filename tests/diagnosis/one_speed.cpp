@@ -85,7 +85,8 @@ struct seen {
 
 } // namespace
 
-TEST_CASE("diagnose: friction of a motor at one speed is named once, beside the cogging that it turns over") {
+TEST_CASE("diagnose: friction of a motor at one speed is named once, beside the cogging that it turns over" *
+          doctest::test_suite("all")) {
     std::istringstream file(turning());
     const auto d = diagnose(motor(), read_log(file, "turning.csv"));
     CAPTURE(workshop::said(d));
@@ -116,7 +117,8 @@ TEST_CASE("process: what a motor shows at its positions is bound to them, what a
     CHECK_FALSE(seen(there_and_back, by_position).bound(2 * pi / (7 * mean)));
 }
 
-TEST_CASE("search: a model without one of its effects has a force, and rivals begin at its other numbers") {
+TEST_CASE("search: a model without one of its effects has a force, and rivals begin at its other numbers" *
+          doctest::test_suite("all")) {
     std::istringstream file(turning());
     const auto machine = motor();
     const auto log = read_log(file, "turning.csv");

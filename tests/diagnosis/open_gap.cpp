@@ -74,7 +74,8 @@ machine_description joint_of_a_robot() {
 
 } // namespace
 
-TEST_CASE("diagnose: friction beside forces that no name explains, by a measured torque") {
+TEST_CASE("diagnose: friction beside forces that no name explains, by a measured torque" *
+          doctest::test_suite("all")) {
     const std::array pushes{pushed_by{{0.475, 1.402, 1.293}, {1.6, 3.11, 2.82}, {2.3, 2.58, 1.19}},
                             pushed_by{{0.607, 0.434, 0.815}, {0.97, 0.42, 2.52}, {2.84, 2.6, 2.53}}};
     for (const pushed_by& forces : pushes) {

@@ -103,7 +103,8 @@ TEST_CASE("simulate: a parked axis is left out, a log too short refused") {
     CHECK_THROWS_AS(simulate(file, log), bad_input);
 }
 
-TEST_CASE("simulate: what diagnose forecasts is achieved on another log, within ten points") {
+TEST_CASE("simulate: what diagnose forecasts is achieved on another log, within ten points" *
+          doctest::test_suite("all")) {
     workshop::machine m;
     m.cogging = 25;
     const auto machine = exact(m);
@@ -121,7 +122,8 @@ TEST_CASE("simulate: what diagnose forecasts is achieved on another log, within 
 }
 
 TEST_CASE("simulate: with the calibrated values the forecast is kept where the machine file is off inside its "
-          "tolerance") {
+          "tolerance" *
+          doctest::test_suite("all")) {
     workshop::machine m;
     m.excess = 40;
     const auto machine = workshop::described(m);
@@ -167,8 +169,9 @@ constexpr own_law of_the_list = [] {
 
 } // namespace
 
-TEST_CASE("own effect: it is named with its number, is written and read, and the mended machine predicts "
-          "another log") {
+TEST_CASE("own effect: it is named with its number, is written and read, and the corrected machine predicts "
+          "another log" *
+          doctest::test_suite("all")) {
     workshop::machine real;
     real.stranger = [](double x, double, double) { return -9000 * x * std::abs(x); };
     auto file = exact(real);
@@ -209,7 +212,8 @@ TEST_CASE("own controller: with the stock cascade behind it the diagnosis is the
     CHECK(own.dump() == stock.dump());
 }
 
-TEST_CASE("own effect: one that remembers and is no straight line in its numbers") {
+TEST_CASE("own effect: one that remembers and is no straight line in its numbers" *
+          doctest::test_suite("all")) {
     workshop::machine real;
     real.stranger = [bent = 0.0](double, double v, double) mutable {
         bent = std::clamp(bent + v * workshop::period / 20, -0.005, 0.005);
@@ -224,7 +228,8 @@ TEST_CASE("own effect: one that remembers and is no straight line in its numbers
     CHECK(workshop::near(d.causes[0].parameters.at(1).values.at(0).value, 0.005, 0.05));
 }
 
-TEST_CASE("own effect: a machine without it is not blamed for it, nor one with an effect of the list") {
+TEST_CASE("own effect: a machine without it is not blamed for it, nor one with an effect of the list" *
+          doctest::test_suite("all")) {
     workshop::machine real;
     auto file = exact(real);
     file.axes[0].own_effects = {own_effect<bellows>, own_effect<chain>};

@@ -90,7 +90,8 @@ TEST_CASE("thinned: as many rows become one as leave seventeen in a cycle of the
 }
 
 TEST_CASE("thinned: a joint at 5 kHz with its torque measured is diagnosed on fewer rows, and its friction is "
-          "found") {
+          "found" *
+          doctest::test_suite("all")) {
     const machine_log log = swings();
     const diagnosis_result r = diagnose(described(), log, nullptr, [](const std::string&) {}, {});
     CHECK(is_thinned(r));

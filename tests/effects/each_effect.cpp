@@ -14,25 +14,25 @@ TEST_CASE("diagnose: Coulomb friction that is not modelled") {
     file.axes[0].plant.coulomb_N.reset();
     named(diagnosed(file, real), "coulomb_friction", "coulomb_N", 60, 0.03);
 }
-TEST_CASE("diagnose: viscous friction that is not as described") {
+TEST_CASE("diagnose: viscous friction that is not as described" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.viscous = 600;
     named(diagnosed(file, real), "viscous_friction", "viscous_N_s_per_m", 600, 0.03);
 }
-TEST_CASE("diagnose: Stribeck friction that is not modelled") {
+TEST_CASE("diagnose: Stribeck friction that is not modelled" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.excess = 50;
     named(diagnosed(file, real), "stribeck_friction", "stribeck_velocity_m_per_s", 0.004, 0.05);
 }
-TEST_CASE("diagnose: friction that differs by direction") {
+TEST_CASE("diagnose: friction that differs by direction" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.viscous_asymmetry = 0.5;
     named(diagnosed(file, real), "asymmetric_friction", "viscous_asymmetry", 0.5, 0.03);
 }
-TEST_CASE("diagnose: another mass") {
+TEST_CASE("diagnose: another mass" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.mass = 225;
@@ -40,13 +40,13 @@ TEST_CASE("diagnose: another mass") {
     named(d, "mass", "mass_kg", 225, 0.02);
     CHECK(d.causes.front().described);
 }
-TEST_CASE("diagnose: another force constant") {
+TEST_CASE("diagnose: another force constant" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.force_constant = 930;
     named(diagnosed(file, real), "force_constant", "force_constant_N_per_V", 930, 0.03);
 }
-TEST_CASE("diagnose: a command that acts late") {
+TEST_CASE("diagnose: a command that acts late" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.delay = 0.0018;
@@ -62,25 +62,25 @@ TEST_CASE("diagnose: cogging with two harmonics") {
     CHECK(near(value_of(d.causes.front(), "cogging_N").value, 15, 0.03));
     CHECK(near(value_of(d.causes.front(), "cogging_phase_rad").value, 0.7, 0.03));
 }
-TEST_CASE("diagnose: a current loop of first order, not a delay") {
+TEST_CASE("diagnose: a current loop of first order, not a delay" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.lag = 0.002;
     named(diagnosed(file, real), "actuator_lag", "actuator.lag_s", 0.002, 0.03);
 }
-TEST_CASE("diagnose: a spring, not a constant force") {
+TEST_CASE("diagnose: a spring, not a constant force" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.spring = 800;
     named(diagnosed(file, real), "position_spring", "spring_N_per_m", 800, 0.03);
 }
-TEST_CASE("diagnose: play, not presliding friction") {
+TEST_CASE("diagnose: play, not presliding friction" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.backlash = 8e-6;
     named(diagnosed(file, real), "backlash", "backlash_m", 8e-6, 0.1);
 }
-TEST_CASE("diagnose: friction that gives way by ten micrometres, not play") {
+TEST_CASE("diagnose: friction that gives way by ten micrometres, not play" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.bristle = 1e-5;
@@ -91,19 +91,31 @@ TEST_CASE("diagnose: friction that gives way by ten micrometres, not play") {
     named(d, "presliding_friction", "presliding_length_m", 0.75e-5, 0.5);
     CHECK_FALSE(d.causes.front().described);
 }
-TEST_CASE("diagnose: friction that varies along the travel, not cogging") {
+TEST_CASE("diagnose: friction that varies along the travel, not cogging" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.friction_along = 0.4;
     named(diagnosed(file, real), "position_dependent_friction", "friction_position_amplitude", 0.4, 0.05);
 }
-TEST_CASE("diagnose: friction that changes while the machine warms up") {
+TEST_CASE("diagnose: friction that changes while the machine warms up" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.friction_drift = -0.4;
     named(diagnosed(file, real), "friction_drift", "friction_drift", -0.4, 0.1);
 }
-TEST_CASE("diagnose: a second mass on a spring") {
+TEST_CASE("diagnose: friction that grows evenly, and says nothing of where it would end") {
+    machine real;
+    const auto file = described(real);
+    real.friction_drift = 20;
+    real.friction_drift_time = 100;
+    const auto d = diagnosed(file, real);
+    CAPTURE(said(d));
+    REQUIRE(claims(d) == std::vector<std::string>{"friction_drift"});
+    const double rate = value_of(d.causes.front(), "friction_drift").value /
+                        value_of(d.causes.front(), "friction_drift_time_s").value;
+    CHECK(rate == doctest::Approx(0.2).epsilon(0.1));
+}
+TEST_CASE("diagnose: a second mass on a spring" * doctest::test_suite("all")) {
     machine real;
     real.mass = 150;
     real.mode_mass = 30;
@@ -111,13 +123,13 @@ TEST_CASE("diagnose: a second mass on a spring") {
     whole.mass = 180;
     named(diagnosed(described(whole), real), "structural_resonance", "mode_frequency_Hz", 70, 0.02);
 }
-TEST_CASE("diagnose: a force constant that varies along the travel, not cogging") {
+TEST_CASE("diagnose: a force constant that varies along the travel, not cogging" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.ripple = 0.15;
     named(diagnosed(file, real), "force_ripple", "ripple_period_m", 0.024, 0.01);
 }
-TEST_CASE("diagnose: a drive that clips below the controller's limit") {
+TEST_CASE("diagnose: a drive that clips below the controller's limit" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.drive_limit = 0.8;
@@ -125,7 +137,7 @@ TEST_CASE("diagnose: a drive that clips below the controller's limit") {
     named(d, "actuator_saturation", "actuator.drive_limit_V", 0.8, 0.01);
     CHECK_FALSE(d.causes.front().described);
 }
-TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction") {
+TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.dead_zone = 0.03;
@@ -134,7 +146,8 @@ TEST_CASE("diagnose: a dead zone of the drive, not Coulomb friction") {
 // Few losses in a record that hardly changes its command do not earn a claim; they are never called something
 // else.
 TEST_CASE(
-    "diagnose: lost commands take their pulses out of the gap, a delay does not, and nothing else is claimed") {
+    "diagnose: lost commands take their pulses out of the gap, a delay does not, and nothing else is claimed" *
+    doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.loss = 0.1;
@@ -183,7 +196,8 @@ TEST_CASE("diagnose: lost commands, few and many, with how many were lost") {
     }
 }
 // In a closed loop the noise of the encoder is in the command and in what the observer has to correct.
-TEST_CASE("diagnose: no command is lost under strong noise of the encoder or a command that acts late") {
+TEST_CASE("diagnose: no command is lost under strong noise of the encoder or a command that acts late" *
+          doctest::test_suite("all")) {
     for (const double delay : {0.0006, 0.0009}) {
         machine real;
         const auto file = described(real);
@@ -202,7 +216,8 @@ TEST_CASE("diagnose: no command is lost under strong noise of the encoder or a c
         CHECK(found.probability < 0.001);
     }
 }
-TEST_CASE("diagnose: a cyclic error of the encoder, not cogging of the same period") {
+TEST_CASE("diagnose: a cyclic error of the encoder, not cogging of the same period" *
+          doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.cyclic = 1e-6;
@@ -210,7 +225,7 @@ TEST_CASE("diagnose: a cyclic error of the encoder, not cogging of the same peri
     named(d, "encoder_cyclic_error", "encoder.cyclic_period_m", 0.0004, 0.01);
     CHECK(d.axes[0].where[0].block == "sensor");
 }
-TEST_CASE("diagnose: a turning process") {
+TEST_CASE("diagnose: a turning process" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.cutting = 20;
@@ -260,7 +275,8 @@ TEST_CASE("diagnose: the acceleration of the other axis, on the axis that feels 
     CHECK(near(value_of(d.causes.front(), "coupling").value, 0.05, 0.03));
 }
 
-TEST_CASE("diagnose: a single line in time is its own fundamental, not a harmonic of a slower one") {
+TEST_CASE("diagnose: a single line in time is its own fundamental, not a harmonic of a slower one" *
+          doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.cutting = 12;
@@ -271,7 +287,7 @@ TEST_CASE("diagnose: a single line in time is its own fundamental, not a harmoni
 
 // Forces that are in no list: a form over the same quantity predicts better than the nearest name.
 const rules one_cause{.most_causes = 1};
-TEST_CASE("diagnose: a force with the square of the position is no spring") {
+TEST_CASE("diagnose: a force with the square of the position is no spring" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.stranger = [](double x, double, double) { return -9000 * x * x; };
@@ -280,7 +296,7 @@ TEST_CASE("diagnose: a force with the square of the position is no spring") {
     abstains(d);
     CHECK(d.remaining_structure.find("follows the position") != std::string::npos);
 }
-TEST_CASE("diagnose: a force that grows with time is no offset") {
+TEST_CASE("diagnose: a force that grows with time is no offset" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.stranger = [](double, double, double t) { return 30 * t; };

@@ -48,7 +48,8 @@ TEST_CASE("gravity: it is named with torque and phase, apply writes both, and th
     CHECK(simulate(better, other).axes[0].gap.force_rms_N <
           0.2 * simulate(file, other).axes[0].gap.force_rms_N);
 }
-TEST_CASE("gravity: an axis whose zero is where the weight stands up has its phase half a turn away") {
+TEST_CASE("gravity: an axis whose zero is where the weight stands up has its phase half a turn away" *
+          doctest::test_suite("all")) {
     const arm real{.gravity = 1.5, .phase = std::numbers::pi - 0.02};
     const auto d = diagnose(described(real), run(real));
     REQUIRE(claims(d) == std::vector<std::string>{"gravity"});
@@ -57,7 +58,8 @@ TEST_CASE("gravity: an axis whose zero is where the weight stands up has its pha
     CHECK(std::abs(std::remainder(phase - real.phase, 2 * std::numbers::pi)) < 0.02);
 }
 TEST_CASE(
-    "gravity: found beside Coulomb friction that the file does not describe either, and both are claimed") {
+    "gravity: found beside Coulomb friction that the file does not describe either, and both are claimed" *
+    doctest::test_suite("all")) {
     const arm real{.gravity = 3.2};
     auto file = described(real);
     file.axes[0].plant.coulomb_N.reset();
@@ -67,7 +69,8 @@ TEST_CASE(
     CHECK(near(value_of(d.causes[0], key).value, 3.2, 0.02));
     CHECK(near(value_of(d.causes[1], "coulomb_Nm").value, 0.16, 0.05));
 }
-TEST_CASE("gravity: an arm that moves a few degrees has gravity, a constant torque or a spring, and says so") {
+TEST_CASE("gravity: an arm that moves a few degrees has gravity, a constant torque or a spring, and says so" *
+          doctest::test_suite("all")) {
     const arm level{.gravity = 3.2, .low = 1.52, .high = 1.62},
         hanging{.gravity = 3.2, .low = -0.05, .high = 0.05};
     const auto flat = diagnose(described(level), run(level));
@@ -79,14 +82,16 @@ TEST_CASE("gravity: an arm that moves a few degrees has gravity, a constant torq
     CHECK(in_group(steep, "position_spring"));
     CHECK(in_group(steep, "gravity"));
 }
-TEST_CASE("gravity: a constant torque and a spring over a wide angle are not called gravity") {
+TEST_CASE("gravity: a constant torque and a spring over a wide angle are not called gravity" *
+          doctest::test_suite("all")) {
     arm real{.constant = 0.8};
     named(diagnose(described(real), run(real)), "constant_force", "constant_torque_Nm", 0.8, 0.03);
     real = {.spring = 1.2};
     named(diagnose(described(real), run(real)), "position_spring", "spring_Nm_per_rad", 1.2, 0.03);
 }
 TEST_CASE("gravity: described, it is no cause inside the tolerance, and its key changes where the weight is "
-          "another") {
+          "another" *
+          doctest::test_suite("all")) {
     const arm real{.gravity = 3.2, .phase = 0.3};
     auto file = described(real);
     file.axes[0].plant.gravity_torque_Nm = 3.1;
@@ -115,7 +120,8 @@ TEST_CASE("gravity: a rotary file holds it with a tolerance, a linear one refuse
         "without inertia_kg_m2",
         bad_input);
 }
-TEST_CASE("gravity: of nothing, or of a billionth, it leaves every gap as without the key") {
+TEST_CASE("gravity: of nothing, or of a billionth, it leaves every gap as without the key" *
+          doctest::test_suite("all")) {
     const arm real{.gravity = 3.2};
     const auto log = run(real);
     auto file = described(real);
@@ -127,7 +133,8 @@ TEST_CASE("gravity: of nothing, or of a billionth, it leaves every gap as withou
     }
 }
 TEST_CASE("gravity: init estimates it from a log with friction and a coarse, noisy encoder, in the file and in "
-          "a note") {
+          "a note" *
+          doctest::test_suite("all")) {
     const arm real{.gravity = 3.2, .phase = 0.3};
     for (const double count : {least_angle, 100 * least_angle}) {
         auto log = run(real);

@@ -39,7 +39,8 @@ TEST_CASE("load_friction: an axis whose friction is of the load alone sticks at 
     real.coulomb = 0;
     named(diagnose(file_of(real), run(real)), "load_friction", "load_friction", 0.2, 0.05);
 }
-TEST_CASE("load_friction: more Coulomb friction is not called friction of the load") {
+TEST_CASE("load_friction: more Coulomb friction is not called friction of the load" *
+          doctest::test_suite("all")) {
     arm real = geared;
     real.load_friction = 0;
     const auto file = file_of(real);
@@ -47,7 +48,8 @@ TEST_CASE("load_friction: more Coulomb friction is not called friction of the lo
     named(diagnose(file, run(real)), "coulomb_friction", "coulomb_Nm", 0.35, 0.03);
 }
 TEST_CASE("load_friction: a machine whose file has it is not blamed for it, also with another number inside "
-          "the tolerance") {
+          "the tolerance" *
+          doctest::test_suite("all")) {
     auto file = file_of(geared);
     for (const double said_of_it : {0.2, 0.19}) {
         file.axes[0].plant.load_friction = said_of_it;
@@ -57,7 +59,7 @@ TEST_CASE("load_friction: a machine whose file has it is not blamed for it, also
         CHECK(d.verdict <= verdict::within_tolerance);
     }
 }
-TEST_CASE("load_friction: a linear axis that lifts a weight has it as well") {
+TEST_CASE("load_friction: a linear axis that lifts a weight has it as well" * doctest::test_suite("all")) {
     machine real;
     real.constant_force = 300;
     real.more_level = [](double motor, double load) { return 0.1 * std::abs(motor - load); };

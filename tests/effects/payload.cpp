@@ -51,7 +51,8 @@ TEST_CASE("payload_mass: one mass changes inertia and gravity, and apply moves b
 }
 // The fit of a mass of zero stops at its bound before the other numbers are found, and gravity with another
 // inertia scores better. This fails as soon as that is corrected.
-TEST_CASE("payload_mass: a payload that was taken off is found to be none" * doctest::should_fail()) {
+TEST_CASE("payload_mass: a payload that was taken off is found to be none" * doctest::test_suite("all") *
+          doctest::should_fail()) {
     load real;
     const auto file = file_of(real);
     real.mass = 0;
@@ -60,13 +61,14 @@ TEST_CASE("payload_mass: a payload that was taken off is found to be none" * doc
     REQUIRE(claims(d) == std::vector<std::string>{"payload_mass"});
     CHECK(value_of(d.causes[0], "payload.mass_kg").value < 0.01);
 }
-TEST_CASE("arm_length: another length is not called another mass") {
+TEST_CASE("arm_length: another length is not called another mass" * doctest::test_suite("all")) {
     load real;
     const auto file = file_of(real);
     real.length = 0.5;
     named(diagnose(file, run(real.on())), "arm_length", "payload.arm_m", 0.5, 0.03);
 }
-TEST_CASE("payload_mass, arm_length: one group where the inertia of the payload does not show") {
+TEST_CASE("payload_mass, arm_length: one group where the inertia of the payload does not show" *
+          doctest::test_suite("all")) {
     load real;
     real.rotor = 0.3; // behind a gear; its owner knows the inertia to a tenth
     auto file = file_of(real);
@@ -77,7 +79,8 @@ TEST_CASE("payload_mass, arm_length: one group where the inertia of the payload 
     CHECK(contains(group(d), "payload_mass"));
     CHECK(contains(group(d), "arm_length"));
 }
-TEST_CASE("payload_mass: a payload as described is nobody's fault, and one in a level plane has no weight") {
+TEST_CASE("payload_mass: a payload as described is nobody's fault, and one in a level plane has no weight" *
+          doctest::test_suite("all")) {
     const load real;
     const auto d = diagnose(file_of(real), run(real.on()));
     CAPTURE(said(d));

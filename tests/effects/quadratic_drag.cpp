@@ -34,7 +34,8 @@ std::string file_with(const nlohmann::json& drag, bool rotary = false, double to
 } // namespace
 
 TEST_CASE("quadratic drag: it is named with its number, apply writes it, and the corrected machine predicts "
-          "another log") {
+          "another log" *
+          doctest::test_suite("all")) {
     const machine real = with_drag(3000);
     const auto file = described(real);
     const auto d = diagnose(file, as_log(run(real, strokes)));
@@ -45,14 +46,15 @@ TEST_CASE("quadratic drag: it is named with its number, apply writes it, and the
     CHECK(simulate(better, other).axes[0].gap.force_rms_N <
           0.3 * simulate(file, other).axes[0].gap.force_rms_N);
 }
-TEST_CASE("quadratic drag: more viscous friction is not called drag") {
+TEST_CASE("quadratic drag: more viscous friction is not called drag" * doctest::test_suite("all")) {
     machine real;
     const auto file = described(real);
     real.viscous = 600;
     named(diagnose(file, as_log(run(real, strokes))), "viscous_friction", "viscous_N_s_per_m", 600, 0.03);
 }
 TEST_CASE("quadratic drag: a machine whose file has it is not blamed for it, also with another number inside "
-          "the tolerance") {
+          "the tolerance" *
+          doctest::test_suite("all")) {
     const machine real = with_drag(3000);
     auto file = described(real);
     for (const double said : {3000.0, 2940.0}) {

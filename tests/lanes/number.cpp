@@ -143,7 +143,7 @@ TEST_CASE_TEMPLATE("lanes: fits into a quantity, units checked as ever", L, lane
     CHECK(lane(g, 1) == 3_N);
 }
 
-TEST_CASE_TEMPLATE("lanes: finite tells the lanes apart, and one fault stays in its lane", L, lanes<2>,
+TEST_CASE_TEMPLATE("lanes: finite answers for each lane, and one fault stays in its lane", L, lanes<2>,
                    lanes<3>, lanes<4>, lanes<8>, portable) {
     for (const double bad : {no_number, infinity, -infinity}) {
         L x(1e308);

@@ -41,7 +41,7 @@ def describe(folder):
 def best_of(folder):
     gained = json.loads((folder / "gained.json").read_text())
     for name, axis in gained["axes"].items():
-        by_keys = [c for c in axis["compensations"] if c["claimed"] and c["controller"] and not c["block"]]
+        by_keys = [c for c in axis["compensations"] if c["claimed"] and c["controller"] and not c["block"] and not c["settings"]]
         yield name, axis["measured"], min(by_keys, key=lambda c: c["after"]["rms_m"]["value"])
 
 

@@ -85,8 +85,8 @@ TEST_CASE("ferraris_calibration: behind an encoder of 0.25 um the deviations tha
     CHECK(stepped.residual.value() < 1e-6);
     CHECK(std::abs(stepped.gain.value() - G) < 5e-4 * G);
 }
-TEST_CASE(
-    "ferraris_calibration: a record without changing acceleration cannot tell gain from offset, and says so") {
+TEST_CASE("ferraris_calibration: a record without changing acceleration cannot distinguish gain and offset, "
+          "and says so") {
     record still;
     for (int k = 0; k < 4000; ++k) {
         const double t = k * T.value();

@@ -125,8 +125,9 @@ TEST_CASE("ball_screw_drive: through a reversal it stops once, then leaves to th
     CHECK(changes == 1);
     CHECK(d.now().v < 0_mps);
 }
-TEST_CASE("ball_screw_drive: ten reversals in a second and 4 mm of way, no loop closed: right to 1.2 um with 4 "
-          "sub-steps, 0.15 um with 40") {
+TEST_CASE(
+    "ball_screw_drive: ten reversals in a second and 4 mm of travel, no loop closed: right to 1.2 um with 4 "
+    "sub-steps, 0.15 um with 40") {
     // Reference: classical Runge-Kutta at 1 us between stops, its own law, the stop found by halving the last
     // step.
     const auto torque = [](double t) {

@@ -211,7 +211,8 @@ using measured_as_x = measured_axis_of_loop<Boxes, Motor, Instruments, false>;
 template <class Boxes, class Motor, class Instruments>
 using measured_as_y = measured_axis_of_loop<Boxes, Motor, Instruments, true>;
 
-/// What the measurement of a frequency response drives: an axis of an `xy_table`; the other axis is driven too.
+/// What the measurement of a frequency response drives: an axis of an `xy_table` whose other axis is driven,
+/// too.
 template <class Friction, bool OfY> class driven_axis {
     using slide = table_axis_boxes<linear_motor<Friction>>;
 

@@ -10,7 +10,9 @@ that sense.
 2. The prose of a page is at most 112 columns wide. Tables, headings, code, pictures and what programs write are not
    prose, and a line that has no space to break at (a long link) may be wider.
 3. Comments and pages avoid private words, also where a line ends within one; each has the plain one beside it.
-   Names in backticks, what is quoted, and the titles of pictures are free.
+   Names in backticks and what is quoted are free.
+4. The same words are avoided in the names of test cases, the titles of pictures, and what programs and the writers of
+   the docs print or draw.
 """
 import re
 import subprocess
@@ -100,6 +102,16 @@ def faults_of_source(text):
     yield from words_in(block)
 
 
+def faults_of_words(name, text):
+    """Names of test cases; in programs and in writers of the docs every string."""
+    drawn = name.startswith(("docs/generators/", "examples/programs/"))
+    text = re.sub(r"//[^\n]*|#include[^\n]*", lambda span: " " * len(span[0]), text)
+    strings = r'((?:"(?:[^"\\\n]|\\.)*"\s*)+)'
+    for found in re.finditer(strings if drawn else rf"TEST_CASE(?:_TEMPLATE)?\(\s*{strings}", text):
+        said = re.sub(r'"\s*"', "", found[1]).strip().strip('"')
+        yield from words_in([(text.count("\n", 0, found.start()) + 1, said)])
+
+
 # --- Pages. ---
 def parts_of(name, text):
     """Number, line and kind of each line of a page: prose, free (not prose), written (by a program), or blank."""
@@ -147,8 +159,7 @@ def faults_of_page(name, text):
         if kind == "blank" or line.lstrip().startswith("|"):
             yield from words_in(block)
             block = []
-        if not line.startswith("!["):
-            block.append((number, line))
+        block.append((number, re.sub(r"^!\[([^\]]*)\]\(.*", r"\1", line)))
     yield from words_in(block)
 
 
@@ -180,6 +191,12 @@ for source, count in [
     ('auto a = "mended"; // `mended` is a name', 0),
 ]:
     must_find(faults_of_source(source), count)
+for name, source, count in [
+    ("tests/a/a.cpp", 'TEST_CASE("a: two causes are told " // first\n          "apart") { CHECK(a == "mended"); }', 1),
+    ("docs/generators/a.cpp", 'svg("force over the " "way"); // mended', 1),
+    ("include/quadrant/a.hpp", 'f("mended");', 0),
+]:
+    must_find(faults_of_words(name, source), count)
 
 
 def tracked(*patterns):
@@ -190,7 +207,7 @@ def tracked(*patterns):
 
 faults = []
 for name, text in tracked("*.hpp", "*.cpp", "*.ipp", "*.cc"):
-    faults += [f"{name}:{number}: {what}" for number, what in faults_of_source(text)]
+    faults += [f"{name}:{number}: {what}" for found in (faults_of_source(text), faults_of_words(name, text)) for number, what in found]
 for name, text in tracked("README.md", "docs/*.md", "docs/**/*.md"):
     for number, what in faults_of_page(name, text):
         if name != "docs/CHANGELOG.md" or "columns" in what:  # it quotes what was

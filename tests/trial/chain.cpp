@@ -127,7 +127,8 @@ TEST_CASE("trial's positions: a lag and a delay leave the scale behind by veloci
 }
 
 TEST_CASE(
-    "two encoders: play and stiffness both off inside their tolerances, a hold-out log too: nobody is blamed") {
+    "two encoders: play and stiffness both off inside their tolerances, a hold-out log too: nobody is blamed" *
+    doctest::test_suite("all")) {
     drawn_chain m = draw_chain(7, 1, {kind::none, {}, false, false, population::two_encoders});
     m.truth = m.described;
     m.described.gears.stiffness *= 1 + 0.9 * m.tolerance.stiffness;
@@ -138,7 +139,8 @@ TEST_CASE(
     CHECK(d.causes.empty());
 }
 
-TEST_CASE("two encoders: where the command chatters from sign to sign, the direction of the motion tells the side") {
+TEST_CASE(
+    "two encoders: where the command chatters from sign to sign, the direction of the motion tells the side") {
     drawn_chain m = draw_chain(7, 1, {kind::none, {}, false, false, population::two_encoders});
     m.described.guide.coulomb = 50;
     m.described.gears.play = 0;
@@ -147,8 +149,8 @@ TEST_CASE("two encoders: where the command chatters from sign to sign, the direc
     const auto machine = diagnosis::read_machine(machine_file(m).dump(), "machine.json");
     auto axis = read(log_file(m, detail::recorded(m, m.truth))).axes.at(0);
     const auto said_of = [&] {
-        return diagnosis::chain::diagnose_transmission(machine.axes[0], axis, machine.sample_period_s, "log.csv",
-                                                       {}, {});
+        return diagnosis::chain::diagnose_transmission(machine.axes[0], axis, machine.sample_period_s,
+                                                       "log.csv", {}, {});
     };
     CHECK(said_of().notes.empty());
     // Rows of one sign: a force is seen in them, a side that stays is not.
@@ -156,7 +158,8 @@ TEST_CASE("two encoders: where the command chatters from sign to sign, the direc
     double largest = 0;
     for (const double u : axis.command) largest = std::max(largest, std::abs(u));
     for (std::size_t k = 0; k < axis.command.size(); ++k)
-        axis.command[k] += static_cast<std::size_t>(static_cast<double>(k) / lasts) % 2 ? 3 * largest : -3 * largest;
+        axis.command[k] +=
+            static_cast<std::size_t>(static_cast<double>(k) / lasts) % 2 ? 3 * largest : -3 * largest;
     const auto said = said_of();
     REQUIRE(said.notes.size() == 1);
     CHECK(said.notes[0].find("changes its sign too often") != std::string::npos);
@@ -167,7 +170,8 @@ TEST_CASE("two encoders: where the command chatters from sign to sign, the direc
 
 TEST_CASE("positions: a head that swings slowly is no missed step, and an effect that the file excludes stays "
           "without "
-          "a name") {
+          "a name" *
+          doctest::test_suite("all")) {
     drawn_chain m = draw_chain(7, 2, {kind::none, {}, false, false, population::kinematic});
     m.truth = m.described;
     m.truth.follows.swing = 20 * std::max(m.described.scale.resolution, m.described.motor_encoder.resolution);
@@ -191,7 +195,8 @@ TEST_CASE("positions: a head that swings slowly is no missed step, and an effect
 
 TEST_CASE(
     "positions: a step at each reversal and a table along the travel leave what they were forecast to leave on "
-    "another motion") {
+    "another motion" *
+    doctest::test_suite("all")) {
     drawn_chain m = draw_chain(7, 3, {kind::none, {}, false, false, population::kinematic});
     m.described.kind = diagnosis::axis_kind::linear;
     m.described.recorded = positions_recorded::counter_and_scale;

@@ -65,9 +65,10 @@ line over_way(const char* name, Law law, std::initializer_list<double> micrometr
 }
 picture draw_dahl() {
     const dahl<> b{{122_N, 60e6 * 1_N / 1_m}, T};
-    return of("Force over the way of Dahl friction, 122 N and 60 N/um: there and back over 10 um, with a small "
-              "loop inside",
-              {over("position [um]", "force [N]", {over_way("", b, {10, 0, 3, 2, 10}, 20e-6)})});
+    return of(
+        "Force over displacement of Dahl friction, 122 N and 60 N/um: there and back over 10 um, with a small "
+        "loop inside",
+        {over("position [um]", "force [N]", {over_way("", b, {10, 0, 3, 2, 10}, 20e-6)})});
 }
 picture draw_lugre() {
     const lugre<>::parameters p{{8_N, 12_N, 5_mmps, 15_N / 1_mps, 2}, 1.5e6 * 1_N / 1_m};
@@ -78,10 +79,10 @@ picture draw_lugre() {
                      force = fast(v * 1_mps).value();
         if (k >= 0) (k <= 200 ? up : down).add(1e3 * v, force);
     }
-    return of(
-        "LuGre friction: force over the way with a small loop inside, and over a velocity that rises and falls",
-        {over("position [um]", "force [N]", {over_way("", lugre<>{p, T}, {20, 0, 6, 3, 20}, 50e-6)}),
-         over("velocity [mm/s]", "force [N]", {up, down})});
+    return of("LuGre friction: force over displacement with a small loop inside, and over a velocity that "
+              "rises and falls",
+              {over("position [um]", "force [N]", {over_way("", lugre<>{p, T}, {20, 0, 6, 3, 20}, 50e-6)}),
+               over("velocity [mm/s]", "force [N]", {up, down})});
 }
 picture draw_maxwell_slip() {
     const maxwell_slip<4> b{
@@ -91,9 +92,9 @@ picture draw_maxwell_slip() {
          .stiffness = {60e6 * 1_N / 1_m, 15e6 * 1_N / 1_m, 5e6 * 1_N / 1_m, 1.5e6 * 1_N / 1_m},
          .attraction = 450_N / 1_s},
         T};
-    return of(
-        "Force over the way of four Maxwell slip elements: there and back over 40 um, with a small loop inside",
-        {over("position [um]", "force [N]", {over_way("", b, {40, 0, 12, 8, 40}, 20e-6)})});
+    return of("Force over displacement of four Maxwell slip elements: there and back over 40 um, with a small "
+              "loop inside",
+              {over("position [um]", "force [N]", {over_way("", b, {40, 0, 12, 8, 40}, 20e-6)})});
 }
 } // namespace
 

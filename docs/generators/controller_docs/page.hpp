@@ -35,8 +35,9 @@ inline std::string values_of(const controller_key& key) {
 
 inline std::string fed_forward(const controller_kind& kind) {
     std::string out;
-    for (const auto& f : {kind.coulomb, kind.viscous, kind.acceleration})
+    for (const auto& f : {kind.coulomb, kind.viscous, kind.acceleration, kind.constant, kind.position})
         if (!f.key.empty()) out += fmt::format("{}`{}`", out.empty() ? "" : ", ", f.key);
+    if (!kind.dead_band.empty()) out += fmt::format(", `{}`", kind.dead_band);
     return out.empty() ? "none" : out;
 }
 

@@ -34,37 +34,41 @@ inline std::vector<key_value> short_of(std::vector<key_value> keys) {
     return keys;
 }
 
+inline const char* length_of(const compensated_axis& a) { return a.kind == axis_kind::rotary ? "rad" : "m"; }
+
 inline std::string sentence(const compensation& c, const compensated_axis& a) {
+    const char* const m = length_of(a);
     std::string text =
         c.effects.empty() ? c.name + ": " : fmt::format("{} (against {}): ", c.name, named(c.effects, "and"));
     if (a.forecast && c.claimed)
         text +=
             fmt::format("takes the error from {} to {} rms, {} off; with every fitted value at an end of its "
                         "interval at least {} off.",
-                        quantity(a.measured.rms_m.value, "m"), ranged(c.after.rms_m, "m"),
-                        percent(c.gain.value), percent(c.gain_at_ends));
+                        quantity(a.measured.rms_m.value, m), ranged(c.after.rms_m, m), percent(c.gain.value),
+                        percent(c.gain_at_ends));
     else if (a.forecast)
-        text += fmt::format("no gain is claimed: {} rms now, {} with it.",
-                            quantity(a.measured.rms_m.value, "m"), ranged(c.after.rms_m, "m"));
+        text += fmt::format("no gain is claimed: {} rms now, {} with it.", quantity(a.measured.rms_m.value, m),
+                            ranged(c.after.rms_m, m));
     else
         text += "nothing is forecast without a controller.";
     return text;
 }
 
 inline std::string table(const compensated_axis& a) {
+    const char* const m = length_of(a);
     const auto row = [](std::string_view name, std::string_view rms, std::string_view peak,
                         std::string_view glitch, std::string_view command) {
         return "  " + padded(std::string(name), 34) + padded(std::string(rms), 24) +
                padded(std::string(peak), 14) + padded(std::string(glitch), 14) + std::string(command) + "\n";
     };
-    const auto glitch = [](const estimate& e) {
-        return e.value > 0 ? quantity(e.value, "m") : std::string("-");
+    const auto glitch = [&](const estimate& e) {
+        return e.value > 0 ? quantity(e.value, m) : std::string("-");
     };
     std::string text = row("tracking error", "rms", "peak", "reversals", "command, rms");
-    text += row("measured", quantity(a.measured.rms_m.value, "m"), quantity(a.measured.peak_m.value, "m"),
+    text += row("measured", quantity(a.measured.rms_m.value, m), quantity(a.measured.peak_m.value, m),
                 glitch(a.measured.glitch_m), quantity(a.measured.command_rms_V.value, a.command_unit));
     for (const compensation& c : a.compensations)
-        text += row(c.name, ranged(c.after.rms_m, "m"), quantity(c.after.peak_m.value, "m"),
+        text += row(c.name, ranged(c.after.rms_m, m), quantity(c.after.peak_m.value, m),
                     glitch(c.after.glitch_m), quantity(c.after.command_rms_V.value, a.command_unit));
     return text;
 }
@@ -78,15 +82,18 @@ inline std::string summary(const compensation_result& r, bool verbose) {
         if (a.forecast && !a.positions_only && !a.compensations.empty())
             text += wrapped(fmt::format("The simulated loop is {} rms beside the logged position before "
                                         "anything is compensated.",
-                                        quantity(a.missed_rms_m, "m")),
+                                        quantity(a.missed_rms_m, length_of(a))),
                             2);
         if (a.compensations.empty()) text += wrapped("No cause of the diagnosis has a feedforward.", 2);
         for (const compensation& c : a.compensations) {
             text += wrapped(sentence(c, a), 2);
-            if (!c.keys.empty() && c.by_keys()) text += wrapped("in the controller: " + settings(c.keys), 4);
-            if (c.block.empty() && c.keys.empty()) // in a control that takes positions
+            if (!c.keys.empty() && (c.by_keys() || c.of_drive()))
+                text += wrapped("in the controller: " + settings(c.keys), 4);
+            if (c.of_drive()) text += wrapped("to the drive: " + settings(c.settings), 4);
+            if (c.block.empty() && c.keys.empty() && !c.of_drive()) // in a control that takes positions
                 text += wrapped("in the control: " + settings(short_of(c.settings)), 4);
-            if (!c.settings.empty() && verbose) text += wrapped(c.block + ": " + settings(c.settings), 4);
+            if (!c.settings.empty() && verbose && !c.of_drive())
+                text += wrapped(c.block + ": " + settings(c.settings), 4);
         }
         for (const advice& o : a.others)
             text += wrapped(fmt::format("{}: no feedforward. {}.", name_of_effect(o.effect), o.text), 2);

@@ -127,6 +127,32 @@ void add_options(CLI::App& command, options& o) {
     command.add_flag("--list", o.list, "say what is done, failed and not done; do nothing");
 }
 
+/// Says how many logs have which verdict, and which differ from their sisters; returns how many have none.
+template <class Rows> std::size_t conclude(const Rows& rows, const options& o, const workshop& w) {
+    std::vector<std::string> counts;
+    std::size_t failed = 0;
+    for (const std::string_view v : verdicts)
+        if (const auto n =
+                std::count_if(rows.begin(), rows.end(), [&](const row& r) { return r.verdict == v; })) {
+            counts.push_back(fmt::format("{} {}", n, spaced(v)));
+            if (v == "failed") failed = static_cast<std::size_t>(n);
+        }
+    const std::string overview = (w.out / "fleet.html").string();
+    if (!o.quiet) std::printf("%s: %s\n", listed(counts).c_str(), overview.c_str());
+    for (const row& r : rows)
+        if (!o.quiet && r.verdict == "failed") std::printf("  %s: %s\n", r.name.c_str(), r.error.c_str());
+    constexpr std::size_t most_told = 5;
+    const auto odd = odd_ones(rows);
+    if (!o.quiet && !odd.empty()) {
+        std::printf("Different from their sisters:\n");
+        for (std::size_t k = 0; k < std::min(odd.size(), most_told); ++k)
+            std::printf("  %s\n", sentence(odd[k]).c_str());
+        if (odd.size() > most_told) std::printf("  and %zu more in the overview\n", odd.size() - most_told);
+    }
+    std::fflush(stdout);
+    return failed;
+}
+
 void lead(options o, crew& others) {
     if (o.jobs == 0) o.jobs = others.others() > 0 ? 1 : std::max(1U, std::thread::hardware_concurrency());
     std::vector<entry> entries;
@@ -163,28 +189,7 @@ void lead(options o, crew& others) {
         std::fflush(stdout);
     }
     do_all(list, o, w, others);
-
-    std::vector<std::string> counts;
-    std::size_t failed = 0;
-    for (const std::string_view v : verdicts)
-        if (const auto n = std::count_if(list.rows().begin(), list.rows().end(),
-                                         [&](const row& r) { return r.verdict == v; })) {
-            counts.push_back(fmt::format("{} {}", n, spaced(v)));
-            if (v == "failed") failed = static_cast<std::size_t>(n);
-        }
-    const std::string overview = (w.out / "fleet.html").string();
-    if (!o.quiet) std::printf("%s: %s\n", listed(counts).c_str(), overview.c_str());
-    for (const row& r : list.rows())
-        if (!o.quiet && r.verdict == "failed") std::printf("  %s: %s\n", r.name.c_str(), r.error.c_str());
-    constexpr std::size_t most_told = 5;
-    const auto odd = odd_ones(list.rows());
-    if (!o.quiet && !odd.empty()) {
-        std::printf("Different from their sisters:\n");
-        for (std::size_t k = 0; k < std::min(odd.size(), most_told); ++k)
-            std::printf("  %s\n", sentence(odd[k]).c_str());
-        if (odd.size() > most_told) std::printf("  and %zu more in the overview\n", odd.size() - most_told);
-    }
-    std::fflush(stdout);
+    const std::size_t failed = conclude(list.rows(), o, w);
     if (failed)
         throw bad_input(o.folder, fmt::format("{} of {} logs have no diagnosis", failed, list.rows().size()));
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the settings of LinuxCNC, of a drive, and of a compensation table, one after the other.
 #pragma once
 #include "report/html.hpp"
 
@@ -117,13 +118,20 @@ inline settings_text linuxcnc_lines(const machine_description& m) {
         const plant_model p(*a, 0);
         const double units = units_of(*a);
         out.text += fmt::format("\n[JOINT_{}]\n# axis {}, machine unit {}\n", joint, a->name, unit_of(*a));
-        if (p.cyclic.count > 0 || p.backlash > 0)
+        const double lost = a->transmission.backlash_m.value_or(0);
+        if (p.cyclic.count > 0)
             out.text +=
-                p.cyclic.count > 0
-                    ? fmt::format("# COMP_FILE, COMP_FILE_TYPE = 1: position, forward and reverse of the table "
-                                  "of corrections, in {}\n",
-                                  unit_of(*a))
-                    : fmt::format("BACKLASH = {}\n", in_six(p.backlash * units));
+                fmt::format("# COMP_FILE, COMP_FILE_TYPE = 1: position, forward and reverse of the table "
+                            "of corrections, in {}\n",
+                            unit_of(*a));
+        else if (lost > 0)
+            out.text += fmt::format("BACKLASH = {}\n", in_six(lost * units));
+        if (p.backlash > 0)
+            out.notes.push_back(
+                fmt::format("axis {}: the encoder reads behind the play of {} {}, so that the loop corrects "
+                            "it; BACKLASH would "
+                            "move the load by it. A deadband of half of it keeps an integral from hunting",
+                            a->name, in_six(p.backlash * units), unit_of(*a)));
         if (a->kind == axis_kind::linear && a->command_unit == "V" && !a->positions_only)
             for (const auto& [name, value] : of_quadrant_axis(*a, p)) {
                 out.text += fmt::format("{} = {}\n", ini_name(name), in_six(value));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: html_report() writes one page from top to bottom.
 #pragma once
 #include "report.hpp"
 #include "simulation_summary.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: the vocabulary of all pages and of the terminal, one table after the other.
+// Long: the vocabulary of all pages and of the terminal, one table after the other;
+// Long: sentence_of_a_linear_axis() has one sentence for each thing that can be said first.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one machine of the thesis, each of its boxes a type.
 #pragma once
 #include "divergence_guard.hpp"
 #include "friction_run.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: thesis_parts() is a table, a line for each part of the source.
 #include "publication.hpp"
 
 namespace quadrant_reproduce {

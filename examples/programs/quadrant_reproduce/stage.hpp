@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one machine of the source, each of its boxes a type.
 #pragma once
 #include <quadrant/base/in_si.hpp>
 #include <quadrant/base/literals.hpp>

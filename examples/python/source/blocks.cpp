@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: one binding after the other.
+// Long: one binding after the other, those of add_responses() too.
 // Blocks for Python: plants, friction, the cascade, frequency responses, margins. Units stand in the names.
 #include "parts.hpp"
 

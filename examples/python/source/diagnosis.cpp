@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: one binding after the other.
+// Long: one binding after the other, those of add_calls() too.
 // The diagnosis: logs, diagnose, apply, simulate, forecast, compensate, compare, and the trial's machines.
 #include "parts.hpp"
 

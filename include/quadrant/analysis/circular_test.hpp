@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: circular_test() is one pass over the turns, figure by figure of ISO 230-4.
 #pragma once
 #include "circle_fit.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one search: its operators, its state and how the state is kept.
 #pragma once
 #include "../base/error.hpp"
 
@@ -192,7 +193,7 @@ genetic_state tune_genetic(const std::vector<gene>& genes, const Cost& cost, std
     const auto tried = [&](const std::vector<double>& shares, std::uint64_t draw) {
         std::vector<double> values;
         for (std::size_t i = 0; i < genes.size(); ++i) values.push_back(genes[i].at(shares[i]));
-        double c;
+        double c = HUGE_VAL;
         if constexpr (is_draw)
             c = cost(values, draw);
         else

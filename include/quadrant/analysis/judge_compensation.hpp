@@ -132,9 +132,8 @@ inline estimated<double> mean_of(const std::vector<double>& x) {
 /// An axis that gets its compensation late also breaks away later: `late` is about 0.6 of the shift that would
 /// put it right (measured on bristles and on Maxwell-slip springs).
 /// H, position per unit of the wire, a model (`p_pi_loop`: plant times sensitivity) or measured, asked for from
-/// 1 over the record up to half the sampling rate. Only its product with c enters, so where the compensation is
-/// right it need not be
-/// exact: e0 and H c are then wrong alike.
+/// 1 over the record up to half the sampling rate. Only its product with c enters: where the compensation is
+/// right, an error of H falsifies e0 and H c alike.
 /// A word is given only where the whole interval (over the reversals, 95 %) lies on one side of the tolerance,
 /// or is narrow and meets it (right); else cannot_tell: too few reversals, an error that steps of friction do
 /// not explain (share below 0.7), no friction beside the noise, an interval too wide.

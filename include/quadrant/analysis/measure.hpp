@@ -6,14 +6,15 @@
 #include <cstdint>
 #include <limits>
 #include <time.h>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 namespace quadrant::inline v0 {
 
 /// One call of a loop, never inlined: what `measure` times, and what callgrind finds by its name
 /// (benchmarks/bound.sh).
-template <class Loop, class Input> [[gnu::noinline]] auto measured_call(Loop& loop, const Input& input) {
+template <class Loop, class Input>
+[[gnu::noinline]] decltype(auto) measured_call(Loop& loop, const Input& input) {
     return loop(input);
 }
 
@@ -41,23 +42,36 @@ inline std::int64_t nanoseconds_now() {
 }
 /// Keeps what a loop gave, so that no compiler leaves the loop out.
 template <class Value> void use(const Value& value) { asm volatile("" : : "g"(&value) : "memory"); }
+/// One call, and what it gave or left in the loop.
+template <class Loop, class Input> void call(Loop& loop, const Input& input) {
+    if constexpr (std::is_void_v<decltype(measured_call(loop, input))>) {
+        measured_call(loop, input);
+        use(loop);
+    } else
+        use(measured_call(loop, input));
+}
 } // namespace detail
 
 /// Times `calls` calls of a loop on this computer, cache warm, over the inputs again and again: loop(input) is
-/// one sample. The first pass over the inputs is not counted if there are more calls than inputs. POSIX.
+/// one sample, whether it returns something or keeps it. Inputs: a vector, an array, whatever has size() and
+/// operator[]. The first pass over the inputs is not counted if there are more calls than inputs. POSIX.
 ///   const quadrant::call_times t = quadrant::measure(my_loop, inputs);
 /// The longest calls are those in which something else had the processor; what the loop itself may need at most
 /// is said by benchmarks/bound.sh in instructions.
-template <class Loop, class Input>
-call_times measure(Loop& loop, const std::vector<Input>& inputs, std::size_t calls = 200'000) {
+template <class Loop, class Inputs>
+requires requires(Loop& loop, const Inputs& inputs) {
+    inputs.size();
+    loop(inputs[0]);
+}
+call_times measure(Loop&& loop, const Inputs& inputs, std::size_t calls = 200'000) {
     call_times result;
-    if (inputs.empty()) return result;
+    if (inputs.size() == 0) return result;
     result.ns.reserve(calls);
     if (calls > inputs.size())
-        for (const Input& input : inputs) detail::use(measured_call(loop, input));
+        for (const auto& input : inputs) detail::call(loop, input);
     for (std::size_t k = 0; result.ns.size() < calls; k = k + 1 == inputs.size() ? 0 : k + 1) {
         const std::int64_t begin = detail::nanoseconds_now();
-        detail::use(measured_call(loop, inputs[k]));
+        detail::call(loop, inputs[k]);
         result.ns.push_back(static_cast<double>(detail::nanoseconds_now() - begin));
     }
     std::sort(result.ns.begin(), result.ns.end());

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the three filters of one memory, and what the memory then does.
 #pragma once
 #include "../memory/repetitive.hpp"
 #include "least_squares.hpp"

@@ -55,6 +55,11 @@ inline double interpolated(const std::vector<double>& x, const std::vector<doubl
     const auto i = std::size_t(above - x.begin());
     return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
 }
+/// The part of a force whose springs have broken away, from the slope of the virgin curve there: where the
+/// tangent meets zero displacement.
+inline double slipping(double force, double slope, double way) {
+    return std::clamp(force - slope * way, 0.0, force);
+}
 } // namespace detail
 
 /// Virgin curve from runs along a slow sinusoid in a closed loop, 0.1 Hz with 15 um and with 450 um on the
@@ -131,7 +136,7 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
         const double at_rest = level->breakaway().value();
         const double here =
             level->slip(quantity_of<signal::velocity>::from_value(mean_of(r, cut[r].speed, way))).value();
-        const double slips = std::clamp(force - slope(r, way) * way, 0.0, force);
+        const double slips = detail::slipping(force, slope(r, way), way);
         return 1 + slips * (2 * at_rest / (at_rest + here) - 1) / force;
     };
     double disagree = 0, compared = 0; // of neighbouring runs, in the last octave that both reach

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../block/retuned.hpp"
 #include "axis_law.hpp"
 
 #include <cmath>
@@ -136,12 +137,7 @@ public:
     }
 
     void retune(const linuxcnc_pid& next, const axis_motion<Real>&, position, velocity, value) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_);
     }
 
     bool limited() const noexcept { return state_.at_limit != 0; } ///< the last output was at its limit

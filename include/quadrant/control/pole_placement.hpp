@@ -67,7 +67,7 @@ auto place_rst(const sampled_plant<A, B, Number>& plant, const rst_poles& poles,
     const detail::placed_rst<Integrals, A, B, Number> d(plant, poles, period);
     z_polynomial<d.rest, Number> t{};
     for (std::size_t i = 0; i <= d.rest; ++i) t[i] = d.observer[i];
-    const auto p = d.template with<Command>(t);
+    auto p = d.template with<Command>(t);
     const double radius = loop_radius(plant, p);
     require(radius < 1, "place_rst.natural", radius, "must leave the loop stable (largest pole)");
     return p;

@@ -3,6 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 #include "../base/standstill.hpp"
+#include "../block/retuned.hpp"
 #include "../filter/viscous_step.hpp"
 #include "../observer/dare.hpp"
 #include "../observer/nominal_plant.hpp"
@@ -117,12 +118,7 @@ public:
     }
 
     void retune(const state_feedback& next, const axis_motion<Real>&, position, velocity, value) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_);
     }
 
     /// Of the unlimited law.

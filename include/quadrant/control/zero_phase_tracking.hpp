@@ -19,7 +19,7 @@ auto zero_phase_rst(const sampled_plant<A, B, Number>& plant, const rst_poles& p
     const detail::placed_rst<Integrals, A, B, Number> d(plant, poles, period);
     std::array<Number, B> reversed{};
     for (std::size_t i = 0; i < B; ++i) reversed[i] = plant.b[B - i];
-    const auto p = d.template with<Command>(detail::product(reversed, d.closed));
+    auto p = d.template with<Command>(detail::product(reversed, d.closed));
     const double radius = loop_radius(plant, p);
     require(radius < 1, "place_rst.natural", radius, "must leave the loop stable (largest pole)");
     return p;

@@ -3,6 +3,7 @@
 #include "apply.hpp"
 #include "chain/position_compensation.hpp"
 #include "compensate/advice.hpp"
+#include "compensate/dead_band.hpp"
 #include "compensate/tracking_forecast.hpp"
 #include "compensate/velocity_drive_feedforward.hpp"
 #include "fit/neighbour.hpp"
@@ -79,11 +80,10 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         throw bad_input(log.file, fmt::format("{} samples are {:.3g} s: a forecast needs at least {} s",
                                               log.samples, seconds, shortest_s));
     for (const axis_description& axis : machine.axes)
-        if (axis.kind == axis_kind::rotary)
-            throw bad_input(
-                machine.file,
-                fmt::format("axes.{}: is rotary; feedforwards are built for linear axes only", axis.name));
-    refuse_driven(machine, "a feedforward", drive_kind::velocity);
+        if (axis.kind == axis_kind::rotary && !axis.drive.closes())
+            throw bad_input(machine.file, fmt::format("axes.{}: is rotary; feedforwards are built for linear "
+                                                      "axes only, and for drives that close loops of their own",
+                                                      axis.name));
     const machine_description corrected = apply(machine, d, at_least);
     const detail::drawn_machines drawn(machine, d, at_least);
     compensation_result out{.machine_file = machine.file, .log_file = log.file, .axes = {}, .notes = {}};
@@ -112,9 +112,17 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         compensated_axis& a = out.axes.emplace_back();
         a.name = axis.name;
         a.command_unit = axis.command_unit;
+        a.kind = axis.kind;
         std::vector<std::string> causes;
         for (const cause& c : d.causes) {
             if (c.axis != axis.name || c.probability < at_least) continue;
+            if (axis.drive.closes()) {
+                if (detail::paid_by_drive(c.effect))
+                    causes.push_back(c.effect);
+                else
+                    a.others.push_back({c.effect, std::string(effect_named(c.effect)->remedy)});
+                continue;
+            }
             const std::string text =
                 advice_on(c.effect, forecast.plant(), axis.encoder.resolution_m, axis.command_unit);
             if (!text.empty())
@@ -123,11 +131,13 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 causes.push_back(c.effect);
         }
         const controller_description controller = axis.controller.value_or(controller_description());
-        if (axis.drive.closes()) {
+        if (axis.drive.takes_position()) {
+            a.compensations =
+                detail::for_position_drive(forecast.plant(), axis, machine.sample_period_s, causes);
+        } else if (axis.drive.closes()) {
             if (axis.controller)
-                a.compensations =
-                    detail::for_velocity_drive(forecast.plant(), controller, machine.sample_period_s,
-                                               coupled.drive->in_volts, std::move(causes));
+                a.compensations = detail::for_velocity_drive(forecast.plant(), axis, machine.sample_period_s,
+                                                             coupled.drive->in_volts, causes);
         } else {
             detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s,
                                           std::move(causes));
@@ -137,7 +147,17 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                     {effect,
                      fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
         }
-        if (!axis.controller) {
+        if (axis.controller)
+            if (auto quiet =
+                    detail::with_dead_band(controller, a.compensations,
+                                           detail::least_dead_band(forecast.resolution(), forecast.noise(),
+                                                                   forecast.plant().backlash)))
+                a.compensations.push_back(std::move(*quiet));
+        if (!logged->has_reference) {
+            out.notes.push_back(fmt::format("axis {}: the log has no reference: nothing is forecast", a.name));
+            continue;
+        }
+        if (!axis.controller && !axis.drive.takes_position()) {
             out.notes.push_back(
                 fmt::format("axis {}: no controller is described: nothing is forecast", a.name));
             continue;

@@ -282,7 +282,9 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& t
         begins(stage.gap, 1, "what is left, and the next experiment");
         if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
         const bool proposed = !out.next.motion.empty();
-        if (!c.axis.drive.closes() && !c.models.over() && behind > verdict::within_tolerance)
+        // Where the path alone is compared, there is no residual force that a motion could show.
+        const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
+        if (by_force && !c.models.over() && behind > verdict::within_tolerance)
             propose(out, c, causes, rivals);
         if (!proposed) {
             out.next.motion = text_of(out.next.motion, c.axis.kind);

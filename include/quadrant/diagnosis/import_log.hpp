@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class: its steps share the columns and where a refusal points.
 #pragma once
 #include "import/foreign_table.hpp"
 #include "import/own_header.hpp"

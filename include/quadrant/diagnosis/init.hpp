@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class: begin_axis() and the other steps share the file that they write.
 #pragma once
 #include "fit/drive_estimate.hpp"
 #include "fit/regression.hpp"

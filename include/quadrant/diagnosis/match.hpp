@@ -89,20 +89,6 @@ inline void refuse_positions_only(const machine_description& machine, std::strin
                 fmt::format("axes.{}.plant: is missing; {} needs the forces of the axis", axis.name, what));
 }
 
-/// Refuses a machine with a drive that closes loops of its own, other than of the kind `but`, for which `what`
-/// is not computed: bad_input.
-inline void refuse_driven(const machine_description& machine, std::string_view what,
-                          drive_kind but = drive_kind::current) {
-    for (const axis_description& axis : machine.axes)
-        if (axis.drive.closes() && axis.drive.kind != but)
-            throw bad_input(
-                machine.file,
-                fmt::format("axes.{}.drive.kind: is {}; {} is computed for drives of kind current{} only "
-                            "(apply the diagnosis and simulate instead)",
-                            axis.name, name_of(axis.drive.kind), what,
-                            but == drive_kind::current ? "" : fmt::format(" or {}", name_of(but))));
-}
-
 /// Leaves out the axes of a log that the machine file says nothing of, with a note, when it describes another
 /// of them: the recorder of a robot writes all joints, and an owner begins with one.
 inline void keep_described(const machine_description& machine, machine_log& log) {

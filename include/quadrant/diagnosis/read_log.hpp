@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class: its steps share the columns and the line at which a refusal points.
 #pragma once
 #include "log/angle_wraps.hpp"
 #include "log/header_reader.hpp"

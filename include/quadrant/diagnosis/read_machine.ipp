@@ -195,8 +195,8 @@ private:
 
     static void read_tolerance(const json_node& node, tolerance_description& tolerance) {
         const auto names = tolerance_names(node.kind);
-        std::vector<std::string_view> known;
-        for (const tolerance_name& t : names) known.push_back(t.name);
+        std::vector<std::string_view> known(names.size());
+        for (std::size_t k = 0; k < names.size(); ++k) known[k] = names[k].name;
         refuse_unknown_keys(node.object(), known);
         for (const std::string_view name : known)
             if (const auto given = node.find(std::string(name)))

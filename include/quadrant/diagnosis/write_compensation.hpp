@@ -7,7 +7,7 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-inline nlohmann::ordered_json tracking_json(const tracking& t, bool measured) {
+inline nlohmann::ordered_json tracking_json(const tracking& t, bool measured, axis_kind kind) {
     nlohmann::ordered_json out;
     const auto put = [&](const char* key, const estimate& e) {
         if (measured)
@@ -15,9 +15,9 @@ inline nlohmann::ordered_json tracking_json(const tracking& t, bool measured) {
         else
             out[key] = {{"value", e.value}, {"range", interval_json(e)}};
     };
-    put("rms_m", t.rms_m);
-    put("peak_m", t.peak_m);
-    put("glitch_m", t.glitch_m);
+    put(key_of("rms_m", kind).c_str(), t.rms_m);
+    put(key_of("peak_m", kind).c_str(), t.peak_m);
+    put(key_of("glitch_m", kind).c_str(), t.glitch_m);
     put("command_rms_V", t.command_rms_V);
     return out;
 }
@@ -31,14 +31,14 @@ inline nlohmann::ordered_json keys_json(const std::vector<key_value>& keys) {
     }
     return out;
 }
-inline nlohmann::ordered_json compensation_json(const compensation& c, bool forecast) {
+inline nlohmann::ordered_json compensation_json(const compensation& c, bool forecast, axis_kind kind) {
     nlohmann::ordered_json out{{"name", c.name},
                                {"effects", c.effects},
                                {"block", c.block},
                                {"settings", keys_json(c.settings)},
                                {"controller", keys_json(c.keys)}};
     if (!forecast) return out;
-    out["after"] = tracking_json(c.after, false);
+    out["after"] = tracking_json(c.after, false, kind);
     out["gain"] = {{"value", c.gain.value}, {"range", interval_json(c.gain)}};
     out["gain_at_ends"] = c.gain_at_ends;
     out["claimed"] = c.claimed;
@@ -53,13 +53,13 @@ inline nlohmann::ordered_json to_json(const compensation_result& r) {
     for (const compensated_axis& a : r.axes) {
         auto& out = axes[a.name] = {{"command_unit", a.command_unit}, {"forecast", a.forecast}};
         if (a.forecast) {
-            out["measured"] = detail::tracking_json(a.measured, true);
-            out["missed_rms_m"] = a.missed_rms_m;
-            out["noise_m"] = a.noise_m;
+            out["measured"] = detail::tracking_json(a.measured, true, a.kind);
+            out[key_of("missed_rms_m", a.kind)] = a.missed_rms_m;
+            out[key_of("noise_m", a.kind)] = a.noise_m;
         }
         out["compensations"] = nlohmann::ordered_json::array();
         for (const compensation& c : a.compensations)
-            out["compensations"].push_back(detail::compensation_json(c, a.forecast));
+            out["compensations"].push_back(detail::compensation_json(c, a.forecast, a.kind));
         out["others"] = nlohmann::ordered_json::array();
         for (const advice& o : a.others) out["others"].push_back({{"effect", o.effect}, {"advice", o.text}});
     }

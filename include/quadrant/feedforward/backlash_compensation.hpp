@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../block/retuned.hpp"
 
 namespace quadrant::inline v0 {
 
@@ -77,14 +78,7 @@ public:
     }
 
     void retune(const backlash_compensation& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto last_move = moved_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        moved_ = last_move;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_, moved_);
     }
 
     bool crossing() const noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../block/retuned.hpp"
 #include "../observer/nominal_plant.hpp"
 
 #include <array>
@@ -76,12 +77,7 @@ public:
     }
 
     void retune(const sampled_inverse_model& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_);
     }
 
     std::complex<double> response(frequency f) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../block/retuned.hpp"
 
 #include <cstdint>
 
@@ -99,12 +100,7 @@ public:
         state_.reference += by;
     }
     void retune(const edge_velocity& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_);
     }
 
     bool faulted() const noexcept { return out_.faulted(); }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block: its step, and what every block has.
 #pragma once
 #include "presliding.hpp"
 #include "spring_law.hpp"

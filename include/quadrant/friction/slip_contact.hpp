@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block: its step by one spring and by several, and what every block has.
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"

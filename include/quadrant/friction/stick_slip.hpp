@@ -97,7 +97,8 @@ fastest_sliding(Friction& friction, const Real slope, const Real size, const Rea
         if (scales <= Real(1)) {
             if constexpr (std::floating_point<Real>) {
                 if (falls <= rise && bent * scales <= close * (rise * next))
-                    return velocity::from_value(held(next - (way * way) * (curvature * (Real(0.5) * per_force))));
+                    return velocity::from_value(
+                        held(next - (way * way) * (curvature * (Real(0.5) * per_force))));
             } else if (bent <= close * (rise * next)) // the tangent's carries the derivatives
                 return velocity::from_value(held(next));
         }
@@ -107,10 +108,10 @@ fastest_sliding(Friction& friction, const Real slope, const Real size, const Rea
 }
 
 /// The fastest v' >= 0 with slope v' + slip(v') = size, where the level may rise: 0 when there is none. From
-/// above, as stick_slip does: the falling part at the speed that is known to be
-/// too fast leaves too much for the rest, whose speed is again too fast, and nearer. That one solves a concave
-/// equation: Newton's method from below. The last pass is Newton's for the whole, once the curvature says that
-/// it is exact.
+/// above, as stick_slip does: the falling part is convex, so that its tangent at a speed that is known to be too
+/// fast leaves too much for the rest, whose speed is again too fast, and nearer. The rest is a concave equation:
+/// Newton's method from below. The last pass is Newton's for the whole, once the curvature says that it is
+/// exact.
 template <class Real, class Friction>
 quantity_of<signal::velocity, Real>
 fastest_in_direction(const Friction& friction, const gain_of<signal::force, signal::velocity, Real>& slope,
@@ -130,10 +131,15 @@ fastest_in_direction(const Friction& friction, const gain_of<signal::force, sign
             const force left = at.steepest * (Real(step / at.scale) * step);
             if (next > velocity() && (left < force() ? -left : left) <= close * (rise * next)) return next;
         }
-        const force rest = size - at.falling; // for the mass and the rising part
+        const gain along = slope + at.falling_slope; // with the tangent of the falling part; may fall
+        const force rest = size - at.falling + force(at.falling_slope * v); // for that and the rising part
         if (!(rest > force())) return velocity();
+        if (!(rise > gain())) { // beyond the hump of the rest
+            v = velocity();
+            at = friction.parts(forward, v);
+        }
         for (int inner = 0; inner < most_passes; ++inner) {
-            const velocity step = (rest - slope * v - at.rising) / (slope + at.rising_slope);
+            const velocity step = (rest - along * v - at.rising) / (along + at.rising_slope);
             v += step;
             if (!(v > velocity())) v = velocity();
             if (inner > 0 && step <= close * v) break; // from below: what is left is smaller yet
@@ -170,9 +176,14 @@ stick_slip(Friction&& friction, quantity<si::mass, Real> mass, quantity_of<signa
             const Real along = forward ? v.value() : -v.value(), most = size.value();
             const bool goes_on = along > Real(0);
             if (!goes_on && most <= friction.breakaway().value()) return velocity();
-            const Real next = detail::fastest_sliding<Real>(friction, slope.value(), most,
-                                                            goes_on ? along : Real(most / slope.value()))
-                                  .value();
+            Real start{};
+            if (!goes_on)
+                start = most / slope.value();
+            else if constexpr (requires { friction.foreseen(v); })
+                start = friction.foreseen(velocity::from_value(along)).value();
+            else
+                start = along;
+            const Real next = detail::fastest_sliding<Real>(friction, slope.value(), most, start).value();
             return velocity::from_value(forward ? next : -next);
         }
     // slope v' + slip(v') = size from above: each pass is slower, none slower than the fastest solution. A

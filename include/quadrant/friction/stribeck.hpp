@@ -123,8 +123,19 @@ public:
             return {law_.coulomb_ + excess_, -(excess_ * law_.inverse_velocity_), law_.inverse_velocity_};
         }
 
+        /// Where the axis will be after a sub-step that begins at `speed`, from the two before it: an even change
+        /// goes on. So the law is evaluated while the sub-step before is still being solved.
+        [[gnu::always_inline]] argument foreseen(argument speed) noexcept { ///< speed > 0
+            const argument ahead = last_ + (last_ - before_) * Real(2);
+            before_ = last_, last_ = speed;
+            if (ahead > speed * Real(0.5) && ahead < speed * Real(2)) [[likely]]
+                return ahead;
+            return speed;
+        }
+
     private:
         static constexpr double near = 1.0 / 64;
+        argument last_{}, before_{}; ///< speeds
         const stribeck& law_;
         Real ratio_ = Real(-1); ///< speed / Stribeck velocity of the last call; none yet
         value excess_{};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop: what it asks of each box, and its step.
 #pragma once
 #include "../base/finite.hpp"
 #include "../block/axis_motion.hpp"

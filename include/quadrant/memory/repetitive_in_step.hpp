@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block in lanes: its step, the change of its cycle, and what every block has.
 #pragma once
 #include "repetitive.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block, and how far its filter may reach.
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/finite.hpp"
 #include "../base/standstill.hpp"
+#include "../block/retuned.hpp"
 #include "harmonic_design.hpp"
 #include "nominal_plant.hpp"
 
@@ -158,14 +159,7 @@ public:
     }
 
     void retune(const harmonic_force_observer& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto off = innovation_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        innovation_ = off;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_, innovation_);
     }
 
     value harmonic(std::size_t i) const noexcept { return state_.in_phase[i]; } ///< one of them, now

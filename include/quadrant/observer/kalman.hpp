@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/finite.hpp"
 #include "../base/standstill.hpp"
+#include "../block/retuned.hpp"
 #include "dare.hpp"
 
 #include <array>
@@ -120,14 +121,7 @@ public:
     }
 
     void retune(const kalman& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto off = innovation_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        innovation_ = off;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_, innovation_);
     }
 
     const argument& position() const noexcept { return state_.position; }

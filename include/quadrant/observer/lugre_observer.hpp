@@ -63,8 +63,9 @@ public:
         const gain_of<Out, signal::velocity, Real> stiff = stiffness_ * period_;
         const Real way(stiff * speed / curve_.slip(v)), kept = exp(-way);
         // (1 - exp(-way)) / way, without the cancellation
-        const Real reach =
-            way < Real(1e-3) ? Real(1) - way * (Real(0.5) - way / Real(6)) : (Real(1) - kept) / way;
+        const Real reach = way < Real(1e-3)
+                               ? Real(1) - way * (Real(0.5) - way * (Real(1) / Real(6) - way / Real(24)))
+                               : (Real(1) - kept) / way;
         const value most = curve_.breakaway();
         value bent = state_.force * kept + stiff * (v + correction_ * behind) * reach;
         bent = bent > most ? most : bent < -most ? -most : bent;

@@ -132,18 +132,21 @@ sampled_system<N, Number> sampled(const matrix<N, N, Number>& f, const column<N,
     }
     const auto e = detail::exponential(a);
     matrix<2 * N, 2 * N, Number> b{};
+    const double intensity =
+        detail::largest(noise) * period; // a density of any unit: taken out where it is large
+    const double scale = intensity > 1 ? intensity : 1;
     for (std::size_t i = 0; i < N; ++i)
         for (std::size_t j = 0; j < N; ++j) {
             s.step[i][j] = e[i][j];
             b[i][j] = -f[i][j] * period;
             b[N + i][N + j] = f[j][i] * period;
-            b[i][N + j] = noise[i][j] * period;
+            b[i][N + j] = noise[i][j] * (period / scale);
         }
     const auto v = detail::exponential(b);
     for (std::size_t i = 0; i < N; ++i) {
         s.from_input[i] = e[i][N];
         for (std::size_t j = 0; j < N; ++j)
-            for (std::size_t k = 0; k < N; ++k) s.noise[i][j] += e[i][k] * v[k][N + j];
+            for (std::size_t k = 0; k < N; ++k) s.noise[i][j] += e[i][k] * v[k][N + j] * scale;
     }
     for (std::size_t i = 0; i < N; ++i)
         for (std::size_t j = 0; j < i; ++j)

@@ -3,6 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 #include "../base/standstill.hpp"
+#include "../block/retuned.hpp"
 
 #include <complex>
 #include <numbers>
@@ -87,12 +88,7 @@ public:
     }
 
     void retune(const reduced_order_observer& next) noexcept {
-        if (next.period_ != period_) return out_.raise();
-        const auto kept = state_;
-        const auto out = out_;
-        *this = next;
-        state_ = kept;
-        out_ = out;
+        detail::retuned(*this, next, next.period_ == period_, out_, state_);
     }
 
     const value& velocity() const noexcept { return state_.velocity; }

@@ -157,7 +157,7 @@ private:
             return 0;
     }
     /// One sub-step; a friction that remembers moves with the axis.
-    template <class Law> velocity advanced(Law& law, velocity v, force drive) noexcept {
+    template <class Law> [[gnu::always_inline]] velocity advanced(Law& law, velocity v, force drive) noexcept {
         if constexpr (friction_with_memory<Friction, Real>) {
             const auto to = presliding<Real>(friction_, mass_, v, drive, h_);
             friction_.become(to.friction);

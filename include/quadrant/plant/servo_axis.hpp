@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one plant: side_by_side() names each of its parameters, and its step each of its forces.
 #pragma once
 #include "../control/dead_band.hpp"
 #include "../friction/slip_contact.hpp"

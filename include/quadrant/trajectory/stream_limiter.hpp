@@ -35,7 +35,7 @@ namespace quadrant::inline v0::trajectory {
 /// `shift(by)`: the frame of positions moves. limited() = the last sample could not follow.
 /// Range: velocity > 0, may be infinite; acceleration finite, > 0; jerk > 0, may be infinite; N <= Capacity.
 /// |x| <= range() = acceleration T^2/(100 eps): there the roundings of three positions are up to 4 % of the
-/// acceleration limit. In double at 1 kHz and 1 m/s^2 that is 45 km, in float 84 mm: count positions from where
+/// acceleration limit, and those of four up to 8 % of acceleration/T beside the jerk limit. In double at 1 kHz and 1 m/s^2 that is 45 km, in float 84 mm: count positions from where
 /// the axis is (`shift`), or take double. NaN, infinities, positions beyond range(): holds the last output,
 /// keeps the state, raises faulted(). Throws "stream_limiter.<field> = ...: must ..." for period, velocity,
 /// acceleration, jerk.

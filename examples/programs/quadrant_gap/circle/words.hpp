@@ -85,8 +85,8 @@ inline std::vector<std::string> inseparable_text(const circle_result& r) {
     for (const circle_error* e : with(r, circle_verdict::not_separable)) {
         std::vector<std::string> others;
         for (const std::string& o : e->together_with) others.push_back(spaced(o));
-        lines.push_back(
-            fmt::format("{} cannot be told from {}: {}.", capital(label(*e)), listed(others), e->needs));
+        lines.push_back(fmt::format("{} cannot be distinguished from {}: {}.", capital(label(*e)),
+                                    listed(others), e->needs));
     }
     return lines;
 }

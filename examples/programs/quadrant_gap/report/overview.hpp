@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: loop() draws one picture from left to right.
 #pragma once
 #include "../words.hpp"
 #include "html.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: draw_two_masses() and what it calls draw in the order that a seed stands for.
 #pragma once
 #include "chain_simulator.hpp"
 #include "population.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -90,14 +91,11 @@ inline void judge_parameters(judgement& j, const ordered_json& effect, const cau
     }
 }
 
-} // namespace detail
-
-/// `said` is null when the program wrote no diagnosis.
-inline judgement judge(const ordered_json& truth, const ordered_json& said) {
-    judgement j;
+/// Names what is true of the machine, and returns the effects that are to be named.
+inline std::vector<std::string> wanted(judgement& j, const ordered_json& truth) {
+    std::vector<std::string> want;
     j.index = truth.at("index");
     j.kind = truth.at("kind");
-    std::vector<std::string> want;
     j.size = HUGE_VAL;
     for (const ordered_json& e : truth.at("effects")) {
         want.push_back(e.at("effect"));
@@ -107,80 +105,98 @@ inline judgement judge(const ordered_json& truth, const ordered_json& said) {
     }
     if (want.empty()) j.truth = "none", j.size = 0;
     if (j.kind == "removed") j.truth += " (removed)";
+    return want;
+}
+
+inline bool is(const cause_view& c, const std::string& name) {
+    return c.axis == "x" && same_model(c.effect, name);
+}
+
+/// Of at least 0.5; a group whose names are one model is a claim as a whole.
+inline bool claimed(const cause_view& c) {
+    const bool one_model = std::all_of(c.confusable.begin(), c.confusable.end(),
+                                       [&](const std::string& n) { return same_model(c.effect, n); });
+    return c.probability >= 0.5 || (one_model && c.group_probability >= 0.5);
+}
+
+/// What a diagnosis of this kind of machine has to say. `wrong`: claims of what is not there.
+inline bool right(const std::string& kind, const std::vector<std::string>& want, const std::string& verdict,
+                  const std::vector<cause_view>& causes, const std::vector<cause_view>& wrong, bool silent) {
+    if (kind == "none") return silent && (verdict == "no_gap" || verdict == "within_tolerance");
+    if (kind == "unknown" || kind == "removed")
+        return silent && (verdict == "unexplained" || verdict == "partly_explained");
+    if (kind == "single")
+        return !causes.empty() && is(causes[0], want[0]) && verdict == "explained" && wrong.empty();
+    if (kind == "pair")
+        return causes.size() >= 2 && verdict == "explained" && wrong.empty() &&
+               std::all_of(want.begin(), want.end(),
+                           [&](const std::string& w) { return is(causes[0], w) || is(causes[1], w); });
+    // Poor excitation: a small group that holds the truth, and no claim outside it.
+    if (causes.empty()) return false;
+    std::vector<std::string> group = causes[0].confusable;
+    group.insert(group.begin(), causes[0].effect);
+    const bool holds =
+        std::any_of(group.begin(), group.end(), [&](const std::string& n) { return same_model(n, want[0]); });
+    const bool outside = std::any_of(wrong.begin(), wrong.end(), [&](const cause_view& c) {
+        return std::find(group.begin(), group.end(), c.effect) == group.end();
+    });
+    return holds && group.size() <= 3 && !outside;
+}
+
+/// Whether the first place of an axis is the box of the effect, with what docs/formats.md lets pass.
+inline bool right_box(const ordered_json& said, const std::string& effect) {
+    const ordered_json axes = said.value("axes", ordered_json::object());
+    for (const ordered_json& axis : axes) {
+        const auto places = axis.find("where");
+        if (places == axis.end() || places->empty()) continue;
+        std::string block = (*places)[0].value("block", "");
+        if (block.empty()) // behind the command nothing is wrong: what two encoders say
+            for (const ordered_json& place : *places)
+                if (block.empty() && place.value("view", "") == "readings") block = place.value("block", "");
+        for (const std::string& w : {effect, std::string(effect == "mass" ? "force_constant" : effect),
+                                     std::string(effect == "force_constant" ? "mass" : effect)})
+            if (block == box_of(w)) return true;
+        if (effect == "cogging" && block == "actuator") return true;
+    }
+    return false;
+}
+
+} // namespace detail
+
+/// `said` is null when the program wrote no diagnosis.
+inline judgement judge(const ordered_json& truth, const ordered_json& said) {
+    judgement j;
+    const std::vector<std::string> want = detail::wanted(j, truth);
+    const bool one = j.kind == "single" || j.kind == "poor_excitation";
     if (!said.is_object()) {
         j.said = j.first = "no answer";
-        if (j.kind == "single" || j.kind == "poor_excitation") j.box = false;
+        if (one) j.box = false;
         return j;
     }
     j.answered = true;
     const auto causes = detail::causes_of(said);
     const std::string verdict = said.value("verdict", "");
-    const bool quiet = verdict == "no_gap" || verdict == "within_tolerance";
-    const auto is = [&](const detail::cause_view& c, const std::string& w) {
-        return c.axis == "x" && same_model(c.effect, w);
-    };
     const auto there = [&](const detail::cause_view& c) {
-        return std::any_of(want.begin(), want.end(), [&](const std::string& w) { return is(c, w); });
+        return std::any_of(want.begin(), want.end(), [&](const std::string& w) { return detail::is(c, w); });
     };
     j.said = verdict;
-    std::vector<detail::cause_view> claims;
+    std::vector<detail::cause_view> claims, wrong;
     for (const auto& c : causes) {
         j.named.emplace_back(c.probability, there(c));
         char text[96];
         std::snprintf(text, sizeof text, " %s %.2f", c.effect.c_str(), c.probability);
         j.said += text;
         if (c.axis != "x") j.said += " on " + c.axis;
-        // A group whose names are one model is a claim as a whole.
-        const bool one_model = std::all_of(c.confusable.begin(), c.confusable.end(),
-                                           [&](const std::string& n) { return same_model(c.effect, n); });
-        if (c.probability >= 0.5 || (one_model && c.group_probability >= 0.5)) claims.push_back(c);
+        if (detail::claimed(c)) claims.push_back(c);
     }
-    std::vector<detail::cause_view> wrong;
-    for (const auto& c : claims)
-        if (!there(c)) wrong.push_back(c);
+    std::copy_if(claims.begin(), claims.end(), std::back_inserter(wrong),
+                 [&](const detail::cause_view& c) { return !there(c); });
     j.blamed_falsely = !wrong.empty();
     j.first = claims.empty() ? verdict : claims.front().effect;
     if (!claims.empty())
         j.outcome = std::any_of(claims.begin(), claims.end(), there) ? found::named : found::another;
-
-    if (j.kind == "none") {
-        j.right = quiet && claims.empty();
-    } else if (j.kind == "unknown" || j.kind == "removed") {
-        j.right = (verdict == "unexplained" || verdict == "partly_explained") && claims.empty();
-    } else if (j.kind == "single") {
-        j.right = !causes.empty() && is(causes[0], want[0]) && verdict == "explained" && wrong.empty();
-    } else if (j.kind == "pair") {
-        j.right = causes.size() >= 2 && verdict == "explained" && wrong.empty();
-        for (const std::string& w : want)
-            j.right = j.right && (is(causes[0], w) || (causes.size() > 1 && is(causes[1], w)));
-    } else if (!causes
-                    .empty()) { // poor excitation: a small group that holds the truth, and no claim outside it
-        std::vector<std::string> group = causes[0].confusable;
-        group.insert(group.begin(), causes[0].effect);
-        const bool holds = std::any_of(group.begin(), group.end(),
-                                       [&](const std::string& n) { return same_model(n, want[0]); });
-        const bool outside = std::any_of(wrong.begin(), wrong.end(), [&](const detail::cause_view& c) {
-            return std::find(group.begin(), group.end(), c.effect) == group.end();
-        });
-        j.right = holds && group.size() <= 3 && !outside;
-    }
-    if (j.kind == "single" || j.kind == "poor_excitation") {
-        j.box = false;
-        const ordered_json axes = said.value("axes", ordered_json::object());
-        for (const ordered_json& axis : axes) {
-            const auto places = axis.find("where");
-            if (places == axis.end() || places->empty()) continue;
-            std::string block = (*places)[0].value("block", "");
-            if (block.empty()) // behind the command nothing is wrong: what two encoders say
-                for (const ordered_json& place : *places)
-                    if (block.empty() && place.value("view", "") == "readings")
-                        block = place.value("block", "");
-            for (const std::string& w : {want[0], std::string(want[0] == "mass" ? "force_constant" : want[0]),
-                                         std::string(want[0] == "force_constant" ? "mass" : want[0])})
-                j.box = *j.box || block == box_of(w);
-            j.box = *j.box || (want[0] == "cogging" && block == "actuator");
-        }
-    }
+    j.right = detail::right(j.kind, want, verdict, causes, wrong, claims.empty());
+    if (one) j.box = detail::right_box(said, want[0]);
     for (const ordered_json& e : truth.at("effects"))
         for (const auto& c : causes)
             if (c.axis == "x" && c.probability >= 0.5) detail::judge_parameters(j, e, c);

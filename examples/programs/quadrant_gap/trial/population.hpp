@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: draw() draws in the order that a seed stands for.
 #pragma once
 #include "gap_meter.hpp"
 

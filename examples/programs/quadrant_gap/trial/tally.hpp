@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: tally() writes one field of its JSON after the other.
 #pragma once
 #include "judge.hpp"
 #include "recalibration.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: sensitivity() is a list of what is changed, each with its two figures.
 #pragma once
 #include "../row.hpp"
 #include "../wrong_y_axis.hpp"

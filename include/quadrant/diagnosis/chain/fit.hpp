@@ -49,11 +49,11 @@ QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& 
 /// Calls `cost` at values between two ends and gives the best of what it saw: a grid by equal ratios, then
 /// golden section around its best.
 template <class Cost> double least(Cost cost, double low, double high, int grid, int steps) {
-    std::vector<double> at;
-    for (int i = 0; i < grid; ++i)
-        at.push_back(low * std::pow(high / low, static_cast<double>(i) / (grid - 1)));
-    std::vector<double> seen;
-    for (double x : at) seen.push_back(cost(x));
+    std::vector<double> at(static_cast<std::size_t>(grid)), seen(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i] = low * std::pow(high / low, static_cast<double>(i) / (grid - 1));
+        seen[i] = cost(at[i]);
+    }
     const auto best = static_cast<std::size_t>(std::min_element(seen.begin(), seen.end()) - seen.begin());
     double a = std::log(at[best > 0 ? best - 1 : 0]), b = std::log(at[std::min(best + 1, at.size() - 1)]);
     constexpr double g = 0.6180339887498949;

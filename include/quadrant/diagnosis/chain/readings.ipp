@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: columns_of() has one case for each term of a link.
 #pragma once
 
 namespace quadrant::inline v0::diagnosis::chain {

@@ -41,6 +41,7 @@ private:
     std::vector<key_value> coulomb() const { return fed(kind_.coulomb, p_.friction.coulomb * volts_); }
 
     void dry_friction();
+    void along_the_position();
     void by_keys(const char* name, std::vector<std::string> effects, std::vector<key_value> keys);
     void by_block(const char* name, const char* effect, const char* block, compensated_forces forces,
                   std::vector<key_value> settings);

@@ -73,12 +73,28 @@ QUADRANT_DIAGNOSIS_DECL std::vector<compensation> compensations_of::take() {
     if (p_.cogging.count > 0)
         by_block("cogging feedforward", "cogging", "cogging_harmonics", {.cogging = true},
                  settings_of(cogging_parameters(p_)));
-    by_block("constant command", "constant_force", "constant", {.constant = true},
-             {{"constant", {-p_.constant_force * volts_}}});
-    by_block("command along the travel", "position_spring", "proportional", {.constant = true, .spring = true},
-             {{"per_position_per_m", {p_.spring * volts_}}, {"constant", {-p_.constant_force * volts_}}});
+    along_the_position();
     together();
     return std::move(out_);
+}
+
+QUADRANT_DIAGNOSIS_DECL void compensations_of::along_the_position() {
+    const auto bias = fed(kind_.constant, -p_.constant_force * volts_);
+    const auto slope = fed(kind_.position, p_.spring * volts_);
+    if (bias.empty())
+        by_block("constant command", "constant_force", "constant", {.constant = true},
+                 {{"constant", {-p_.constant_force * volts_}}});
+    else if (auto own = those({"constant_force"}); !own.empty())
+        by_keys("constant command", own, bias);
+    if (bias.empty() || slope.empty()) {
+        by_block("command along the travel", "position_spring", "proportional",
+                 {.constant = true, .spring = true},
+                 {{"per_position_per_m", {p_.spring * volts_}}, {"constant", {-p_.constant_force * volts_}}});
+    } else if (auto own = those({"position_spring"}); !own.empty()) {
+        auto both = slope;
+        both.insert(both.end(), bias.begin(), bias.end());
+        by_keys("command along the travel", own, both);
+    }
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<std::string>

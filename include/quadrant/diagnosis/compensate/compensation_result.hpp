@@ -3,6 +3,7 @@
 #include "../result/result.hpp"
 #include "../text/key_value.hpp"
 #include "compensator.hpp"
+#include "drive_addition.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -21,12 +22,15 @@ struct compensation {
     std::vector<key_value> settings{}; ///< of the block, in the unit of the command
     std::vector<key_value> keys{};     ///< of the machine file's controller, and their new values
     compensated_forces forces{};       ///< that a `compensator` pays beside the keys
+    drive_addition drive{};            ///< what a drive with loops of its own is told beside its command
     tracking after{};                  ///< forecast, over plants drawn from the intervals of the diagnosis
     estimate gain{};                   ///< share of the rms that it takes off
     double gain_at_ends = 0;           ///< the least, every fitted value at one end of its interval
     bool claimed = false;              ///< the gain stands above the noise of the reading in every draw
 
-    bool by_keys() const { return forces == compensated_forces{}; }
+    /// Keys of the machine file's controller are all of it.
+    bool by_keys() const { return forces == compensated_forces{} && !of_drive(); }
+    bool of_drive() const { return drive.set_point.any() || drive.force.any(); }
 };
 
 /// What to do about a cause that no feedforward corrects.
@@ -37,6 +41,7 @@ struct advice {
 /// One axis: how it follows now, and what each compensation would do.
 struct compensated_axis {
     std::string name, command_unit;
+    axis_kind kind = axis_kind::linear;      ///< of a rotary axis every m below is rad
     bool forecast = false;                   ///< a controller is described, so that there is a loop to simulate
     bool positions_only = false;             ///< forecast on the readings of two positions, without a loop
     tracking measured;                       ///< on the log as it is

@@ -22,6 +22,8 @@ public:
     tracking_forecast(const axis_description& axis, const axis_log& log, double period);
 
     const plant_model& plant() const { return plant_; }
+    double noise() const { return noise_; }           ///< of the reading [m]
+    double resolution() const { return resolution_; } ///< count of the reading [m]
 
     void run(compensated_axis& out, const std::vector<const axis_description*>& inside,
              const std::vector<const axis_description*>& at_ends) const;
@@ -32,7 +34,7 @@ private:
     };
 
     closed_loop_run loop(axis_description axis, const plant_model& plant, const std::vector<key_value>& keys,
-                         const std::vector<double>& added) const;
+                         const std::vector<double>& added, const drive_addition& told = {}) const;
     figures changed(const closed_loop_run& bare, const closed_loop_run& with) const;
     figures measure(const std::vector<double>& error, const std::vector<double>& command) const;
     /// Median over the draws. The interval goes from the least of them, and of a plant that is just as found,
@@ -48,7 +50,7 @@ private:
     std::size_t skip_ = 0;
     record_scales scale_;
     plant_model plant_;
-    double noise_ = 0;
+    double noise_ = 0, resolution_ = 0;
     std::vector<double> error_;
 };
 

@@ -9,7 +9,7 @@ QUADRANT_DIAGNOSIS_DECL tracking_forecast::tracking_forecast(const axis_descript
                                                              double period)
     : axis_(axis), log_(log), period_(period) {
     const double count = observed_count(log.position, log.position_step);
-    const double resolution = std::max({axis.encoder.resolution_m, log.position_step, count});
+    const double resolution = resolution_ = std::max({axis.encoder.resolution_m, log.position_step, count});
     const axis_record record =
         for_machine(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), axis);
     scale_ = record.scale;
@@ -50,21 +50,35 @@ QUADRANT_DIAGNOSIS_DECL void tracking_forecast::run(compensated_axis& out,
         plant.drive.start_force = plant_.drive.start_force;
         const auto bare = loop(axis, plant, {}, {});
         for (std::size_t c = 0; c < n; ++c)
-            after[c][i] = changed(bare, loop(axis, plant, out.compensations[c].keys, added[c]));
+            after[c][i] = changed(
+                bare, loop(axis, plant, out.compensations[c].keys, added[c], out.compensations[c].drive));
     });
     for (std::size_t c = 0; c < n; ++c) {
-        const figures as_found = changed(before, loop(axis_, plant_, out.compensations[c].keys, added[c]));
+        const figures as_found = changed(
+            before, loop(axis_, plant_, out.compensations[c].keys, added[c], out.compensations[c].drive));
         summarise(out.compensations[c], now, missed, as_found, after[c], inside.size());
     }
 }
 
 QUADRANT_DIAGNOSIS_DECL closed_loop_run tracking_forecast::loop(axis_description axis, const plant_model& plant,
                                                                 const std::vector<key_value>& keys,
-                                                                const std::vector<double>& added) const {
+                                                                const std::vector<double>& added,
+                                                                const drive_addition& told) const {
     axis.encoder.resolution_m = 0;
     axis.actuator.dac_bits.reset();
-    set_keys(*axis.controller, keys);
-    if (axis.drive.closes()) return simulate_driven(axis, plant, period_, log_);
+    if (axis.controller) set_keys(*axis.controller, keys);
+    if (axis.drive.closes()) {
+        if (!told.set_point.any() && !told.force.any()) return simulate_driven(axis, plant, period_, log_);
+        axis_log told_log = log_; // with the numbers of the plant that was found, on whatever machine
+        driven_motion motion = *log_.drive;
+        if (told.set_point.any()) {
+            const auto shift = told.set_point.of(plant_, log_.reference, period_);
+            for (std::size_t k = 0; k < shift.size(); ++k) motion.set_point[k] += shift[k];
+        }
+        if (told.force.any()) motion.added = told.force.of(plant_, log_.reference, period_);
+        told_log.drive = std::make_shared<const driven_motion>(std::move(motion));
+        return simulate_driven(axis, plant, period_, told_log);
+    }
     return simulate_closed_loop(*axis.controller, axis, plant, period_, log_, {}, 4, added);
 }
 

@@ -2,6 +2,13 @@
 #pragma once
 #include "compensation.hpp"
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 namespace quadrant::inline v0::diagnosis::detail {
 
 /// What a velocity drive has to be asked for, beside the controller's feedback, so that its motor moves as the
@@ -14,10 +21,13 @@ namespace quadrant::inline v0::diagnosis::detail {
 struct velocity_drive_feedforward {
     double velocity = 1, acceleration = 0, bias = 0;
 
-    velocity_drive_feedforward(const plant_model& p, double period, bool in_volts) {
+    /// `pushed`: the drive is told the force beside it.
+    velocity_drive_feedforward(const plant_model& p, double period, bool in_volts, bool pushed = false) {
         const drive_model& d = p.drive;
         const double viscous = p.friction.viscous_slope, late = d.delay + period;
-        if (d.has_integral()) {
+        if (pushed) {
+            acceleration = late;
+        } else if (d.has_integral()) {
             acceleration = viscous / d.velocity_integral + late;
         } else {
             velocity += viscous / d.velocity_gain;
@@ -29,22 +39,70 @@ struct velocity_drive_feedforward {
     }
 };
 
-/// The keys of the controller in front of a velocity drive, as one compensation; none where its kind has no
-/// such keys. Friction that turns with the direction is left to the drive's loop and to the controller's
-/// feedback: no key of such a controller pays it.
-inline std::vector<compensation> for_velocity_drive(const plant_model& p, const controller_description& c,
-                                                    double period, bool in_volts,
-                                                    std::vector<std::string> causes) {
+/// The keys of the controller in front of a velocity drive; none where its kind has no such keys.
+inline std::vector<key_value> keys_of(const velocity_drive_feedforward& f, const controller_description& c) {
     const controller_kind& kind = kind_of(c);
-    const velocity_drive_feedforward f(p, period, in_volts);
-    compensation out{.name = "velocity feedforward", .effects = std::move(causes)};
-    for (const auto& keys :
-         {fed(kind, c, kind.viscous, f.velocity), fed(kind, c, kind.acceleration, f.acceleration)})
-        out.keys.insert(out.keys.end(), keys.begin(), keys.end());
-    const bool biased = std::any_of(kind.keys.begin(), kind.keys.end(),
-                                    [](const controller_key& k) { return k.name == "bias"; });
-    if (biased && f.bias != 0) out.keys.push_back({"bias", {f.bias}});
-    return out.keys.empty() ? std::vector<compensation>{} : std::vector{std::move(out)};
+    std::vector<key_value> out;
+    const auto put = [&](const feedforward_key& key, double amount) {
+        const auto keys = fed(kind, c, key, amount);
+        out.insert(out.end(), keys.begin(), keys.end());
+    };
+    put(kind.viscous, f.velocity);
+    put(kind.acceleration, f.acceleration);
+    if (f.bias != 0) put(kind.constant, f.bias);
+    return out;
+}
+
+/// What can be told to a velocity drive beside the controller's feedback: the keys of the controller, and the
+/// same with a force that the drive adds. Friction that turns with the direction is in the force alone: no key
+/// of such a controller pays it.
+inline std::vector<compensation> for_velocity_drive(const plant_model& p, const axis_description& axis,
+                                                    double period, bool in_volts,
+                                                    const std::vector<std::string>& causes) {
+    const controller_description& c = *axis.controller;
+    std::vector<compensation> out;
+    const auto add = [&](const char* name, bool pushed) {
+        compensation way{.name = name, .effects = causes};
+        way.keys = keys_of(velocity_drive_feedforward(p, period, in_volts, pushed), c);
+        if (pushed) {
+            way.drive.force = pushed_force(p, period);
+            way.settings = way.drive.force.settings(p, "added", axis.kind);
+        }
+        if (!way.keys.empty() || pushed) out.push_back(std::move(way));
+    };
+    add("velocity feedforward", false);
+    add("velocity and added force", true);
+    return out;
+}
+
+/// What can be told to a drive that takes positions: set-points that are shifted, and where it has a velocity
+/// loop the same with a force that it adds.
+inline std::vector<compensation> for_position_drive(const plant_model& p, const axis_description& axis,
+                                                    double period, const std::vector<std::string>& causes) {
+    std::vector<compensation> out;
+    const auto add = [&](const char* name, bool pushed) {
+        compensation way{.name = name, .effects = causes};
+        way.drive.set_point = shifted_set_point(p, period, pushed);
+        way.settings = way.drive.set_point.settings(p, "set_point", axis.kind);
+        if (pushed) {
+            way.drive.force = pushed_force(p, period);
+            for (key_value& k : way.drive.force.settings(p, "added", axis.kind))
+                way.settings.push_back(std::move(k));
+        }
+        out.push_back(std::move(way));
+    };
+    add("shifted set-points", false);
+    if (p.drive.kind == drive_kind::position) add("set-points and added force", true);
+    return out;
+}
+
+/// Whether what is told to a drive pays this effect: its numbers are those of the drive's loop read backwards.
+inline bool paid_by_drive(std::string_view effect) {
+    constexpr std::array<std::string_view, 14> all{
+        "coulomb_friction", "viscous_friction", "stribeck_friction", "mass",         "payload_mass",
+        "arm_length",       "constant_force",   "position_spring",   "gravity",      "cogging",
+        "force_constant",   "supply_voltage",   "drive_gain",        "command_delay"};
+    return std::find(all.begin(), all.end(), effect) != all.end();
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

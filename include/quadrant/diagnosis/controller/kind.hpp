@@ -64,6 +64,10 @@ struct controller_kind {
     void (*examine)(const given_values&, const std::function<void(std::string_view, std::string)>& refuse,
                     const std::function<void(std::string)>& note) = nullptr;
     feedforward_key coulomb{}, viscous{}, acceleration{}; ///< what `compensate` may set
+    feedforward_key constant{}, position{}; ///< the same: added to the command, and times the reference
+    std::string_view dead_band{},
+        length_unit{};    ///< the same: error that is ignored, in units of which that key
+                          ///< says how many a metre has
     bool motions = false; ///< it reads velocities: of the log's columns where there are any, else differences
 
     /// The record of one key; throws std::invalid_argument for another one.

@@ -100,7 +100,11 @@ inline constexpr controller_kind linuxcnc_pid{
             detail::linuxcnc_loop{law, v["units_per_m"], detail::stage_of(a)});
     },
     .viscous = {"FF1", "units_per_m"},
-    .acceleration = {"FF2", "units_per_m"}};
+    .acceleration = {"FF2", "units_per_m"},
+    .constant = {"bias"},
+    .position = {"FF0", "units_per_m"},
+    .dead_band = "deadband",
+    .length_unit = "units_per_m"};
 
 } // namespace controllers
 } // namespace quadrant::inline v0::diagnosis

@@ -54,27 +54,33 @@ inline constexpr effect friction_drift{
                 }
             return count > 0 ? sum / count : 0;
         };
-        const double change =
-            std::clamp((level(0.67, 1) - level(0, 0.33)) / s.leader.friction.coulomb, -0.6, 2.0);
+        // Share of the whole change that lies between the first third and the last.
+        const auto shows = [](double time) {
+            const auto gone = [&](double at) { return std::exp(-at / time); };
+            return 3 * time * ((gone(0) - gone(1.0 / 3)) - (gone(2.0 / 3) - gone(1)));
+        };
+        const double change = (level(0.67, 1) - level(0, 0.33)) / s.leader.friction.coulomb;
         std::vector<std::vector<parameter>> out;
-        for (double time : {0.15 * duration, duration})
+        for (double time : {0.15, 2.0}) {
+            const double drift = std::clamp(change / shows(time), -0.9, 10.0);
             out.push_back({{.key = "friction_drift",
-                            .of = [](plant_model& p) -> double& { return p.friction.drift; },
-                            .start = time < duration ? change : 1.5 * change,
-                            .low = -0.95,
-                            .high = 10,
-                            .step = 1e-3},
+                            .of = [](plant_model& p) -> double& { return p.friction.drift_rate; },
+                            .start = drift / (time * duration),
+                            .low = -20 / duration,
+                            .high = 100 / duration,
+                            .step = 1e-3 / duration},
                            {.key = "friction_drift_time_s",
                             .of = [](plant_model& p) -> double& { return p.friction.drift_time; },
-                            .start = time,
+                            .start = time * duration,
                             .low = 0.02 * duration,
-                            .high = 3 * duration,
+                            .high = 10 * duration,
                             .logarithmic = true,
                             .step = 1e-2}});
+        }
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
-        return {{"friction_drift", {p.friction.drift}}, {"friction_drift_time_s", {p.friction.drift_time}}};
+        return {{"friction_drift", {p.friction.drift()}}, {"friction_drift_time_s", {p.friction.drift_time}}};
     }};
 
 } // namespace quadrant::inline v0::diagnosis::suspect

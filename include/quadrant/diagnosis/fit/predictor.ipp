@@ -53,7 +53,7 @@ QUADRANT_DIAGNOSIS_DECL unsigned predictor::joints_of(const plant_model& p) cons
     for (const bool there :
          {std::fmod(std::max(0.0, p.delay), period) != 0, p.friction.contact.elements > 1, !p.own.empty(),
           p.friction.along.count > 0, p.ripple.count > 0, p.cogging.count > 0, p.cutting.count > 0,
-          p.cyclic.count > 0, p.gravity.torque != 0, p.friction.drift != 0, p.mode.mass > 0,
+          p.cyclic.count > 0, p.gravity.torque != 0, p.friction.drift_rate != 0, p.mode.mass > 0,
           p.friction.excess > 0, p.friction.stribeck_exponent != 1,
           std::isfinite(p.friction.contact.attraction), p.friction.load != 0, p.backlash > 0, p.lag > 0})
         out = 2 * out + there;

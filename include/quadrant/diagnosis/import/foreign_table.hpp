@@ -219,6 +219,7 @@ private:
     template <class T>
     static std::vector<T> taken(const std::vector<T>& x, const std::vector<std::size_t>& rows) {
         std::vector<T> out;
+        out.reserve(rows.size());
         for (const std::size_t k : rows) out.push_back(x[k]);
         return out;
     }

@@ -195,7 +195,7 @@ private:
         if (kind.role == signal_role::command)
             fault.refuse(rotary ? "must be of V, A or Nm" : "must be of V, A or N");
         std::string text(legal);
-        for (std::size_t at; (at = text.find("_per_")) != text.npos;) text.replace(at, 5, "/");
+        for (auto at = text.find("_per_"); at != text.npos; at = text.find("_per_")) text.replace(at, 5, "/");
         fault.refuse("must be a unit that gives " + text);
     }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace quadrant::inline v0::diagnosis {
@@ -65,6 +66,8 @@ public:
         follower_ = position_servo<Real>::state::at(set_point);
     }
     Real reading() const { return mechanics_.reading(state_); }
+    /// From now on the drive adds this to the force that its velocity loop gives, within its limit [N].
+    void add(Real force) { added_ = force; }
 
     /// One step with this set-point, of this velocity [a second]; returns the actuator's command. `off`: the
     /// drive is switched off.
@@ -76,7 +79,7 @@ public:
             loop_ = loop;
             follower_ = follower;
         } else {
-            u = Real(numbers_.of_duty) * given(set_point, its_velocity);
+            u = Real(numbers_.of_duty) * with_added(given(set_point, its_velocity));
             const auto gives = either(less(now.time, Real(numbers_.off_from)),
                                       greater_equal(now.time, Real(numbers_.off_until)));
             u = select(gives, u, Real(0));
@@ -90,6 +93,14 @@ public:
     }
 
 private:
+    /// Only an axis that is simulated alone is added to: no model of a search is.
+    Real with_added(Real force) const {
+        if constexpr (std::is_same_v<Real, double>) {
+            const double most = numbers_.loop.velocity.limit;
+            if (added_ != 0) force = std::clamp(force + added_, -most, most);
+        }
+        return force;
+    }
     /// Duty of a servo, else force [N], from the motion in the middle of the step. A loop that saw the motion
     /// at the step's beginning would be half a step late, and the axis would lose damping by it.
     Real given(Real set_point, Real its_velocity) {
@@ -109,6 +120,7 @@ private:
     velocity_loop<Real> inner_;
     typename Axis::state state_{};
     Real velocity_before_{0}; ///< of the step
+    Real added_{0};
     typename velocity_loop<Real>::state loop_{};
     typename position_servo<Real>::state follower_{};
 };
@@ -127,6 +139,7 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     auto anew = motion.begins.begin();
     std::vector<double> set_point = motion.set_point, command(n);
     set_point_clock clock(plant.drive, set_point, period);
+    const double late = plant.drive.delay / period;
     for (std::size_t k = 0; k < n; ++k) {
         if (anew != motion.begins.end() && anew->row == k) {
             axis.begin(motion.position[k], anew->velocity, motion.set_point[k]);
@@ -139,6 +152,8 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
         for (int i = 0; i < steps; ++i, now.time += h) {
             const double begin = static_cast<double>(k) + static_cast<double>(i) / steps;
             const auto r = clock.between(begin, begin + 1.0 / steps);
+            if (!motion.added.empty())
+                axis.add(motion.added[static_cast<std::size_t>(std::max(0.0, begin - late + 1e-9))]);
             command[k] += axis(scale * r.value, r.velocity / period, motion.is_off(k), now) / steps;
         }
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one class for each way in which a drive takes its set-points, row by row.
 #pragma once
 #include "../log/log.hpp"
 #include "../log/signals.hpp"
@@ -147,6 +148,9 @@ struct driven_motion {
     /// What was measured behind the drive at the rows: duty of a position servo, else force [N]; empty: nothing
     /// was.
     std::vector<double> measured;
+    /// Force that the drive is told to add to what its velocity loop gives, of each row [N]; empty: none. Only
+    /// a forecast has it.
+    std::vector<double> added{};
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
     /// Rows at which another log begins, and with which velocity [m/s]: the machine stands there anew.
@@ -222,8 +226,9 @@ struct driven_motion {
         drive_model best = d;
         double least = drive_model::none;
         for (int i = 0; i < 49; ++i) {
-            d.reading_age = (i / 7 - 3) * period / 4;
-            d.tap_lateness = (i % 7 - 3) * period / 4;
+            const int age = i / 7 - 3, lateness = i % 7 - 3;
+            d.reading_age = age * period / 4;
+            d.tap_lateness = lateness * period / 4;
             double sum = 0;
             for (double e : run(d).beside) sum += e * e;
             if (sum < least) best = d;

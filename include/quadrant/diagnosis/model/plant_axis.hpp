@@ -108,7 +108,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     out.process_mean = p.cutting_mean;
     out.process_start = p.cutting_start;
     out.along = repeating(p.friction.along);
-    out.drift = p.friction.drift;
+    out.drift = p.friction.drift();
     out.drift_time = p.friction.drift_time;
     out.play = p.backlash;
     out.cyclic = repeating(p.cyclic);

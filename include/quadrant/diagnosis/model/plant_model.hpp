@@ -47,7 +47,9 @@ struct plant_model {
         friction_contact contact;
         harmonics along;                  ///< of the Coulomb level, relative, over position
         double load = 0;                  ///< growth of the level with the transmitted force
-        double drift = 0, drift_time = 1; ///< Coulomb level times 1 + drift (1 - exp(-t/drift_time))
+        double drift_rate = 0, drift_time = 1; ///< Coulomb level times 1 + drift() (1 - exp(-t/drift_time))
+        /// Where it ends. A log much shorter than drift_time tells the rate, and says little of the end.
+        double drift() const { return std::max(-0.95, drift_rate * drift_time); }
         /// Stiffness of a spring of the contact: its share of the breakaway level over its length [N/m].
         double stiffness(std::size_t i) const {
             const double level = std::max(0.0, coulomb + excess);
@@ -131,8 +133,8 @@ struct plant_model {
         friction.contact.damping = d.presliding_damping_s.value_or(0);
         friction.along =
             one(d.friction_position_amplitude, d.friction_position_period_m, d.friction_position_phase_rad);
-        friction.drift = d.friction_drift.value_or(0);
         friction.drift_time = d.friction_drift_time_s.value_or(1);
+        friction.drift_rate = d.friction_drift.value_or(0) / friction.drift_time;
         constant_force = d.constant_force_N.value_or(0);
         spring = d.spring_N_per_m.value_or(0);
         gravity = {d.gravity_torque_Nm.value_or(0), d.gravity_phase_rad.value_or(0)};

@@ -109,9 +109,10 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
     }
     axis_description axis = c.axis;
     if (axis.controller) axis.controller = c.mended();
-    const proving_ground ground(axis, period, c.resolution, c.noise, c.record.scale);
+    const proving_ground ground(axis, period, c.resolution, c.noise, c.record.scale, proven_limits(c.log));
     const separation best = best_motion(ground, motions, names, c.limits.threads);
-    const auto inside = worded("%zu motions inside the travel, speed and acceleration of this log", best.tried);
+    const auto inside =
+        worded("%zu motions inside the travel, speed, acceleration and command of this log", best.tried);
     const auto take = [&](std::size_t motion) {
         out.motion = motions[motion].words;
         out.period_s = period;
@@ -142,7 +143,8 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
             (known ? ": a known equivalence, one model under two names; either corrects the simulation"
                    : "; another load or another sensor would have to tell");
     }
-    if (!axis.controller) out.finding += "; under a stand-in controller, as none is described";
+    if (!axis.controller && !axis.drive.takes_position())
+        out.finding += "; under a stand-in controller, as none is described";
     return out;
 }
 

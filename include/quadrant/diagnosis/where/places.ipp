@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: regimes() asks one regime after the other of the same rows.
 #pragma once
 
 namespace quadrant::inline v0::diagnosis {

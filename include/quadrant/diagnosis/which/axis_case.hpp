@@ -32,6 +32,7 @@ private:
                           const axis_case* before);
     std::optional<plant_model> nearest_; ///< of that search
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
+    bool within_its_laws_on_both(std::vector<plant_model> plants) const;
     /// This model, the calibrated machine, and this model with stronger friction.
     std::vector<plant_model> beside_stronger_friction(const plant_model& m) const;
 
@@ -77,6 +78,9 @@ public:
     /// The same of the machine as calibrated, without any cause: what was found in it says no more than that
     /// its friction follows another law.
     bool calibrated_within_its_laws() const;
+    /// Beside the other causes an effect does no more than the law of the described friction may be wrong by:
+    /// it refines that law, and is no second cause.
+    bool is_error_of_its_law(const effect& e) const;
     /// Whether the machine as calibrated leaves no more, in any band of either log, than machines inside the
     /// owner's tolerances differ by from one another.
     bool calibrated_within_tolerances() const;

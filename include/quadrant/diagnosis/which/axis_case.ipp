@@ -141,13 +141,24 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
     return within_its_laws(*second, plants);
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
-    if (record.replayed() || !models.near_its_laws(path.front())) return false;
-    auto plants = beside_stronger_friction(path.front().fit.plant);
+QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws_on_both(std::vector<plant_model> plants) const {
     if (!within_its_laws(record, plants)) return false;
     if (!tested_apart()) return true;
     for (plant_model& p : plants) p = restarted(p, *second);
     return within_its_laws(*second, plants);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
+    return !record.replayed() && models.near_its_laws(path.front()) &&
+           within_its_laws_on_both(beside_stronger_friction(path.front().fit.plant));
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_case::is_error_of_its_law(const effect& e) const {
+    if (!e.of_described_friction || best().effects.size() < 2 || record.replayed()) return false;
+    const candidate without = models.without(best(), &e);
+    auto plants = beside_stronger_friction(without.fit.plant);
+    plants[1] = plants[0]; // of friction's law alone: what the other causes are wrong by is no friction
+    return models.near_its_laws(without) && within_its_laws_on_both(std::move(plants));
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {

@@ -49,7 +49,13 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
         const double x = c.fit.x[i];
         low[i] = std::min(p.to_fit(p.low) - x, 0.0);
         high[i] = std::max(p.to_fit(p.high) - x, 0.0);
-        if (!(p.spread > 0)) continue;
+        if (!(p.spread > 0)) {
+            // A fold may leave a number open. That it lies within its bounds is known all the same, and is
+            // worth the inverse variance of an even spread over them.
+            if (const double width = high[i] - low[i]; width > 0 && std::isfinite(width))
+                all.a(i, i) += 12 / (width * width);
+            continue;
+        }
         all.a(i, i) += 1 / (p.spread * p.spread);
         all.g[i] += (x - p.expected) / (p.spread * p.spread);
     }

@@ -115,9 +115,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<rival> rivals_of(const axis_case& c, std::si
     for (const auto& model : c.models.with_each(without, c.models.relatives(c.path[which])))
         for (const effect* e : model.effects)
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
-                // The same model by another name is fitted as well as the first, whenever it was met. So are
-                // everyday forces: at one speed, or in one direction, they are the same force.
-                if (may_be_one(*e, *own) || (e->everyday && own->everyday)) {
+                // The same model by another name is fitted as well as the first, whenever it was met. So is an
+                // everyday force: on one motion many a rarer one does what it does.
+                if (may_be_one(*e, *own) || e->everyday) {
                     same.push_back(out.size());
                     names.push_back(e);
                 }
@@ -514,7 +514,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         named.group_probability = std::max(named.probability, named.group_probability * known);
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
-        if ((of_laws && like_friction) || undetermined ||
+        if ((of_laws && like_friction) || c.is_error_of_its_law(e) || undetermined ||
             detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));

@@ -76,7 +76,8 @@ public:
     /// The same for each of these effects, fitted side by side.
     std::vector<candidate> without_each(const candidate& whole, const std::vector<const effect*>& each) const;
     /// A model with one of its effects exchanged for each of these other names of the same force; the others
-    /// keep their numbers where the fits begin. Not kept: a fit that begins elsewhere may end elsewhere.
+    /// keep their numbers where the fits begin. Where the same names were fitted before, the better of the
+    /// two is kept.
     std::vector<candidate> exchanged(const candidate& whole, const effect* own,
                                      const std::vector<const effect*>& added) const;
 
@@ -259,6 +260,8 @@ private:
     /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
     /// effect had moved in the machine file is as described.
     candidate taken_off(const candidate& whole, const effect* own) const;
+    /// Whether a number of a model is one of the description that its tolerance lets move, and none of a name.
+    bool is_calibrated(const parameter& p) const;
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);

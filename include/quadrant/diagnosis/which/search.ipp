@@ -102,11 +102,17 @@ QUADRANT_DIAGNOSIS_DECL double search::force_of(const candidate& whole, const ef
     return rms(left[1]);
 }
 
+QUADRANT_DIAGNOSIS_DECL bool search::is_calibrated(const parameter& p) const {
+    plant_model there;
+    return p.spread > 0 && std::any_of(calibrated_.fit.parameters.begin(), calibrated_.fit.parameters.end(),
+                                       [&](const parameter& q) { return &q.of(there) == &p.of(there); });
+}
+
 QUADRANT_DIAGNOSIS_DECL plant_model search::plant_without(const candidate& whole, const effect& e) const {
     plant_model out = whole.fit.plant, described = given_.fit.plant;
     const auto values = e.read(out);
     for (const parameter& p : whole.fit.parameters)
-        if (!(p.spread > 0) &&
+        if (!is_calibrated(p) &&
             std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; }))
             p.of(out) = p.of(described);
     for (harmonics* h : {&out.ripple, &out.cogging, &out.cutting, &out.cyclic, &out.friction.along})
@@ -190,7 +196,7 @@ QUADRANT_DIAGNOSIS_DECL candidate search::taken_off(const candidate& whole, cons
     plant_model there = whole.fit.plant;
     const auto values = own->read(there);
     std::erase_if(out.fit.parameters, [&](const parameter& p) {
-        return !(p.spread > 0) &&
+        return !is_calibrated(p) &&
                std::any_of(values.begin(), values.end(), [&](const key_value& v) { return v.key == p.key; });
     });
     for (const parameter& p : calibrated_.fit.parameters) // what the effect's own numbers had replaced
@@ -252,6 +258,9 @@ search::exchanged(const candidate& whole, const effect* own, const std::vector<c
     }
     sketch_each(from, all, out, when_late::go_on);
     finish_best(all, all.size(), out, when_late::go_on);
+    for (candidate& known : tried_)
+        for (const candidate& again : out)
+            if (same(known, again) && again.total > known.total) known = again;
     return out;
 }
 
