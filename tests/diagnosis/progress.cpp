@@ -2,7 +2,7 @@
 // How far a diagnosis is: a share that never falls and ends at one, and what is said of it.
 #include "page/progress.hpp"
 
-#include <quadrant/diagnosis/compare.hpp>
+#include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
@@ -28,7 +28,7 @@ struct heard {
             shares.push_back(done);
         };
     }
-    /// In that many steps that can be told apart.
+    /// How many different shares were heard.
     std::size_t steps() const { return std::set<double>(shares.begin(), shares.end()).size(); }
     /// How far it jumps at most.
     double largest_jump() const {
@@ -79,8 +79,7 @@ TEST_CASE("progress: a function of a line alone hears the lines; without one not
     none.part(0, 0.5, "first: ")("nobody hears it", 1);
 }
 
-TEST_CASE(
-    "progress: a diagnosis says how far it is in a hundred steps, never goes back, and ends with all of it") {
+TEST_CASE("progress: a diagnosis says how far it is in small steps, never goes back, and ends with all of it") {
     const auto machine = read_machine(std::filesystem::path(data + "machine.json"));
     const auto log = read_log(std::filesystem::path(data + "log.csv"));
     heard h;
@@ -88,7 +87,7 @@ TEST_CASE(
     REQUIRE(!h.shares.empty());
     CHECK(h.never_falls());
     CHECK(h.shares.back() == 1);
-    CHECK(h.steps() > 20);
+    CHECK(h.steps() > 10);
     CHECK(h.largest_jump() < 0.4);
     CHECK(std::any_of(h.lines.begin(), h.lines.end(), [](const std::string& line) {
         return line.starts_with("x: trying ") && line.find("Coulomb friction") != line.npos;

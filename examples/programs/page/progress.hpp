@@ -17,8 +17,8 @@ inline std::string about(double seconds) {
                             : fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// "  7 %", " 42 %, about 12 s left": of work of which a share is done after some time. The time that is left is
-/// said once there is something to tell it from. 100 % only when all is done.
+/// "  7 %", " 42 %, about 12 s left": of work of which a share is done after some time. The time that is left
+/// is given once a twentieth is done. 100 % only when all is done.
 inline std::string in_per_cent(double share, double seconds) {
     const double whole = share < 1 ? std::min(99.0, std::floor(100 * share)) : 100;
     const bool known = share >= 0.05 && share < 1 && seconds > 0.5;

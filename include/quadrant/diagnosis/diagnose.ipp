@@ -198,14 +198,14 @@ inline bool shows_transmission(const axis_description& axis, const axis_log& log
     return !log.motor.empty() && (axis.transmission != transmission_description{} || log.motor_unit == "rad");
 }
 
-/// Up to which share of an axis' work each of its stages goes (CPU, measured on the practice logs). A look
-/// along the motion is part of the search where the record may ask for one.
+/// Up to which share of an axis' work each of its stages goes: CPU, measured on the practice logs, between
+/// those of one cause (the search ends at 0.9) and those of several (0.55 to 0.65). A look along the motion is
+/// part of the search where the record may ask for one.
 struct stages {
-    double first_look, search, rivals = 0.8, causes = 0.9, gap = 0.92;
+    double first_look, search, rivals = 0.94, causes = 0.95, gap = 0.97;
 };
 inline stages stages_of(bool may_look_again) {
-    return may_look_again ? stages{.first_look = 0.35, .search = 0.6}
-                          : stages{.first_look = 0.6, .search = 0.6};
+    return may_look_again ? stages{.first_look = 0.4, .search = 0.7} : stages{.first_look = 0.7, .search = 0.7};
 }
 
 /// `tell` is of the whole axis. `of_transmission`: what the two encoders of the axis say, where it has two.

@@ -25,9 +25,9 @@ struct joined_threads {
 };
 
 /// Calls work(i) for i = 0 ... count - 1 on up to `threads` threads, this one among them; 0: as many as there
-/// are cores. What work(i) writes belongs to i alone, so that the result does not depend on the threads. The
-/// first exception is thrown here when all have ended. Where there are no threads (WebAssembly), all of them on
-/// this one.
+/// are cores. What work(i) writes belongs to i alone, so that the result does not depend on the threads. After
+/// the first exception no further work begins; it is thrown here when all threads have ended. Where there are
+/// no threads (WebAssembly), all of them on this one.
 template <class Work> void on_all_cores(std::size_t count, std::size_t threads, const Work& work) {
     if constexpr (!quadrant::detail::has_threads) threads = 1;
     if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
@@ -40,6 +40,7 @@ template <class Work> void on_all_cores(std::size_t count, std::size_t threads, 
             } catch (...) {
                 const std::lock_guard held(guard);
                 if (!failed) failed = std::current_exception();
+                next = count; // nothing more begins
             }
     };
     {

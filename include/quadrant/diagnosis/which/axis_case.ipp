@@ -8,7 +8,7 @@ namespace detail {
 /// What making the record ready is of a look at it: along a motion, and behind a loop, a first search is part
 /// of that.
 constexpr double share_of_record(held_by how) {
-    return how == held_by::readings ? 0.02 : how == held_by::motion ? 0.1 : 0.3;
+    return how == held_by::readings ? 0.08 : how == held_by::motion ? 0.1 : 0.3;
 }
 
 } // namespace detail

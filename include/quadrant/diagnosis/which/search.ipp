@@ -889,9 +889,9 @@ QUADRANT_DIAGNOSIS_DECL const candidate* search::tried(const candidate& from, co
 
 QUADRANT_DIAGNOSIS_DECL std::string search::describe(const candidate& c) const {
     std::string out;
-    for (const effect* e : c.effects) (out += out.empty() ? "" : " ") += e->name;
-    if (!std::isfinite(c.total)) return out += " cannot be told from this record";
-    return (out += ' ') += std::to_string(static_cast<long>(c.total - calibrated_.total));
+    for (const effect* e : c.effects) (out += out.empty() ? "" : ", ") += e->label.empty() ? e->name : e->label;
+    if (!std::isfinite(c.total)) return out += ": this record does not show it";
+    return (out += ": gain ") += std::to_string(static_cast<long>(c.total - calibrated_.total));
 }
 
 } // namespace quadrant::inline v0::diagnosis
