@@ -19,8 +19,9 @@ inline difference difference_of(const direction& d, const cause& c) {
     auto reference = there                  ? there->parameters
                      : is_process(c.effect) ? std::vector<parameter_estimate>{}
                                             : described(d.for_own, c);
-    out.first = d.found_in_second ? std::move(reference) : c.parameters;
-    out.second = d.found_in_second ? c.parameters : std::move(reference);
+    out.first = c.parameters;
+    out.second = std::move(reference);
+    if (d.found_in_second) std::swap(out.first, out.second);
     out.gap_before_force_rms_N = c.gap_before_force_rms_N;
     out.gap_after_force_rms_N = c.gap_after_force_rms_N;
     out.gap_before_position_rms_m = c.gap_before_position_rms_m;

@@ -19,7 +19,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> described(const machine_
         const nlohmann::ordered_json* at = axis.contains(box) ? &axis[box] : nullptr;
         std::string rest =
             c.effect == "controller_mismatch" || dot == p.key.npos ? p.key : p.key.substr(dot + 1);
-        for (std::size_t end; at && (end = rest.find('.')) != rest.npos; rest.erase(0, end + 1))
+        for (auto end = rest.find('.'); at && end != rest.npos; rest.erase(0, end + 1), end = rest.find('.'))
             at = at->contains(rest.substr(0, end)) ? &(*at)[rest.substr(0, end)] : nullptr;
         if (at && !at->contains(rest) && rest.ends_with("_per_V")) rest.back() = 'A';
         if (!at || !at->contains(rest)) continue;

@@ -33,7 +33,8 @@ QUADRANT_DIAGNOSIS_DECL machine_description with_causes(const machine_descriptio
                                                         const diagnosis_result& d) {
     auto all = with_some(machine, d, [](const cause&) { return true; });
     if (!all) all = with_some(machine, d, is_claimed);
-    return all ? std::move(*all) : machine;
+    if (all) return std::move(*all);
+    return machine;
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail::beside
