@@ -8,7 +8,7 @@
 using namespace thesis;
 
 TEST_CASE("thesis.identify: Fc, Fs and the virgin curve at 1, 5, 15 and 30 um lie in their own intervals") {
-    for (const axis* a : {&x, &y}) {
+    for (const thesis::axis* a : {&thesis::x, &thesis::y}) {
         const auto rows = identification::identify(*a).rows;
         CHECK(rows.size() == 8);
         for (const auto& row : rows) {
@@ -26,7 +26,7 @@ TEST_CASE("thesis.identify: Fc, Fs and the virgin curve at 1, 5, 15 and 30 um li
 TEST_CASE("thesis.identify: without 0.01 mm/s, where the axis creeps from count to count, the curve of eq. "
           "(3.5) fits within "
           "the noise") {
-    for (const axis* a : {&x, &y}) {
+    for (const thesis::axis* a : {&thesis::x, &thesis::y}) {
         CAPTURE(a->name);
         const auto runs = identification::constant_speeds(*a, 3);
         const auto all = analysis::fit_stribeck(analysis::map_friction<>(runs, period, a->kf));

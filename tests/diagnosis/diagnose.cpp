@@ -331,8 +331,7 @@ TEST_CASE("diagnose: one stroke of under a second names a cause that it shows, a
     }));
 }
 
-TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians" *
-          doctest::test_suite("all")) {
+TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians") {
     machine real;
     auto file = described(real);
     real.constant_force = 25;
