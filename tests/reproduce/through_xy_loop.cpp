@@ -18,7 +18,7 @@
 using namespace quadrant;
 using namespace quadrant::literals;
 
-namespace {
+namespace through_xy_loop { // named: templates of the program are made of its types
 constexpr std::size_t samples = 6000; // more than a cycle and a half of the sinusoid of 30 mm at 100 mm/s
 
 axis_motion<> sinusoid(std::size_t k) {
@@ -255,7 +255,8 @@ template <class Slot> void same_pushes() {
         CHECK(one.error == thesis::pushed<Slot, as_y>(p).error);
     }
 }
-} // namespace
+} // namespace through_xy_loop
+using namespace through_xy_loop;
 
 TEST_CASE(
     "xy_loop: the friction runs of chapters 3 and 4 are the same as one axis of the whole loop, bit for bit") {
