@@ -84,20 +84,30 @@ QUADRANT_DIAGNOSIS_DECL std::vector<planned_motion> motions_for(const std::vecto
     return motions;
 }
 
+/// By how much the log itself prefers the first of the names to the nearest of the others; 0: not at all.
+inline double separated_by_log(const std::vector<confusable>& names) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const confusable& n : names)
+        if (&n != &names.front()) least = std::min(least, names.front().model.total - n.model.total);
+    return std::max(0.0, least);
+}
+
+/// "a, b and c".
+inline std::string listed(const std::vector<std::string>& names) {
+    std::string out;
+    for (const std::string& name : names)
+        out += (out.empty() ? "" : &name == &names.back() ? " and " : ", ") + name;
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
                                                         const std::vector<confusable>& names) {
     experiment out{.motion = "", .separates = {}, .axis = c.axis.name};
-    double log = std::numeric_limits<double>::infinity();
-    bool known = true;
-    std::string all;
-    for (const confusable& n : names) {
-        out.separates.emplace_back(n.name->name);
-        all += (all.empty() ? "" : &n == &names.back() ? " and " : ", ") + out.separates.back();
-        if (&n == &names.front()) continue;
-        log = std::min(log, names.front().model.total - n.model.total);
-        known = known && names.front().equivalent(n);
-    }
-    out.gain_of_log = std::max(0.0, log);
+    for (const confusable& n : names) out.separates.emplace_back(n.name->name);
+    out.gain_of_log = separated_by_log(names);
+    const bool known = std::all_of(names.begin(), names.end(), [&](const confusable& n) {
+        return &n == &names.front() || names.front().equivalent(n);
+    });
     const double period = c.record.period;
     const auto motions =
         motions_for(names, standard_motions(shown_by(motion_of(c.log), period, c.record.scale.corner_Hz),
@@ -137,7 +147,7 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
             inside + "; else they stay one group" +
             (known ? ", for they are one model under two names but for that" : "");
     } else {
-        out.motion = "none: no motion of this axis tells " + all + " apart";
+        out.motion = "none: no motion of this axis tells " + listed(out.separates) + " apart";
         out.finding =
             inside + worded(" were simulated, and the best separates them by a log-score of %.1f", best.gain) +
             (known ? ": a known equivalence, one model under two names; either corrects the simulation"
