@@ -14,7 +14,9 @@ shared=${QUADRANT_SHARED:-$root/../shared}
 [ ! -d "$shared" ] || shared=$(cd "$shared" && pwd)
 export QUADRANT_SHARED="$shared"
 export CCACHE_BASEDIR="${CCACHE_BASEDIR-$root}" CCACHE_NOHASHDIR=1 # what one clone compiled, another need not
-export CCACHE_DEPEND=1 # what is not in the cache is not preprocessed for it first: a second for each source
+# Nothing in the cache yet: no source is preprocessed to look there for it, which takes a second each. Later that second
+# saves compiling what only changed its comments.
+[ "$(ccache --print-stats 2>/dev/null | awk '$1 == "files_in_cache" { print $2 }')" != 0 ] || export CCACHE_DEPEND=1
 logs=$build/logs
 mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
