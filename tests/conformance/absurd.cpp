@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Parameters that are finite and that no machine has: a block refuses them with block, field, value and rule, or
-// it computes with them. What its number type cannot hold does not become a zero or an infinity inside.
+// Parameters that are finite and that no machine has: a block refuses them with block, field, value and rule,
+// or it computes with them. What its number type cannot hold does not become a zero or an infinity inside.
 #include "blocks.hpp"
 
 #include <doctest/doctest.h>
