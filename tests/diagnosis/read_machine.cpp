@@ -198,9 +198,8 @@ TEST_CASE("read_machine: text that is not JSON is refused with its place") {
     CHECK(
         refusal("\xEF\xBB\xBF{\n\"\xC3\xBC\": nan}") ==
         "machine.json:2:7: syntax error while parsing value - invalid literal; last read: '\"\xC3\xBC\": na'");
-    CHECK(refusal("") ==
-          "machine.json:1:1: syntax error while parsing value - unexpected end of input; expected '[', "
-          "'{', or a literal");
+    CHECK(refusal("") == "machine.json: is empty");
+    CHECK(refusal("t_s,x_ref_m\n0,1\n") == "machine.json: is no JSON: it holds no {; is it a log?");
     CHECK(refusal("{} x") == "machine.json:1:4: syntax error while parsing value - invalid literal; last read: "
                              "'{} x'; expected end of input");
     CHECK(refusal("{\"a\": \"\xff\"}")
