@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Parameters that are finite and that no machine has: a block refuses them with block, field, value and rule, or it
-// computes with them. What its number type cannot hold does not become a zero or an infinity inside.
+// Parameters that are finite and that no machine has: a block refuses them with block, field, value and rule,
+// or it computes with them. What its number type cannot hold does not become a zero or an infinity inside.
 #include "blocks.hpp"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,7 @@
 using namespace conformance;
 
 namespace {
-/// "block.field = 1e-320 kg: must ...", or what a design below says: "discretize.denominator = 1: has a pole ...".
+/// "block.field = 1e-320 kg: must ...", or a design's words: "discretize.denominator = 1: has a pole ...".
 bool is_of_the_house(const std::string& message) {
     const std::size_t dot = message.find('.'), equals = message.find(" = "), colon = message.find(": ");
     return dot != message.npos && dot < equals && equals < colon && colon + 2 < message.size();
