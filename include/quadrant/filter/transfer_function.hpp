@@ -36,8 +36,8 @@ template <std::size_t Order, class Number = double> struct discrete {
 /// last digits: below f T = 1e-4 give `differences` (from `bilinear_differences`), and from order 4 on prefer a
 /// `series` of low orders.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
-/// Throws "transfer_function.denominator[0] = 0: must not be zero", "transfer_function.numerator = ...: must be
-/// finite".
+/// Throws "transfer_function.denominator[0] = 0: must not be zero", "...: must leave coefficients that this
+/// number type can hold", "transfer_function.numerator = ...: must be finite".
 /// Cost: 2 n + 1 multiplications, 3 n additions, 8 n bytes of state; in float 6 n additions. Of order one or
 /// two: `lowpass`, `butterworth`, `notch`.
 template <signal_tag In, signal_tag Out, std::size_t Order, class Real = double> class transfer_function {

@@ -2,11 +2,8 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
-#include "../base/lanes.hpp"
 
-#include <array>
 #include <cmath>
-#include <concepts>
 
 namespace quadrant::inline v0 {
 
@@ -24,8 +21,7 @@ namespace quadrant::inline v0 {
 /// level dips below coulomb before it comes back.
 /// NaN and infinities: holds the last output, raises faulted().
 /// Throws "asymmetric_stribeck.<side>.<field> = ...: must ..." and for viscous and the period.
-/// Cost: 2 exponentials; of doubles both in one register (within 1 unit in the last place). The same in both
-/// directions: `stribeck`.
+/// Cost: 2 exponentials. The same in both directions: `stribeck`.
 template <signal_tag In = signal::angular_velocity, signal_tag Out = signal::torque, class Real = double>
 class asymmetric_stribeck {
 public:
@@ -100,32 +96,19 @@ private:
             : dying(in_real<Real>(s.static_level)), level(in_real<Real>(s.coulomb)),
               fall(in_real<Real>(s.fall)), rise(in_real<Real>(s.rise)) {}
         value operator()(argument speed) const noexcept {
-            const both left = decays(speed);
-            return dying * left.fallen + level * (Real(1) - left.missing);
+            using std::exp;
+            return dying * Real(exp(-Real(speed / fall))) + level * (Real(1) - Real(exp(-Real(speed / rise))));
         }
         two_parts parts(argument speed) const noexcept {
-            const both of = decays(speed);
-            const value left = dying * of.fallen, missing = level * of.missing;
+            using std::exp;
+            const value left = dying * Real(exp(-Real(speed / fall))),
+                        missing = level * Real(exp(-Real(speed / rise)));
             return {left,
                     level - missing,
                     -(left / fall),
                     missing / rise,
                     dying / fall + level / rise,
                     fall < rise ? fall : rise};
-        }
-        /// e^{-speed / fall} and e^{-speed / rise}.
-        struct both {
-            Real fallen, missing;
-        };
-        both decays(argument speed) const noexcept {
-            if constexpr (std::same_as<Real, double>) {
-                const lanes<2> left =
-                    decayed(lanes<2>(std::array{(speed / fall).value(), (speed / rise).value()}));
-                return {left[0], left[1]};
-            } else {
-                using std::exp;
-                return {Real(exp(-Real(speed / fall))), Real(exp(-Real(speed / rise)))};
-            }
         }
         value dying, level;
         argument fall, rise;
