@@ -237,7 +237,7 @@ TEST_CASE("read_machine: nesting and size have their limits") {
 
 TEST_CASE("read_machine: another schema is refused before anything else") {
     CHECK(refusal(R"({"schema": "quadrant.diagnosis/1", "verdict": "no_gap"})") ==
-          "machine.json: schema: must be \"quadrant.machine/1\"");
+          "machine.json: schema: must be \"quadrant.machine/1\"; this file is \"quadrant.diagnosis/1\"");
     CHECK(refusal(R"({"sample_period_s": 1})") == "machine.json: schema: is missing");
     CHECK(refusal(R"({"schema": 1})") == "machine.json: schema: must be a string");
     CHECK(refusal("[]") == "machine.json: must be an object");

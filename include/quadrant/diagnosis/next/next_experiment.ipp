@@ -96,7 +96,7 @@ inline double separated_by_log(const std::vector<confusable>& names) {
 inline std::string listed(const std::vector<std::string>& names) {
     std::string out;
     for (const std::string& name : names)
-        out += (out.empty() ? "" : &name == &names.back() ? " and " : ", ") + name;
+        (out += out.empty() ? "" : &name == &names.back() ? " and " : ", ") += label_of_effect(name);
     return out;
 }
 
@@ -143,7 +143,7 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
         take(best.one_way_motion);
         out.finding =
             worded("it decides only if %s is true, by a log-score of %.0f in simulation, the best of ",
-                   out.separates[best.one_way_truth].c_str(), best.one_way_gain) +
+                   listed({out.separates[best.one_way_truth]}).c_str(), best.one_way_gain) +
             inside + "; else they stay one group" +
             (known ? ", for they are one model under two names but for that" : "");
     } else {
@@ -177,7 +177,7 @@ QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
                 out.next = simulated_experiment(c, readings_of(r, c.record));
     } else if (suspect && out.next.motion.empty()) {
         out.next = {.motion = suspect->exciting_motion, .separates = {}, .axis = c.axis.name};
-        out.next.finding = "to see whether " + suspect->effect +
+        out.next.finding = "to see whether " + listed({suspect->effect}) +
                            " is there; not simulated, for what else it may be has no model";
     }
 }
