@@ -14,9 +14,6 @@ shared=${QUADRANT_SHARED:-$root/../shared}
 [ ! -d "$shared" ] || shared=$(cd "$shared" && pwd)
 export QUADRANT_SHARED="$shared"
 export CCACHE_BASEDIR="${CCACHE_BASEDIR-$root}" CCACHE_NOHASHDIR=1 # what one clone compiled, another need not
-# Nothing in the cache yet: no source is preprocessed to look there for it, which takes a second each. Later that second
-# saves compiling what only changed its comments.
-[ "$(ccache --print-stats 2>/dev/null | awk '$1 == "files_in_cache" { print $2 }')" != 0 ] || export CCACHE_DEPEND=1
 logs=$build/logs
 mkdir -p "$logs"
 jobs=$(nproc 2>/dev/null || echo 2)
@@ -189,6 +186,10 @@ sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev n
 [ "$tests" != all ] || sh examples/install.sh emscripten node-acorn || echo "going on without: web.page.* will be skipped"
 [ "$tests" != all ] || sh examples/install.sh clang-22 || echo "going on without: symbols.nonblocking will be skipped"
 [ "$tests" != all ] || sh examples/install.sh iwyu || echo "going on without: headers.include_what_you_use will be skipped"
+
+# Nothing in the cache yet: no source is preprocessed to look there for it, which takes a second each. Later that second
+# saves compiling what only changed its comments.
+[ "$(ccache --print-stats 2>/dev/null | awk '$1 == "files_in_cache" { print $2 }')" != 0 ] || export CCACHE_DEPEND=1
 
 for phase; do
     case $phase in

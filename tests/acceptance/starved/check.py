@@ -42,6 +42,9 @@ asked = {
         (["--seconds", "0.1", "--period_us", "1000", "--html", "latency.html"], ["latency.html"]),
     ],
 }
+if os.environ.get("QUADRANT_TESTS") == "all":  # a whole diagnosis each time
+    shipped = ["--machine", data / "machine.json", "--log", data / "log.csv", "--json", "found.json"]
+    asked["quadrant-gap"].append((["diagnose", "--fast", "--threads", "1", *shipped, "--report", "page.html"], ["found.json", "page.html"]))
 UNDRAWN_MARK = b"gnuplot could not draw this"
 UNDRAWN = "a whole page that says that a picture is not drawn"
 PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
