@@ -3,6 +3,7 @@
 // billionth of a typical size beside it, predicts what the file without the key predicts. The gaps agree
 // within 1e-6: an effect of typical size moves the gap by less than a thousand times the gap, a billionth of
 // it by less than a millionth. A jump at the neutral value is larger by orders, however small the key.
+#include "quadrant/diagnosis/effect/effect_list.hpp"
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
@@ -50,7 +51,6 @@ const std::map<std::string, neutral_place>& places() {
         {"plant.gms_stiffness_N_per_m", {nullptr, {1e12}, {{"plant.gms_weights", {1}}}}},
         {"plant.gms_attraction_N_per_s",
          {nullptr, 1e12, {{"plant.gms_weights", {1}}, {"plant.gms_stiffness_N_per_m", {1e7}}}, false}},
-        {"plant.quadratic_N_s2_per_m2", {0, 500e-9}},
         {"plant.friction_position_amplitude", {0, 1e-10, {{"plant.friction_position_period_m", 0.07}}}},
         {"plant.friction_position_phase_rad",
          {0,
@@ -85,6 +85,35 @@ const std::map<std::string, neutral_place>& places() {
         {"controller.viscous_feedforward_V_s_per_m", {0, 1e-10}},
         {"controller.coulomb_feedforward_V", {0, 5e-11}}};
     return all;
+}
+/// What the trial puts into a machine of this motion, at most.
+class trial_sizes : public trial_machine {
+public:
+    explicit trial_sizes(const trial_injection& t) : trial_machine(t.high, around_) { t.into(*this); }
+    double of(std::string_view key) const { return values_.at(std::string(key)); }
+
+    double described(std::string_view) const override { return 0; }
+    double now(std::string_view) const override { return 0; }
+    void set(std::string_view key, double value) override { values_[std::string(key)] = value; }
+    void set(std::string_view key, const std::vector<double>& values) override { set(key, values[0]); }
+    void set_untold(std::string_view, const std::vector<double>&) override {}
+    void change_controller() override {}
+    double uniform() override { return 0.5; }
+
+private:
+    static constexpr trial_scale around_{.peak_command = 0.1, .peak_force = 100};
+    std::map<std::string, double> values_{};
+};
+
+/// Where a key is neutral: as listed; a number of a law that an effect brings along needs no line there: its
+/// law is absent at 0, and its typical size is what the trial puts in.
+std::optional<neutral_place> place_of(const std::string& key) {
+    if (const auto listed = places().find(key); listed != places().end()) return listed->second;
+    for (const effect* e : every_effect())
+        for (const machine_key& k : e->keys)
+            if (e->law && e->trial.into && std::string(k.box()) + "." + k.key_for(axis_kind::linear) == key)
+                return neutral_place{0, 1e-9 * trial_sizes(e->trial).of(k.name)};
+    return {};
 }
 /// Keys without a neutral value: what every machine has, and what only says where another key's effect is.
 const std::set<std::string> without_neutral{"actuator.command_is", // a word
@@ -155,7 +184,7 @@ std::vector<std::string> keys_of_reader() {
 TEST_CASE("neutral: every key of the reader has a neutral value here, or says that it has none") {
     for (const std::string& key : keys_of_reader()) {
         CAPTURE(key);
-        CHECK(places().contains(key) != without_neutral.contains(key));
+        CHECK(place_of(key).has_value() != without_neutral.contains(key));
     }
 }
 
@@ -177,8 +206,9 @@ TEST_CASE(
     axis.actuator.dac_range_V.reset();
     const json file = to_json(described);
     for (const std::string& key : keys_of_reader()) {
-        if (!places().contains(key)) continue;
-        const neutral_place& place = places().at(key);
+        const auto found = place_of(key);
+        if (!found) continue;
+        const neutral_place& place = *found;
         json without = file;
         if (!place.together)
             for (const auto& [companion, value] : place.with.items()) at(without, companion) = value;
