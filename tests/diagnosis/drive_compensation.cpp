@@ -46,6 +46,25 @@ const std::string of_servo = R"({"schema": "quadrant.machine/1", "sample_period_
     "encoder": {"resolution_rad": 1e-4},
     "drive": {"kind": "position_servo", "position_gain_per_rad": 20, "supply_V": 12, "command_delay_s": 0.002}}}})";
 
+machine_log of_one(const axis_log& axis) {
+    machine_log out;
+    out.file = "log.csv";
+    out.samples = axis.position.size();
+    out.axes = {axis};
+    return out;
+}
+/// The same machine behind LinuxCNC's pid, in metres.
+std::string behind_pid(const std::string& file, double pgain, double dgain = 0) {
+    auto out = nlohmann::json::parse(file);
+    out["axes"]["q"]["controller"] = {
+        {"kind", "linuxcnc_pid"}, {"Pgain", pgain}, {"Dgain", dgain}, {"error-previous-target", false}};
+    return out.dump();
+}
+double key_of_way(const compensation& c, const std::string& name) {
+    for (const key_value& k : c.keys)
+        if (k.key == name) return k.values[0];
+    return 0;
+}
 axis_log recorded(takes kind, const drive_simulator::machine& m) {
     const double period = kind == takes::servo ? 0.002 : 0.001;
     std::istringstream text(drive_simulator::log(kind, m, period, 1, 1, kind == takes::servo ? "rad" : "m"));
@@ -236,4 +255,78 @@ TEST_CASE("compensate: what no input of a drive pays is said, and claims nothing
     REQUIRE(a.others.size() == 1);
     CHECK(a.others[0].effect == "backlash");
     for (const compensation& c : a.compensations) CHECK(c.effects.empty());
+}
+TEST_CASE(
+    "compensate: a velocity drive is told the force of its axis beside FF1 and FF2, as forecast to 15 %") {
+    drive_simulator::machine m{.coulomb = 30, .viscous = 60, .gain = 100 * bandwidth, .delay = 1e-3};
+    m.stock_pid = true;
+    const auto before = recorded(takes::volts, m);
+    const auto file = behind_pid(linear(R"("kind": "velocity", "velocity_per_V": 0.02)"), 1000);
+    const auto r = compensate(read_machine(file, "machine.json"),
+                              found({named("coulomb_friction", "coulomb_N", 29, 2)}), of_one(before));
+    const auto& ways = r.axes.at(0).compensations;
+    REQUIRE(ways.size() >= 2);
+    const compensation &alone = ways[0], &pushed = ways[1];
+    CHECK(setting(pushed, "added_coulomb_N") == doctest::Approx(29));
+    CHECK(setting(pushed, "added_mass_kg") == doctest::Approx(100).epsilon(0.01));
+    CHECK(setting(pushed, "added_viscous_N_s_per_m") == doctest::Approx(60));
+    // What the force pays FF2 has no longer to ask for.
+    CHECK(key_of_way(pushed, "FF2") < key_of_way(alone, "FF2"));
+    m.ff1 = key_of_way(pushed, "FF1");
+    m.ff2 = key_of_way(pushed, "FF2");
+    kept(takes::volts, m, before, pushed, 0.1);
+    CHECK(pushed.after.rms_m.value < alone.after.rms_m.value);
+}
+TEST_CASE("compensate: LinuxCNC's pid in front of a velocity drive gets a bias against a constant force, as "
+          "forecast to "
+          "15 %") {
+    drive_simulator::machine m{.viscous = 60, .gain = 100 * bandwidth, .delay = 1e-3};
+    m.stock_pid = true;
+    m.constant = 200;
+    const auto before = recorded(takes::volts, m);
+    const auto file = behind_pid(linear(R"("kind": "velocity", "velocity_per_V": 0.02)"), 1000);
+    const auto r = compensate(read_machine(file, "machine.json"),
+                              found({named("constant_force", "constant_force_N", 195, 10)}), of_one(before));
+    const compensation& way = r.axes.at(0).compensations.at(0);
+    CHECK(key_of_way(way, "bias") == doctest::Approx(-195 / (100 * bandwidth) / 0.02));
+    CHECK(controller_patch(r)["axes"]["q"]["controller"].contains("bias"));
+    m.bias = key_of_way(way, "bias");
+    m.ff1 = key_of_way(way, "FF1");
+    m.ff2 = key_of_way(way, "FF2");
+    kept(takes::volts, m, before, way, 0.2);
+}
+TEST_CASE(
+    "compensate: LinuxCNC's pid in front of a force gets FF0 against a spring and a bias against a weight, as "
+    "forecast to 15 %") {
+    drive_simulator::machine m{.mass = 20, .viscous = 60};
+    m.stock_pid = true;
+    m.pgain = 20 * 60 * 60;
+    m.dgain = 20 * 90;
+    m.constant = 30;
+    m.spring = 2000;
+    const auto before = recorded(takes::force, m);
+    const std::string plain = R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"q": {
+        "plant": {"mass_kg": 20, "viscous_N_s_per_m": 60}, "encoder": {"resolution_m": 1e-6}}}})";
+    const auto r = compensate(read_machine(behind_pid(plain, m.pgain, m.dgain), "machine.json"),
+                              found({named("position_spring", "spring_N_per_m", 1950, 100),
+                                     named("constant_force", "constant_force_N", 29, 2)}),
+                              of_one(before));
+    double ff0 = 0, bias = 0;
+    for (const compensation& way : r.axes.at(0).compensations) {
+        CAPTURE(way.name);
+        ff0 = key_of_way(way, "FF0") != 0 ? key_of_way(way, "FF0") : ff0;
+        bias = key_of_way(way, "bias") != 0 ? key_of_way(way, "bias") : bias;
+    }
+    CHECK(ff0 == doctest::Approx(1950));
+    CHECK(bias == doctest::Approx(-29));
+    const compensation& all = r.axes.at(0).compensations.back(); // the best of all together
+    m.ff0 = key_of_way(all, "FF0");
+    m.bias = key_of_way(all, "bias");
+    m.ff1 = key_of_way(all, "FF1");
+    m.ff2 = key_of_way(all, "FF2");
+    const figures was = following(before), now = following(recorded(takes::force, m));
+    CAPTURE(was.rms);
+    CHECK(now.rms < 0.5 * was.rms);
+    CHECK(all.after.rms_m.value == doctest::Approx(now.rms).epsilon(0.15).scale(0));
+    CHECK(all.after.peak_m.value == doctest::Approx(now.peak).epsilon(0.15).scale(0));
 }

@@ -24,13 +24,14 @@ struct machine {
     bool stock_pid =
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
-    double ff1 = 0, ff2 = 0;
-    double deadband = 0; ///< of the position error of that component [m]
-    double gravity = 0;  ///< torque -gravity sin x
+    double pgain = 1000, dgain = 0, ff0 = 0, ff1 = 0, ff2 = 0, bias = 0; ///< of the same component
+    double deadband = 0;             ///< of the position error of that component [m]
+    double gravity = 0;              ///< torque -gravity sin x
+    double constant = 0, spring = 0; ///< force, and -spring x
     /// Of each row: what is added to the set-point, and to the force of the velocity loop; empty: nothing.
     std::vector<double> shift{}, added{};
 };
-enum class takes { volts, set_points, servo };
+enum class takes { volts, set_points, servo, force }; ///< force: the command is one, no loop inside
 
 /// Strokes of three sizes with rests, one sample a period.
 inline std::vector<double> strokes(double period, double seconds, double pace) {
@@ -56,10 +57,13 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 0.3 * m.count);
     std::vector<double> command;
-    double x = 0, v = 0, integral = 0, followed = 0;
+    double x = 0, v = 0, integral = 0, followed = 0, last = 0;
     std::ostringstream out;
     out.precision(10);
-    out << "t_s,q_ref_" << unit << ",q_pos_" << unit << (kind == takes::volts ? ",q_cmd_V" : "")
+    out << "t_s,q_ref_" << unit << ",q_pos_" << unit
+        << (kind == takes::volts   ? ",q_cmd_V"
+            : kind == takes::force ? ",q_cmd_N"
+                                   : "")
         << (tap ? ",q_duty" : "") << (m.enabled_column ? ",q_enabled" : "") << "\n";
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const double read = std::round((x + noise(random)) / m.count) * m.count;
@@ -67,13 +71,18 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         const auto ago = [&](std::size_t back) { return reference[k > back ? k - back : 0]; };
         const double behind = reference[k] - read,
                      kept = std::copysign(std::max(0.0, std::abs(behind) - m.deadband), behind);
-        const double sum = m.stock_pid ? 1000 * kept + m.ff1 * (ago(0) - ago(1)) / period +
-                                             m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period)
-                                       : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
+        const double sum =
+            m.stock_pid
+                ? m.pgain * kept + m.dgain * (kept - last) / period + m.ff1 * (ago(0) - ago(1)) / period +
+                      m.ff2 * (ago(0) - 2 * ago(1) + ago(2)) / (period * period) + m.bias + m.ff0 * reference[k]
+                : (20 * (reference[k] - read) + speed) / m.velocity_per_V;
         const double volts = std::clamp(sum, -10.0, 10.0);
-        command.push_back(kind == takes::volts ? volts : reference[k] + (m.shift.empty() ? 0 : m.shift[k]));
+        last = kept;
+        command.push_back(kind == takes::volts   ? volts
+                          : kind == takes::force ? sum
+                                                 : reference[k] + (m.shift.empty() ? 0 : m.shift[k]));
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
-        if (kind == takes::volts) out << ',' << volts;
+        if (kind == takes::volts || kind == takes::force) out << ',' << command.back();
         for (int i = 0; i < steps; ++i) {
             const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
             const double tick = std::floor(at / (1 + m.clock_slip)); // of the drive's clock
@@ -87,6 +96,8 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 const double duty = std::clamp(m.duty_gain * e + (e > 0 ? 1 : -1) * m.minimum_duty, -1.0, 1.0);
                 if (tap && i == 0) out << ',' << duty;
                 force = duty * m.supply * m.kt;
+            } else if (kind == takes::force) {
+                force = command[row];
             } else {
                 const double part = at / (1 + m.clock_slip) - tick, before = command[row > 0 ? row - 1 : 0];
                 const double asked = kind == takes::volts
@@ -100,7 +111,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 force = integral = 0;
                 followed = x;
             }
-            v += h * (force - m.viscous * v - m.gravity * std::sin(x)) / m.mass;
+            v += h * (force - m.viscous * v - m.gravity * std::sin(x) + m.constant - m.spring * x) / m.mass;
             const double stop = h * m.coulomb / m.mass;
             v -= std::clamp(v, -stop, stop);
             x += h * v;

@@ -331,8 +331,16 @@ TEST_CASE("position drive: set-points at another rate than the readings are refu
         CHECK(std::string(e.what()).find("set_point_period_s: is missing") != std::string::npos);
         CHECK(std::string(e.what()).find("every 4 rows") != std::string::npos);
     }
-    file["axes"]["q"]["drive"]["set_point_period_s"] = 0.004;
-    CHECK_NOTHROW(check_match(read_machine(file.dump(), "machine.json"), log));
+    const auto notes_with = [&](double period) {
+        file["axes"]["q"]["drive"]["set_point_period_s"] = period;
+        const auto machine = read_machine(file.dump(), "machine.json");
+        CHECK_NOTHROW(check_match(machine, log));
+        machine_log read = log;
+        check_loops(machine, read);
+        return read.notes.size() - log.notes.size();
+    };
+    CHECK(notes_with(0.004) == 0);
+    CHECK(notes_with(0.008) == 1);
 }
 TEST_CASE("what no drive has is refused by key, value and rule") {
     const auto refused = [](const std::string& drive) {
@@ -359,4 +367,25 @@ TEST_CASE("a log whose command the drive does not take is refused with the colum
         check_match(read_machine(linear("", of_p), "m.json"), r.log),
         "log.csv: axis q: its drive is of kind velocity in m.json: column q_cmd_V or q_cmd_m_per_s is "
         "missing");
+}
+TEST_CASE(
+    "a described velocity loop that answers between two rows is refused with what to record; beside a measured "
+    "force it is not") {
+    auto log = recorded(takes::volts, p_drive).log;
+    const auto fast = [](const std::string& gain) {
+        return read_machine(
+            linear("", R"("kind": "velocity", "velocity_per_V": 0.02, "velocity_gain_N_s_per_m": )" + gain),
+            "m.json");
+    };
+    CHECK_NOTHROW(check_loops(fast("2.5e5"), log)); // 0.4 ms beside rows of 1 ms
+    try {
+        check_loops(fast("2.5e6"), log);
+        FAIL("accepted");
+    } catch (const bad_input& e) {
+        const std::string said = e.what();
+        CHECK(said.find("answers in 0.04 ms (mass_kg over velocity_gain_N_s_per_m)") != said.npos);
+        CHECK(said.find("record q_current_A or q_torque_Nm, or faster") != said.npos);
+    }
+    log.axes[0].effort.assign(log.samples, 0.0);
+    CHECK_NOTHROW(check_loops(fast("2.5e6"), log));
 }

@@ -37,9 +37,9 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
         CHECK(!e->prior.reason.empty());
         CHECK(e->prior.odds > 0);
         CHECK((e->starts == nullptr) == (e->read == nullptr));
-        // The trial's machines are linear, with one encoder, and what happens in a log is no number of a
+        // The trial's machines of this simulator have one encoder, and what happens in a log is no number of a
         // machine.
-        const bool in_trials = !e->rotary_only && e->name != "added_command" && e->name != "drive_dropout" &&
+        const bool in_trials = e->name != "added_command" && e->name != "drive_dropout" &&
                                e->name != "missed_steps" && e->box != "transmission";
         CHECK((e->trial.into != nullptr) == in_trials);
         CHECK((e->trial.low < e->trial.high) == in_trials);

@@ -367,8 +367,9 @@ TEST_CASE("read_log: a missing column is refused by name") {
     CHECK(refusal("t_s,x_ref_m,x_cmd_V\n0,0,0\n") == "log.csv:1:20: column x_pos_m is missing");
     // With a reference the command may be missing: a drive that takes positions needs none (match.hpp refuses
     // the others).
-    CHECK(refusal("t_s,x_pos_m\n0,0\n") ==
-          "log.csv:1:12: column x_cmd_V is missing (or x_cmd_A, x_cmd_N; measured: x_current_A, x_torque_Nm)");
+    CHECK(refusal("t_s,x_pos_m\n0,0\n") == "log.csv:1:12: column x_cmd_V is missing (or x_cmd_A, x_cmd_N; "
+                                           "measured: x_current_A, x_torque_Nm; of a "
+                                           "drive that takes positions: x_ref_m)");
     CHECK(refusal("t_s,a\n0,0\n") ==
           "log.csv:1:6: no axis: columns such as x_ref_m, x_pos_m and x_cmd_V are missing");
     CHECK(refusal("t_s;x_ref_m;x_pos_m\n0;0;0\n") == "log.csv:1:4: cells must be separated by commas: bring "
@@ -498,4 +499,11 @@ TEST_CASE("read_log: wide files take time by their size, not by its square") {
     }
     const auto log = read(wide + "\n0.0" + row + "\n0.1,0,2,0" + row.substr(6) + "\n");
     CHECK(log.notes.size() == 100000);
+}
+
+TEST_CASE("read_log: a duty in per cent is refused, with the factor") {
+    CHECK(
+        refusal("t_s,q_ref_rad,q_pos_rad,q_duty\n0,0,0,0.5\n0.1,0,1,1.0\n0.2,0,2,-37\n") ==
+        "log.csv: axis q: q_duty reaches -37: a duty is a share of the supply, -1 to 1 (per cent: times 0.01)");
+    CHECK(refusal("t_s,q_ref_rad,q_pos_rad,q_duty\n0,0,0,0.5\n0.1,0,1,1.0\n0.2,0,2,-1.0\n") == "accepted");
 }

@@ -157,3 +157,20 @@ TEST_CASE(
         CHECK(m.effects.at(0).size > 0.1);
     }
 }
+
+TEST_CASE(
+    "population: a joint is rotary, weighs, and is read without complaint; its loop holds it where it begins") {
+    for (const planned& p : plan(5, 20, population::joint)) CHECK_FALSE(p.two_axes);
+    const drawn_machine m = draw(3, 4, {kind::single, {"payload_mass"}, false, false, population::joint});
+    const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(), "machine.json");
+    const auto& axis = machine.axes.at(0);
+    CHECK(axis.kind == quadrant::diagnosis::axis_kind::rotary);
+    CHECK(axis.plant.gravity_torque_Nm.value_or(0) > 0);
+    CHECK(axis.payload.mass_kg.value_or(0) == m.described[0].mechanics.payload.mass);
+    CHECK(m.truth[0].mechanics.payload.mass != m.described[0].mechanics.payload.mass);
+    CHECK(truth_of(m)["effects"][0]["parameters"].contains("payload.mass_kg"));
+    const auto record = run(m.described, m.log_reference, m.period, m.noise_seed);
+    std::istringstream text(log_file(m, record, m.noise_seed));
+    CHECK_NOTHROW(check_match(machine, quadrant::diagnosis::read_log(text, "log.csv")));
+    for (std::size_t k = 0; k < 20; ++k) CHECK(std::abs(record[0].position[k] - record[0].reference[k]) < 1e-3);
+}

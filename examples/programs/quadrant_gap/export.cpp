@@ -48,7 +48,8 @@ void run(const export_options& o) {
     if (!o.table.empty()) {
         spans travel;
         if (!o.log.empty()) {
-            const auto log = read_log(std::filesystem::path(o.log));
+            auto log = read_log(std::filesystem::path(o.log));
+            join_gantry_pairs(machine, log);
             check_match(machine, log);
             travel = travel_of(log);
         }

@@ -49,6 +49,7 @@ void run(const forecast_options& o) {
     files.writes("--json", o.json);
     const auto machine = read_machine(std::filesystem::path(o.machine));
     auto motion = read_motion(std::filesystem::path(o.motion));
+    join_gantry_pairs(machine, motion);
     for (auto& planned : motion.axes)
         if (const auto axis = quadrant::diagnosis::detail::named(machine.axes, planned.name)) {
             planned.command_unit = axis->drive.kind == drive_kind::velocity

@@ -16,11 +16,13 @@ inline void make_match(const quadrant::diagnosis::machine_description& machine,
     using namespace quadrant::diagnosis;
     keep_described(machine, log);
     check_match(machine, log);
+    check_loops(machine, log);
     check_physics(machine, log);
     if (holdout) {
         keep_described(machine, *holdout);
         if (!has_period_of(machine, *holdout)) *holdout = at_period(*holdout, log.sample_period_s);
         check_match(machine, *holdout);
+        check_loops(machine, *holdout);
         check_physics(machine, *holdout);
     }
     for (const auto& axis : machine.axes)

@@ -297,6 +297,7 @@ void add_calls(py::module_& m) {
            double at_least) {
             return named_by(name, [&] {
                 const auto machine = read_machine(text, name);
+                join_gantry_pairs(machine, motion);
                 for (auto& planned : motion.axes)
                     if (const auto axis = detail::named(machine.axes, planned.name))
                         planned.command_unit = axis->command_unit;
@@ -308,10 +309,11 @@ void add_calls(py::module_& m) {
         py::arg("at_least"), release());
     m.def(
         "compensate",
-        [](const std::string& text, const std::string& name, const diagnosis_result& d, const machine_log& log,
+        [](const std::string& text, const std::string& name, const diagnosis_result& d, machine_log log,
            double at_least) {
             return named_by(name, [&] {
                 const auto machine = read_machine(text, name);
+                join_gantry_pairs(machine, log);
                 check_match(machine, log);
                 const auto r = compensate(machine, d, log, at_least);
                 return std::pair(text_of_json(to_json(r)), text_of_json(controller_patch(r)));

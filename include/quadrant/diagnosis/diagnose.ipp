@@ -4,6 +4,7 @@
 #include "effect/effect_list.hpp"
 #include "fit/both_motions.hpp"
 #include "fit/neighbour.hpp"
+#include "fit/turned_beam.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"
 #include "log/thinned.hpp"
@@ -14,6 +15,7 @@
 #include "which/block_places.hpp"
 #include "which/calibrated.hpp"
 #include "which/causes.hpp"
+#include "which/turning_inertia.hpp"
 
 #include <memory>
 
@@ -205,9 +207,38 @@ inline stages stages_of(bool may_look_again) {
     return may_look_again ? stages{.first_look = 0.4, .search = 0.7} : stages{.first_look = 0.7, .search = 0.7};
 }
 
+/// Other axes of the log that one is read from.
+struct other_axes {
+    std::vector<const axis_log*> logs{};
+    std::size_t rows_in_one = 1; ///< of theirs, to a sample of the axis
+};
+
+/// Whether an inertia that turns with another axis' angle is what is left, told in a note. Where it alone
+/// leaves less than the names that were found, these stand in for it, and are suspects.
+inline void tell_turning_inertia(diagnosis_result& out, const axis_case& c, std::vector<cause>& causes,
+                                 const other_axes& others) {
+    if (c.at_floor() || c.within_its_laws()) return;
+    auto found = inertia_by_angle(c, c.path.front(), others.logs, others.rows_in_one);
+    const bool instead = found && found->left < c.models.held_out_force(c.best());
+    if (!instead) found = inertia_by_angle(c, c.best(), others.logs, others.rows_in_one);
+    if (!found) return;
+    const std::string form = fmt::format("the angle of axis {} as an inertia does", found->other);
+    if (instead) {
+        to_suspects(causes);
+        for (cause& x : causes) x.better_form = form;
+    }
+    out.notes.push_back(fmt::format(
+        "axis {}: its inertia depends on the angle of axis {}: {:.3g} kg m^2 more or less, most at {:.2g} rad. "
+        "That "
+        "takes {:.0f} % off what {}, and a machine file cannot describe it: the inertia in it is a mean. Move "
+        "axis {} alone, with {} held, for its other numbers.",
+        c.axis.name, found->other, found->swing(), std::atan2(found->sine, found->cosine), 100 * found->share,
+        instead ? "the machine as calibrated leaves" : "the causes leave", c.axis.name, found->other));
+}
+
 /// `tell` is of the whole axis. `of_transmission`: what the two encoders of the axis say, where it has two.
 inline void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell, const stages& stage,
-                          chain::two_encoders* of_transmission = nullptr) {
+                          chain::two_encoders* of_transmission = nullptr, const other_axes& others = {}) {
     const auto names = static_cast<double>(std::max<std::size_t>(1, c.best().effects.size()));
     const auto begins = [&](double from, double to, const std::string& what) {
         const progress part = tell.part(from, to);
@@ -229,6 +260,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& t
     const how_far shrinks(c);
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
+    tell_turning_inertia(out, c, causes, others);
     if (guess) {
         out.notes.push_back(
             worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
@@ -281,8 +313,7 @@ inline void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& t
         const bool proposed = !out.next.motion.empty();
         // Where the path alone is compared, there is no residual force that a motion could show.
         const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
-        if (by_force && !c.models.over() && behind > verdict::within_tolerance)
-            propose(out, c, causes, rivals);
+        if (by_force && !c.models.over() && behind > verdict::within_tolerance) propose(out, c, causes, rivals);
         if (!proposed) {
             out.next.motion = text_of(out.next.motion, c.axis.kind);
             out.next.finding = text_of(out.next.finding, c.axis.kind);
@@ -443,6 +474,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                                                         machine.excluded_effects, r);
             logged = &transmission->carried;
         }
+        for (std::string& note : told_by_turn(axis, *logged, machine.sample_period_s))
+            out.notes.push_back(std::move(note));
         const double band = bandwidth_of(axis, *logged, machine.sample_period_s);
         axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s, band);
         std::optional<axis_log> other;
@@ -453,7 +486,11 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
             other = detail::with_neighbour(*holdout, carried, machine.sample_period_s, band);
         }
         double period = machine.sample_period_s;
+        detail::other_axes others;
+        for (const auto* axes : {&log.axes, &log.beside})
+            for (const axis_log& a : *axes) others.logs.push_back(&a);
         if (const std::size_t n = detail::rows_in_one(axis, coupled, period, r); n > 1) {
+            others.rows_in_one = n;
             out.notes.push_back(fmt::format("axis {}: {} samples of {:.4g} s are taken as one: the record is "
                                             "long, its command is measured, "
                                             "and above {:.3g} Hz the noise of the position hides the forces.",
@@ -534,7 +571,8 @@ QUADRANT_DIAGNOSIS_DECL diagnosis_result diagnose(const machine_description& mac
                 "axis {}: judged by the forces along the measured motion: models corrected by the readings "
                 "predicted best by {}.",
                 axis.name, why_along));
-        detail::diagnose_axis(out, *found, of_axis, stage, transmission ? &*transmission : nullptr);
+        if (found->exchanged) others.logs.clear(); // they are of the other log
+        detail::diagnose_axis(out, *found, of_axis, stage, transmission ? &*transmission : nullptr, others);
         of_axis("axis " + axis.name + ": done", 1);
     }
     tell("done", 1);

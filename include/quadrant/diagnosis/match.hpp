@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "log/gantry_pair.hpp"
 #include "log/log.hpp"
 #include "machine/machine.hpp"
 #include "text/bad_input.hpp"
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -45,7 +47,9 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
     };
     if (axis.drive.kind == drive_kind::velocity) {
         if (unit != "V" && unit != m + "_per_s")
-            refuse(fmt::format("column {0}_cmd_V or {0}_cmd_{1}_per_s is missing", axis.name, m));
+            refuse(fmt::format(
+                "column {0}_cmd_V or {0}_cmd_{1}_per_s is missing{2}", axis.name, m,
+                unit.empty() || measured ? "" : fmt::format("; {0}_cmd_{1} is none of them", axis.name, unit)));
         if (unit == "V" && !axis.drive.velocity_per_V)
             throw bad_input(machine,
                             fmt::format("axes.{0}.drive.velocity_per_V: is missing; the command column of "
@@ -68,6 +72,24 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
                            m));
 }
 
+/// Refuses a described velocity loop that answers faster than two rows of the log can show: its force is the
+/// gain times an error that lies between the rows. A force that was measured behind it needs no replay.
+inline void check_speed_of_loop(const axis_description& axis, const axis_log& log,
+                                const machine_description& machine, const std::string& file) {
+    const auto& gain = axis.drive.velocity_gain_N_s_per_m;
+    if (!axis.drive.closes() || !gain || log.still) return;
+    const bool measured = log.command_is == command_origin::measured || !log.effort.empty();
+    const double answer = axis.plant.mass_kg / *gain, shortest = machine.sample_period_s / std::numbers::pi;
+    if (measured || answer >= shortest) return;
+    throw bad_input(
+        file,
+        fmt::format("axis {0}: the velocity loop of axes.{0}.drive in {1} answers in {2:.3g} ms ({3} over "
+                    "{4}), and rows of {5:.3g} ms do not show it: record {0}_current_A or {0}_torque_Nm, "
+                    "or faster, or describe no plant (then its positions alone are diagnosed)",
+                    axis.name, machine.file, 1e3 * answer, key_of("mass_kg", axis.kind),
+                    key_of("velocity_gain_N_s_per_m", axis.kind), 1e3 * machine.sample_period_s));
+}
+
 /// Refuses a log with one position only of an axis that is a chain of them.
 inline void check_positions(const axis_description& axis, const axis_log& log, const std::string& file) {
     const std::string m = key_of("m", axis.kind);
@@ -80,18 +102,23 @@ inline void check_positions(const axis_description& axis, const axis_log& log, c
 
 } // namespace detail
 
-/// Refuses a machine of which nothing but positions is known, for what needs its forces: bad_input.
+/// Refuses a machine of which nothing but positions is known, for what needs its forces: bad_input. The
+/// difference of a gantry's ends beside the beam itself is only left out.
 inline void refuse_positions_only(const machine_description& machine, std::string_view what) {
+    const bool of_a_gantry = std::any_of(machine.axes.begin(), machine.axes.end(),
+                                         [](const axis_description& a) { return !a.positions_only; });
     for (const axis_description& axis : machine.axes)
-        if (axis.positions_only)
+        if (axis.positions_only && !(axis.gantry_pair && of_a_gantry))
             throw bad_input(
                 machine.file,
                 fmt::format("axes.{}.plant: is missing; {} needs the forces of the axis", axis.name, what));
 }
 
-/// Leaves out the axes of a log that the machine file says nothing of, with a note, when it describes another
-/// of them: the recorder of a robot writes all joints, and an owner begins with one.
+/// Joins the ends of gantries (join_gantry_pairs()) and leaves out the axes of a log that the machine file says
+/// nothing of, with a note, when it describes another of them: the recorder of a robot writes all joints, and
+/// an owner begins with one.
 inline void keep_described(const machine_description& machine, machine_log& log) {
+    join_gantry_pairs(machine, log);
     const auto described = [&](const axis_log& a) {
         return std::any_of(machine.axes.begin(), machine.axes.end(),
                            [&](const axis_description& axis) { return axis.name == a.name; });
@@ -107,7 +134,32 @@ inline void keep_described(const machine_description& machine, machine_log& log)
     if (names.empty()) return;
     log.notes.push_back(fmt::format("{}: left out, not described in {}: axis {}.", detail::one_line(log.file),
                                     detail::one_line(machine.file), names));
+    for (axis_log& a : log.axes)
+        if (!described(a)) log.beside.push_back(a);
     std::erase_if(log.axes, [&](const axis_log& a) { return !described(a); });
+}
+
+/// Refuses, beyond check_match(), what cannot be diagnosed: bad_input. A note says where a log's set-points
+/// come at another rate than its machine file says.
+inline void check_loops(const machine_description& machine, machine_log& log) {
+    for (const axis_description& axis : machine.axes)
+        for (const axis_log& logged : log.axes) {
+            if (logged.name != axis.name || axis.positions_only) continue;
+            detail::check_speed_of_loop(axis, logged, machine, log.file);
+            const auto& period = axis.drive.set_point_period_s;
+            if (!axis.drive.takes_position() || !period) continue;
+            const bool sent = logged.command_unit == key_of("m", axis.kind);
+            const auto rows =
+                static_cast<double>(detail::rows_of_a_set_point(sent ? logged.command : logged.reference));
+            if (const double seen = rows * machine.sample_period_s; std::abs(seen / *period - 1) > 0.01)
+                log.notes.push_back(
+                    fmt::format("{}: axis {}: the set-points change every {:.4g} s, and "
+                                "drive.set_point_period_s is {:.4g}: the drive is taken to read every "
+                                "{} of them.",
+                                log.file, axis.name, seen, *period,
+                                *period > seen ? fmt::format("{:.3g}th", *period / seen)
+                                               : std::string("one more than once")));
+        }
 }
 
 /// Refuses a log that cannot be of the machine described: bad_input.

@@ -210,9 +210,21 @@ private:
         return axis;
     }
 
+    /// A duty is a share of the supply.
+    void refuse_beyond_one(const log_column& duty, const std::string& axis) const {
+        const auto most = std::max_element(duty.values.begin(), duty.values.end(),
+                                           [](double a, double b) { return std::abs(a) < std::abs(b); });
+        if (std::abs(*most) <= 1 + duty.step.step()) return;
+        throw bad_input(file_,
+                        fmt::format("axis {}: {} reaches {:g}: a duty is a share of the supply, -1 to 1 (per "
+                                    "cent: times 0.01)",
+                                    axis, duty.name, *most));
+    }
     /// What was measured behind the drive.
     void add_taps(axis_log& axis, const log_header::axis_columns& at, const log_rows& rows) {
+        if (at.command && at.command_unit == "duty") refuse_beyond_one(header_.columns[*at.command], axis.name);
         if (at.duty) {
+            refuse_beyond_one(header_.columns[*at.duty], axis.name);
             axis.duty = rows.smooth(header_.columns[*at.duty].values);
             axis.duty_step = header_.columns[*at.duty].step.step();
         }

@@ -55,10 +55,16 @@ private:
             if (content) read_box(*content, box, axis);
         }
         if (const auto motor = node.find("motor_encoder")) read_motor_encoder(*motor, axis.motor_encoder);
+        if (const auto pair = node.find("gantry_pair")) axis.gantry_pair = read_gantry_pair(*pair);
         if (axis.drive.closes()) settle_drive(node, axis);
         if (const auto tolerance = node.find("tolerance")) read_tolerance(*tolerance, axis.tolerance);
         if (const auto controller = node.find("controller"))
             read_controller(*controller, axis);
+        else if (axis.positions_only && axis.gantry_pair)
+            note(axis,
+                 fmt::format("no plant is described: the difference of {} and {} is compared, and nothing is "
+                             "said of forces",
+                             axis.gantry_pair->first, axis.gantry_pair->second));
         else if (axis.positions_only)
             note(axis,
                  "no plant is described: the axis is a chain of positions, and nothing is said of forces");
@@ -74,8 +80,8 @@ private:
     /// encoder, and nothing that needs forces.
     static bool is_chain(const json_node& axis) {
         const auto has = [&](const char* box) { return axis.value->contains(box); };
-        return (has("transmission") || has("encoder") || has("motor_encoder")) && !has("controller") &&
-               !has("actuator") && !has("process") && !has("payload");
+        return (has("transmission") || has("encoder") || has("motor_encoder") || has("gantry_pair")) &&
+               !has("controller") && !has("actuator") && !has("process") && !has("payload");
     }
     /// Without a plant: rotary where a key of another box is in radians (but for the motor's).
     static axis_kind kind_of_chain(const json_node& axis) {

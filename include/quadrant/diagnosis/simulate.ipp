@@ -72,7 +72,7 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
     out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     for (const axis_description& axis : machine.axes)
         for (const axis_log& logged : log.axes)
-            if (logged.name == axis.name && !logged.still)
+            if (logged.name == axis.name && !logged.still && !axis.positions_only)
                 out.axes.push_back(detail::simulate_axis(
                     axis,
                     detail::with_neighbour(log, logged, machine.sample_period_s,

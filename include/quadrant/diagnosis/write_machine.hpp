@@ -79,6 +79,9 @@ inline nlohmann::ordered_json axis_json(const axis_description& a) {
     if (a.motor_encoder.resolution_rad)
         out["motor_encoder"]["resolution_rad"] = *a.motor_encoder.resolution_rad;
     if (a.motor_encoder.resolution_m) out["motor_encoder"]["resolution_m"] = *a.motor_encoder.resolution_m;
+    if (a.gantry_pair)
+        out["gantry_pair"] = {{"ends", {a.gantry_pair->first, a.gantry_pair->second}},
+                              {"share", a.gantry_pair->share}};
     if (a.controller && !a.controller->own) box("controller", controller_json(*a.controller));
     return out;
 }

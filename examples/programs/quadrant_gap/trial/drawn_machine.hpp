@@ -11,6 +11,9 @@ struct tolerances {
     double mass = 0.02, force_constant = 0.01, viscous = 0.1, coulomb = 0.05, at_rest = 0.05;
 };
 
+/// Of a joint's gravity and of the growth of its friction with the load.
+inline constexpr double tolerance_of_gravity = 0.03, tolerance_of_load = 0.1;
+
 /// Of a drive's own numbers.
 inline constexpr double tolerance_of_gains = 0.01, tolerance_of_supply = 0.02, tolerance_of_delay = 0.05;
 
@@ -141,6 +144,44 @@ inline void give_loops(axis_truth& a, population of, double period, dice& random
     if (random.chance(0.5)) d.force_limit = a.controller.limit;
 }
 
+/// Makes this axis a joint of an arm: geared, with a load at its end, its weight and friction that grows with
+/// what the gears carry. Its cascade is scaled with it.
+inline void give_joint(axis_truth& a, double period, dice& random) {
+    a.turns = true;
+    auto& m = a.mechanics;
+    auto& c = a.controller;
+    const double before = m.mass / a.actuator.force_constant;
+    const double inertia = m.mass = written(random.log_uniform(0.03, 3));
+    const double arm = written(random.uniform(0.15, 0.6)), part = random.uniform(0.3, 0.8);
+    m.payload = m.payload_as_described = {written(part * inertia / (arm * arm)), arm};
+    m.gravity = written(m.payload.weight() * random.uniform(1.05, 1.5));
+    m.gravity_phase = written(random.uniform(-1.2, 1.2));
+    const double peak = m.gravity / inertia * random.uniform(2.5, 6); // torque at the limit over the inertia
+    a.actuator.force_constant = written(inertia * peak / c.limit);
+    const double scale = inertia / a.actuator.force_constant / before;
+    for (double* gain : {&c.velocity_gain, &c.integral, &c.acceleration_feedforward})
+        *gain = written(*gain * scale);
+    const auto of_torque = [&](double low, double high) {
+        return written(inertia * peak * random.log_uniform(low, high));
+    };
+    a.friction.viscous = written(inertia * random.log_uniform(0.5, 6));
+    if (c.viscous_feedforward > 0)
+        c.viscous_feedforward =
+            written(a.friction.viscous / a.actuator.force_constant * random.uniform(0.8, 1.1));
+    c.coulomb_feedforward = 0;
+    const double excess = a.friction.level_at_rest > 0 ? a.friction.level_at_rest / a.friction.coulomb : 0;
+    if (a.friction.coulomb > 0) a.friction.coulomb = of_torque(0.005, 0.05);
+    a.friction.level_at_rest = excess > 0 ? written(excess * a.friction.coulomb) : 0;
+    a.friction.stribeck_velocity = written(random.log_uniform(0.01, 0.1));
+    if (a.friction.coulomb > 0 && random.chance(0.6)) a.friction.load = written(random.log_uniform(0.02, 0.2));
+    a.friction.length = random.log_uniform(2e-6, 4e-5);
+    std::vector<double> counts;
+    for (const double q : {2e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5})
+        if (q / period * c.velocity_gain * std::min(1.0, 2 * c.filter_Hz * period) < 0.15) counts.push_back(q);
+    a.encoder.resolution = counts.empty() ? 2e-7 : random.one_of(counts);
+    a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 1);
+}
+
 inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
     const auto moved = [&](double& value, double relative) {
         value *= 1 + random.uniform(-relative, relative);
@@ -154,6 +195,10 @@ inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
     if (a.friction.level_at_rest > 0)
         a.friction.level_at_rest = std::max(a.friction.level_at_rest, a.friction.coulomb);
     moved(a.friction.stribeck_velocity, 0.05);
+    if (a.turns) {
+        moved(a.mechanics.gravity, tolerance_of_gravity);
+        moved(a.friction.load, tolerance_of_load);
+    }
     if (drive_truth& d = a.drive; d.closes()) {
         for (double* gain :
              {&d.velocity_per_V, &d.velocity_gain, &d.velocity_integral, &d.position_gain, &d.duty_gain})
@@ -180,6 +225,12 @@ inline motion_limits limits(const axis_truth& a, double seconds, double period, 
     l.velocity = random.log_uniform(0.08, 0.6);
     l.half_travel = random.log_uniform(0.04, 0.3);
     l.top_Hz = std::min(180.0, 0.15 / period);
+    if (a.turns) {
+        l.acceleration = peak * random.uniform(0.15, 0.35);
+        l.velocity = random.log_uniform(0.5, 3);
+        l.half_travel = random.log_uniform(0.4, 1.6);
+        l.top_Hz = std::min(60.0, l.top_Hz);
+    }
     return l;
 }
 

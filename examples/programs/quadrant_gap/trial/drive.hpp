@@ -16,7 +16,7 @@ public:
         if (!(d_.loss > 0 && !told_.empty() && random_.chance(d_.loss))) kept_ = r;
         told_.push_back(kept_);
     }
-    /// Force over [t, t + h] with the motor at x and v.
+    /// Force over [t, t + h] with the motor at x and v in the middle of it.
     double force(double t, double h, double x, double v) {
         const double r = followed(t + h / 2);
         if (d_.kind == drive_kind::position_servo) return servo(r, h, x);

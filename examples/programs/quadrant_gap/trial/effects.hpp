@@ -5,6 +5,7 @@
 #include "random.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 /// How the effects of the list get into the trial's machines. Each record says what an amplitude does to the
@@ -40,6 +41,10 @@ inline double* number_in(axis_truth& a, std::string_view key) {
         {"constant_force_N", &a.mechanics.constant_force},
         {"spring_N_per_m", &a.mechanics.spring},
         {"coupling", &a.mechanics.coupling},
+        {"gravity_torque_Nm", &a.mechanics.gravity},
+        {"gravity_phase_rad", &a.mechanics.gravity_phase},
+        {"payload.mass_kg", &a.mechanics.payload.mass},
+        {"payload.arm_m", &a.mechanics.payload.arm},
         {"cogging_period_m", &a.mechanics.cogging.period},
         {"ripple_period_m", &a.actuator.ripple.period},
         {"actuator.lag_s", &a.actuator.lag},
@@ -188,6 +193,7 @@ inline void insertion::change_controller() {
 /// limits and delays are the drive's.
 inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::drive_kind kind) {
     using enum quadrant::diagnosis::drive_kind;
+    if (e.rotary_only) return false; // of a joint alone
     if (kind == current) return e.box != "drive";
     if (e.box == "process" || e.name == "force_constant") return e.box == "process" || kind == position_servo;
     if (e.box == "mechanics") return e.name != "backlash" && e.name != "cross_coupling";
@@ -203,6 +209,19 @@ withheld_effects(quadrant::diagnosis::drive_kind kind = quadrant::diagnosis::dri
     std::vector<const quadrant::diagnosis::effect*> out;
     for (const auto* e : quadrant::diagnosis::every_effect())
         if (e->trial.into && fits(*e, kind)) out.push_back(e);
+    return out;
+}
+
+/// The effects of a joint of an arm with gears, in the order of the list.
+inline std::vector<const quadrant::diagnosis::effect*> effects_of_a_joint() {
+    constexpr std::array<std::string_view, 12> of_joints{
+        "coulomb_friction", "viscous_friction", "stribeck_friction", "load_friction",  "mass",
+        "gravity",          "payload_mass",     "arm_length",        "constant_force", "cogging",
+        "force_constant",   "time_delay"};
+    std::vector<const quadrant::diagnosis::effect*> out;
+    for (const auto* e : quadrant::diagnosis::every_effect())
+        if (e->trial.into && std::find(of_joints.begin(), of_joints.end(), e->name) != of_joints.end())
+            out.push_back(e);
     return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "population.hpp"
+#include "quadrant/diagnosis/write_machine.hpp"
 
 #include <cstdio>
 #include <filesystem>
@@ -88,16 +89,30 @@ inline ordered_json machine_file(const drawn_machine& m) {
         control["viscous_feedforward_V_s_per_m"] = c.viscous_feedforward;
         control["coulomb_feedforward_V"] = c.coulomb_feedforward;
         if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"width", c.notch_damping}};
-        axes[a.name] = {{"plant", plant},
-                        {"tolerance",
-                         {{"mass", t.mass},
-                          {"force_constant", t.force_constant},
-                          {"viscous", t.viscous},
-                          {"coulomb", t.coulomb},
-                          {"static", t.at_rest}}},
-                        {"encoder", {{"resolution_m", a.encoder.resolution}}},
-                        {"actuator", drive},
-                        {"controller", control}};
+        ordered_json tolerance{{"mass", t.mass},
+                               {"force_constant", t.force_constant},
+                               {"viscous", t.viscous},
+                               {"coulomb", t.coulomb},
+                               {"static", t.at_rest}};
+        ordered_json axis{{"plant", plant},
+                          {"encoder", {{"resolution_m", a.encoder.resolution}}},
+                          {"actuator", drive},
+                          {"controller", control}};
+        if (a.turns) {
+            axis["plant"]["gravity_torque_Nm"] = a.mechanics.gravity;
+            axis["plant"]["gravity_phase_rad"] = a.mechanics.gravity_phase;
+            if (a.friction.load > 0) axis["plant"]["load_friction"] = a.friction.load;
+            for (auto& [box, content] : axis.items())
+                content = quadrant::diagnosis::detail::in_words_of(quadrant::diagnosis::axis_kind::rotary, box,
+                                                                   content);
+            axis["payload"] = {{"mass_kg", a.mechanics.payload.mass}, {"arm_m", a.mechanics.payload.arm}};
+            tolerance["gravity_torque"] = tolerance_of_gravity;
+            tolerance["load_friction"] = tolerance_of_load;
+            tolerance = quadrant::diagnosis::detail::in_words_of(quadrant::diagnosis::axis_kind::rotary,
+                                                                 "tolerance", tolerance);
+        }
+        axis["tolerance"] = tolerance;
+        axes[a.name] = axis;
     }
     ordered_json out{{"schema", "quadrant.machine/1"}, {"sample_period_s", m.period}};
     if (!m.excluded.empty()) out["excluded_effects"] = m.excluded;
@@ -116,10 +131,11 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
         return !d.closes() || d.kind == drive_truth::drive_kind::velocity;
     };
     for (const axis_truth& a : m.described)
-        out +=
-            fmt::format("{3}{0}_pos_m{1}{2}", a.name, in_volts(a.drive) ? fmt::format(",{}_cmd_V", a.name) : "",
-                        a.drive.tapped ? fmt::format(",{}_duty", a.name) : "",
-                        with_reference ? fmt::format(",{}_ref_m,", a.name) : ",");
+        out += fmt::format("{3}{0}_pos_{4}{1}{2}", a.name,
+                           in_volts(a.drive) ? fmt::format(",{}_cmd_V", a.name) : "",
+                           a.drive.tapped ? fmt::format(",{}_duty", a.name) : "",
+                           with_reference ? fmt::format(",{}_ref_{},", a.name, a.turns ? "rad" : "m") : ",",
+                           a.turns ? "rad" : "m");
     out += '\n';
     char text[128];
     for (std::size_t k = 0; k < axes[0].position.size(); ++k) {
@@ -154,7 +170,7 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
 /// The references alone, as somebody would plan them.
 inline std::string motion_file(const drawn_machine& m, const std::vector<std::vector<double>>& references) {
     std::string out = "t_s";
-    for (const axis_truth& a : m.described) out += fmt::format(",{}_ref_m", a.name);
+    for (const axis_truth& a : m.described) out += fmt::format(",{}_ref_{}", a.name, a.turns ? "rad" : "m");
     out += '\n';
     for (std::size_t k = 0; k < references[0].size(); ++k) {
         out += fmt::format("{:.6f}", static_cast<double>(k) * m.period);
@@ -177,8 +193,16 @@ inline void write_files(const drawn_machine& m, const std::filesystem::path& fol
 /// What the parent keeps to itself.
 inline ordered_json truth_of(const drawn_machine& m) {
     ordered_json inside = ordered_json::array();
-    for (const drawn_effect& e : m.effects)
-        inside.push_back({{"effect", e.name}, {"axis", "x"}, {"size", e.size}, {"parameters", e.parameters}});
+    for (const drawn_effect& e : m.effects) {
+        ordered_json parameters = ordered_json::object();
+        for (const auto& [key, value] : e.parameters.items()) {
+            const auto kind = m.described[0].turns ? quadrant::diagnosis::axis_kind::rotary
+                                                   : quadrant::diagnosis::axis_kind::linear;
+            const auto* known = quadrant::diagnosis::key_named(key);
+            parameters[known ? known->name_for(kind) : quadrant::diagnosis::key_of(key, kind)] = value;
+        }
+        inside.push_back({{"effect", e.name}, {"axis", "x"}, {"size", e.size}, {"parameters", parameters}});
+    }
     return {{"index", m.index},
             {"kind", name_of(m.what)},
             {"effects", inside},

@@ -49,7 +49,8 @@ public:
             away = std::max(away, std::abs(other[0].position[k] - baseline_[0].position[k]));
         const double gap = detail::rms_of_difference(asked(other), asked_);
         const drive_truth& d = m_.described[0].drive;
-        const double farthest = d.supply > 0 ? 1 : 0.02; // a servo that is too weak stays behind
+        // A servo that is too weak stays behind.
+        const double farthest = d.supply > 0 ? 1 : m_.described[0].turns ? 0.3 : 0.02;
         return away > farthest ? HUGE_VAL : gap;
     }
     const axis_record& baseline() const { return baseline_[0]; }

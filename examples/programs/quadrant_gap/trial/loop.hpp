@@ -20,6 +20,8 @@ public:
             a2_ = (k * k - c.notch_damping * w * k + w * w) / a0;
         }
     }
+    /// Begins with this much in the integral: what holds the axis where it rests.
+    void hold(double u) { integral_ = std::clamp(u, -c_.limit, c_.limit); }
     double operator()(double r, double y) {
         const double v_ref = (r - r1_) / T_, a_ref = (v_ref - v_ref1_) / T_;
         double v = 0;
@@ -147,6 +149,8 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                        mechanics(axes[i], static_cast<double>(samples) * period),
                        encoder(axes[i].encoder, dice(seed, 2 * i + 1)), laws_of_effects(axes[i].laws),
                        inner_loops(axes[i].drive, period, dice(seed, 100 + i))});
+        if (const auto& m = axes[i].mechanics; axes[i].turns)
+            all.back().control.hold(-m.weight() * std::sin(m.gravity_phase) / axes[i].actuator.force_constant);
         out[i].reference = references[i];
     }
     for (std::size_t k = 0; k < samples; ++k) {
@@ -174,7 +178,10 @@ inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                 const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
                 one& a = all[i];
                 if (axes[i].drive.closes()) {
-                    double push = a.inner.force(t, h, a.body.position(), a.body.velocity());
+                    // The law of the file format knows no clock of the drive: its force over a step is that of
+                    // the middle of the step.
+                    const double v = a.body.velocity() + h / 2 * a.body.acceleration();
+                    double push = a.inner.force(t, h, a.body.position() + h / 2 * a.body.velocity(), v);
                     if (axes[i].drive.supply > 0) {
                         if (f == 0) out[i].duty.push_back(a.inner.duty());
                         push = a.drive.force(axes[i].drive.supply * push, a.body.position());

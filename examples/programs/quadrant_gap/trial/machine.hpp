@@ -43,11 +43,24 @@ struct actuator_truth {
     wave ripple{};         ///< relative
 };
 
+/// A load at the end of an arm that the axis turns.
+struct arm_truth {
+    double mass = 0, arm = 0;
+    double inertia() const { return mass * arm * arm; }
+    double weight() const { return 9.80665 * mass * arm; } ///< torque of it, level
+};
+
 struct mechanics_truth {
     double mass = 0;                                                ///< all that moves
     double mode_mass = 0, mode_frequency = 60, mode_damping = 0.02; ///< part of mass, not under the encoder
     double backlash = 0, spring = 0, constant_force = 0, coupling = 0;
     wave cogging{};
+    double gravity = 0, gravity_phase = 0; ///< torque -gravity sin(x - phase)
+    /// The load on the arm, and that which mass and gravity hold already.
+    arm_truth payload{}, payload_as_described{};
+
+    double moving() const { return mass + payload.inertia() - payload_as_described.inertia(); }
+    double weight() const { return gravity + payload.weight() - payload_as_described.weight(); }
 };
 
 struct encoder_truth {
@@ -101,6 +114,7 @@ struct law_truth {
 
 struct axis_truth {
     std::string name = "x";
+    bool turns = false; ///< a rotary axis: rad for m, N m for N in all that follows
     mechanics_truth mechanics{};
     friction_truth friction{};
     actuator_truth actuator{};

@@ -11,7 +11,8 @@
 namespace quadrant_gap::trial {
 
 /// Which machines a trial draws: commanded in volts of force (the cascade of the machine file's format); with
-/// drives that close loops of their own; with a second encoder on the motor; or known by positions alone.
+/// drives that close loops of their own; with a second encoder on the motor; known by positions alone; or
+/// joints of an arm, with gears and gravity.
 enum class population {
     current,
     velocity_p,
@@ -19,17 +20,18 @@ enum class population {
     position,
     position_servo,
     two_encoders,
-    kinematic
+    kinematic,
+    joint
 };
-inline constexpr std::array<const char*, 7> populations{
-    "current", "velocity_p", "velocity_pi", "position", "position_servo", "two_encoders", "kinematic"};
+inline constexpr std::array<const char*, 8> populations{
+    "current", "velocity_p", "velocity_pi", "position", "position_servo", "two_encoders", "kinematic", "joint"};
 /// Whether its machines have two positions an axis.
 constexpr bool is_chain(population p) { return p == population::two_encoders || p == population::kinematic; }
 inline quadrant::diagnosis::drive_kind drive_of(population p) {
     using quadrant::diagnosis::drive_kind;
     constexpr std::array kinds{drive_kind::current,  drive_kind::velocity,       drive_kind::velocity,
                                drive_kind::position, drive_kind::position_servo, drive_kind::current,
-                               drive_kind::current};
+                               drive_kind::current,  drive_kind::current};
     return kinds[static_cast<std::size_t>(p)];
 }
 
@@ -71,6 +73,8 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
         {"command_delay", "set_point_loss", "clock_slip"},
         {"minimum_duty", "coulomb_friction"},
         {"command_delay", "drive_gain"},
+        {"gravity", "payload_mass", "arm_length", "constant_force"},
+        {"mass", "payload_mass", "arm_length", "force_constant"},
         {"wind_up", "motor_friction"},
         {"coulomb_friction", "motor_friction"},
         {"cogging", "force_ripple", "encoder_cyclic_error", "position_dependent_friction"}};
@@ -84,13 +88,14 @@ inline bool near_relatives(std::string_view a, std::string_view b) {
 /// is no lie.
 inline bool has_a_twin(std::string_view effect) {
     return effect == "mass" || effect == "force_constant" || effect == "constant_force" ||
-           effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain";
+           effect == "asymmetric_friction" || effect == "supply_voltage" || effect == "drive_gain" ||
+           effect == "payload_mass" || effect == "arm_length" || effect == "gravity";
 }
 
 /// The effects that a population withholds, in the order of the list.
 inline std::vector<const quadrant::diagnosis::effect*> withheld_from(population of, logs how = logs::plain) {
     if (!is_chain(of)) {
-        auto out = withheld_effects(drive_of(of));
+        auto out = of == population::joint ? effects_of_a_joint() : withheld_effects(drive_of(of));
         std::erase_if(out, [&](const auto* e) { return !shows(how, *e); });
         return out;
     }

@@ -115,10 +115,10 @@ public:
     /// the friction level, relatively.
     void step(double motor, double t, double h, double other_acceleration, double more_friction = 0) {
         const auto& m = a_.mechanics;
-        const double carrier = m.mass - m.mode_mass;
+        const double carrier = m.moving() - m.mode_mass;
         x_ += h / 2 * v_;
         second_ += h / 2 * second_v_;
-        const double load = m.constant_force - m.spring * x_;
+        const double load = m.constant_force - m.spring * x_ - m.weight() * std::sin(x_ - m.gravity_phase);
         double force = motor + load + at(m.cogging, x_) + unknown_(x_, t) +
                        carrier * m.coupling * other_acceleration - viscous_force(a_.friction, v_) -
                        friction_(v_, h,

@@ -74,13 +74,14 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
             m.described.push_back(detail::drawn_axis(m.period, n == 0 ? "x" : "y", random));
         if (m.how == logs::coarse)
             for (axis_truth& a : m.described) make_coarse(a, m.period, random);
-        const bool closes = p.machines_of != population::current;
+        const bool closes = drive_of(p.machines_of) != quadrant::diagnosis::drive_kind::current;
         if (closes) {
             m.period = random.one_of(p.machines_of == population::position_servo
                                          ? std::vector<double>{0.002, 0.005, 0.005}
                                          : std::vector<double>{0.0005, 0.001, 0.001, 0.002});
             detail::give_loops(m.described[0], p.machines_of, m.period, random);
         }
+        if (p.machines_of == population::joint) detail::give_joint(m.described[0], m.period, random);
         bool needs_coulomb = false;
         for (const std::string& e : p.effects)
             needs_coulomb = needs_coulomb || effect_named(e)->trial.needs_coulomb;
@@ -146,7 +147,8 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
             for (const axis_record& r : trial::run(m.truth, *references, m.period, own))
                 stays = stays && !std::isnan(r.position.back()) &&
                         detail::travel(r.position) > 20 * m.described[0].encoder.resolution &&
-                        (closes || std::abs(r.position.back() - r.reference.back()) < 0.02);
+                        (closes || std::abs(r.position.back() - r.reference.back()) <
+                                       (m.described[0].turns ? 0.2 : 0.02));
         if (stays) return m;
     }
 }

@@ -53,6 +53,13 @@ QUADRANT_DIAGNOSIS_DECL double motor_to_load(const axis_description& axis, const
                                     axis.name, m, turn));
     const double ratio = measured / to_load;
     if (std::abs(ratio - 1) <= tolerance_description::unstated) return to_load;
+    if (log.turn)
+        throw bad_input(file, fmt::format("axis {0}: end {2} moves {1:.4g} times as far as end {3}: {4}",
+                                          axis.name, ratio, log.turn->second, log.turn->first,
+                                          std::abs(std::abs(ratio) - 1) <= tolerance_description::unstated
+                                              ? fmt::format("turn the sign of one of them")
+                                              : fmt::format("scale {}_pos_{} by {:.5g}", log.turn->second, m,
+                                                            1 / std::abs(ratio))));
     const std::string what =
         log.motor_unit == "rad"
             ? fmt::format("travel_per_turn_{} {:.4g}, not {:.5g}", m, std::abs(turn), *t.travel_per_turn_m)
@@ -79,12 +86,18 @@ QUADRANT_DIAGNOSIS_DECL described_link motor_to_scale(const axis_description& ax
     auto& l = out.readings;
     out.from = "the motor's encoder";
     out.to = "the scale";
+    if (log.turn) {
+        out.from = "end " + log.turn->first;
+        out.to = "end " + log.turn->second;
+    }
     out.motor_turns = log.motor_unit == "rad";
     out.to_load = motor_to_load(axis, log, file);
     l.first = scaled(log.motor, out.to_load);
     l.last = log.position;
-    const double described = axis.motor_encoder.resolution_m.value_or(
-        out.motor_turns ? axis.motor_encoder.resolution_rad.value_or(0) * out.to_load : 0);
+    const double described =
+        log.turn ? axis.encoder.resolution_m
+                 : axis.motor_encoder.resolution_m.value_or(
+                       out.motor_turns ? axis.motor_encoder.resolution_rad.value_or(0) * out.to_load : 0);
     l.first_count = std::max(described, out.to_load * observed_count(log.motor, log.motor_step));
     l.last_count = std::max(axis.encoder.resolution_m, observed_count(log.position, log.position_step));
     l.turn = axis.transmission.travel_per_turn_m.value_or(0);

@@ -28,6 +28,10 @@ inline constexpr effect arm_length{
         "Measure the distance of the payload from the axis and describe it; set the feedforward of gravity and "
         "acceleration to it.",
     .advice = detail::feedforwards_of_payload,
+    .trial = {.low = 0.01,
+              .high = 0.8,
+              .into =
+                  [](trial_machine& m) { m.set("payload.arm_m", m.changed(m.described("payload.arm_m"))); }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.payload.inertia() > 0)) return {};
         return {{detail::freed(

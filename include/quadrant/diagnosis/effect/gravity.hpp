@@ -57,6 +57,12 @@ inline constexpr effect gravity{
                                "here)",
                                p.gravity.torque / p.force_constant, unit, p.gravity.phase);
         },
+    .trial = {.low = 0.01,
+              .high = 2,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("gravity_torque_Nm", m.changed(m.described("gravity_torque_Nm")));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const auto& now = s.leader.gravity;
         const Eigen::Vector2d missing = detail::weight_in_residual(s);

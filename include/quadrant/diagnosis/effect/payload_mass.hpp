@@ -69,6 +69,12 @@ inline constexpr effect payload_mass{
     .prior = {0.4, "tools and workpieces are changed more often than the file"},
     .remedy = "Weigh the payload and describe it; set the feedforward of gravity and acceleration to it.",
     .advice = detail::feedforwards_of_payload,
+    .trial = {.low = 0.02,
+              .high = 3,
+              .into =
+                  [](trial_machine& m) {
+                      m.set("payload.mass_kg", m.changed(m.described("payload.mass_kg")));
+                  }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const arm_load& load = s.leader.payload;
         const double scale = load.mass + load.link_mass;

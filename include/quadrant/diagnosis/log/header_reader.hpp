@@ -167,12 +167,13 @@ private:
             return;
         }
         if (!axis.position) refuse_(line_.size(), fmt::format("column {}_pos_{} is missing", name, m));
-        if (!axis.command && !axis.reference && !axis.motor)
+        // A position beside other axes says something of those: check_match() asks for the rest.
+        if (!axis.command && !axis.reference && !axis.motor && out_.axes.size() == 1)
             refuse_(
                 line_.size(),
                 fmt::format("column {0}_cmd_V is missing (or {0}_cmd_A, {0}_cmd_{1}; measured: {0}_current_A, "
-                            "{0}_torque_Nm)",
-                            name, force));
+                            "{0}_torque_Nm; of a drive that takes positions: {0}_ref_{2})",
+                            name, force, m));
         if (const auto kind = kind_of_unit(axis.command_unit); kind && *kind != *axis.kind)
             refuse_(axis.command_at, fmt::format("column {}_cmd_{} is of a {} axis; axis {} is {}", name,
                                                  axis.command_unit, name_of(*kind), name, name_of(*axis.kind)));

@@ -12,6 +12,14 @@ namespace quadrant::inline v0::diagnosis {
 
 struct driven_motion;
 
+/// How two motors turn the beam that they move: the part of their commands that does not move it,
+/// w = (1 - share) u1 - share u2.
+struct beam_turn {
+    std::string first, second;     ///< axes of its ends
+    double share = 0.5;            ///< of the mass at the first
+    std::vector<double> command{}; ///< empty: their commands are no forces
+};
+
 /// One axis of a servo log: one entry a sample, SI (a rotary axis: rad for m, N m for N).
 struct axis_log {
     std::string name;
@@ -57,7 +65,8 @@ struct axis_log {
     /// Of an axis whose drive closes loops of its own (with_drives()): `command` is then what the actuator got,
     /// as measured or as the described drive made it, and this is what the drive received and saw.
     std::shared_ptr<const driven_motion> drive{};
-    std::vector<double> asked{}; ///< then: the controller's output, as logged
+    std::vector<double> asked{};             ///< then: the controller's output, as logged
+    std::shared_ptr<const beam_turn> turn{}; ///< of two motors on one beam (join_gantry_pairs())
 };
 
 /// The motion of an axis: that of its reference, or its own where the reference stands still (an axis that is
@@ -73,7 +82,8 @@ struct machine_log {
     std::string file;
     double sample_period_s = 0; ///< mean of the stamps' differences
     std::size_t samples = 0;
-    std::vector<axis_log> axes; ///< in the order of their names
+    std::vector<axis_log> axes;     ///< in the order of their names
+    std::vector<axis_log> beside{}; ///< axes that the machine file does not describe (keep_described())
     std::vector<std::string> notes;
 };
 

@@ -94,6 +94,16 @@ struct process_description {
     std::vector<double> force_N, phase_rad;
 };
 
+/// Two motors that move one beam, each with a reading at its end. An axis with a plant is then the beam's
+/// motion, mean = share y1 + (1 - share) y2 under the sum of both commands; one without is the difference of
+/// the readings.
+struct gantry_description {
+    std::string first, second; ///< axes of the log
+    double share = 0.5;        ///< of the mass at the first end, 0 ... 1
+
+    bool operator==(const gantry_description&) const = default;
+};
+
 /// One axis of a machine: every box of its loop, and how surely its owner knows the numbers.
 struct axis_description {
     std::string name;
@@ -108,6 +118,7 @@ struct axis_description {
     drive_description drive{};               ///< loops of its own between the command and the motor
     transmission_description transmission{}; ///< between motor and load
     motor_encoder_description motor_encoder{};
+    std::optional<gantry_description> gantry_pair{};
     bool positions_only = false; ///< no plant is described: the axis is a chain of positions
     std::optional<controller_description>
         controller; ///< absent or of an unknown kind: diagnosed from the command onwards

@@ -2,6 +2,7 @@
 #pragma once
 #include "drive_keys.hpp"
 #include "effect_keys.hpp"
+#include "gantry_keys.hpp"
 #include "transmission_keys.hpp"
 
 /// The keys of a machine file that belong to no effect; those of effects follow from their records
@@ -18,7 +19,8 @@ inline constexpr std::array<std::string_view, 4> actuator_other_keys{"limit_V", 
                                                                      "command_is"};
 
 /// Boxes of an axis beside those that hold keys of effects.
-inline constexpr std::array<std::string_view, 3> axis_other_keys{"tolerance", "controller", "motor_encoder"};
+inline constexpr std::array<std::string_view, 4> axis_other_keys{"tolerance", "controller", "motor_encoder",
+                                                                 "gantry_pair"};
 inline constexpr std::array<std::string_view, 4> machine_file_keys{"schema", "sample_period_s",
                                                                    "excluded_effects", "axes"};
 
