@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one reader, box after box of a machine file, and what each needs of the others.
 #pragma once
 #include "controller/json.hpp"
 #include "machine_file/machine_keys.hpp"

@@ -52,6 +52,24 @@ inline ordered_json driven_axis(const drawn_machine& m, const axis_truth& a, ord
             {"drive", drive}};
 }
 
+/// The cascade of an axis as a machine file has it.
+inline ordered_json cascade_of(const controller_truth& c) {
+    ordered_json control{{"kind", "cascade_p_pi"},
+                         {"position_gain_per_s", c.position_gain},
+                         {"velocity_gain_V_s_per_m", c.velocity_gain},
+                         {"velocity_integral_V_per_m", c.integral}};
+    if (c.two_sample_mean)
+        control["velocity_estimator"] = "two_sample_mean";
+    else
+        control["velocity_filter_Hz"] = c.filter_Hz;
+    control["velocity_feedforward"] = c.velocity_feedforward;
+    control["acceleration_feedforward_V_s2_per_m"] = c.acceleration_feedforward;
+    control["viscous_feedforward_V_s_per_m"] = c.viscous_feedforward;
+    control["coulomb_feedforward_V"] = c.coulomb_feedforward;
+    if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"width", c.notch_damping}};
+    return control;
+}
+
 inline ordered_json machine_file(const drawn_machine& m) {
     ordered_json axes = ordered_json::object();
     for (const axis_truth& a : m.described) {
@@ -75,20 +93,6 @@ inline ordered_json machine_file(const drawn_machine& m) {
             drive["dac_range_V"] = a.controller.dac_range;
         }
         if (m.how == logs::measured) drive["command_is"] = "measured";
-        const controller_truth& c = a.controller;
-        ordered_json control{{"kind", "cascade_p_pi"},
-                             {"position_gain_per_s", c.position_gain},
-                             {"velocity_gain_V_s_per_m", c.velocity_gain},
-                             {"velocity_integral_V_per_m", c.integral}};
-        if (c.two_sample_mean)
-            control["velocity_estimator"] = "two_sample_mean";
-        else
-            control["velocity_filter_Hz"] = c.filter_Hz;
-        control["velocity_feedforward"] = c.velocity_feedforward;
-        control["acceleration_feedforward_V_s2_per_m"] = c.acceleration_feedforward;
-        control["viscous_feedforward_V_s_per_m"] = c.viscous_feedforward;
-        control["coulomb_feedforward_V"] = c.coulomb_feedforward;
-        if (c.notch_Hz > 0) control["notch"] = {{"frequency_Hz", c.notch_Hz}, {"width", c.notch_damping}};
         ordered_json tolerance{{"mass", t.mass},
                                {"force_constant", t.force_constant},
                                {"viscous", t.viscous},
@@ -97,7 +101,7 @@ inline ordered_json machine_file(const drawn_machine& m) {
         ordered_json axis{{"plant", plant},
                           {"encoder", {{"resolution_m", a.encoder.resolution}}},
                           {"actuator", drive},
-                          {"controller", control}};
+                          {"controller", cascade_of(a.controller)}};
         if (a.turns) {
             axis["plant"]["gravity_torque_Nm"] = a.mechanics.gravity;
             axis["plant"]["gravity_phase_rad"] = a.mechanics.gravity_phase;
