@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// What a header states with "always", "exact" or "bounded", over a million random trials each; a case names the
-// block and its words. tests/static/claims.txt has the whole list, and where each is held.
+// What a header states with "always", "exact" or "bounded", over a hundred thousand random trials each, a
+// million with QUADRANT_TESTS=all; a case names the block and its words. tests/static/claims.txt has the whole
+// list, and where each is held.
 #include "dice.hpp"
 
 #include <quadrant/base/literals.hpp>

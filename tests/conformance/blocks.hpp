@@ -24,11 +24,13 @@ inline constexpr std::size_t most_parameters = 8;
 
 /// Hands out the parameters of a block under test, numbered in the order of the calls. For a dual the number i
 /// is the variable i; else the one that is `bumped` is scaled, for a difference quotient. `fixed` is for what
-/// has no derivative.
+/// has no derivative. Of all calls together the one that is `replaced` hands out another number.
 template <class Real> struct values {
     std::size_t bumped = std::size_t(-1);
     double factor = 1;
-    std::size_t count = 0;
+    std::size_t replaced = std::size_t(-1);
+    double by = 0;
+    std::size_t count = 0, calls = 0;
     std::array<double, most_parameters> given{};
 
     template <class Unit> quantity<Unit, parameter_real<Real>> operator()(quantity<Unit> q) {
@@ -37,15 +39,19 @@ template <class Real> struct values {
     parameter_real<Real> operator()(double q) {
         const std::size_t i = count++;
         given.at(i) = q;
+        q = now(q);
         if constexpr (std::is_floating_point_v<Real>)
             return i == bumped ? factor * q : q;
         else
             return Real::variable(q, i);
     }
-    parameter_real<Real> fixed(double q) const { return q; }
-    template <class Unit> quantity<Unit, parameter_real<Real>> fixed(quantity<Unit> q) const {
-        return quantity<Unit, parameter_real<Real>>::from_value(parameter_real<Real>(q.value()));
+    parameter_real<Real> fixed(double q) { return parameter_real<Real>(now(q)); }
+    template <class Unit> quantity<Unit, parameter_real<Real>> fixed(quantity<Unit> q) {
+        return quantity<Unit, parameter_real<Real>>::from_value(fixed(q.value()));
     }
+
+private:
+    double now(double q) { return calls++ == replaced ? by : q; }
 };
 template <class Make> struct entry {
     std::string name;

@@ -323,7 +323,8 @@ TEST_CASE("read_diagnosis: what is wrong is told by its key") {
         json[nlohmann::ordered_json::json_pointer(pointer)] = std::move(to);
         return read_back_refusal(json);
     };
-    CHECK(with("/schema", "quadrant.machine/1") == "d.json: schema: must be \"quadrant.diagnosis/1\"");
+    CHECK(with("/schema", "quadrant.machine/1") ==
+          "d.json: schema: must be \"quadrant.diagnosis/1\"; this file is \"quadrant.machine/1\"");
     CHECK(with("/verdict", "perhaps").find("d.json: verdict: must be") == 0);
     CHECK(with("/causes/0/effect", "coging") ==
           "d.json: causes[0].effect: \"coging\" is not an effect; did you mean "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Two motors on one beam, from a simulator of their own: the beam's motion is diagnosed as one axis, the difference of
-// its ends as two positions.
+// Two motors on one beam, from a simulator of their own: the beam's motion is diagnosed as one axis, the
+// difference of its ends as two positions.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/match.hpp>
@@ -19,8 +19,8 @@ using workshop::value_of;
 
 namespace {
 
-/// A beam of 200 kg with a share of it at end 1; each end has a motor, a scale, friction and a loop of its own. It
-/// turns against guides of 40 N a micrometre.
+/// A beam of 200 kg with a share of it at end 1; each end has a motor, a scale, friction and a loop of its own.
+/// It turns against guides of 40 N a micrometre.
 struct beam_on_two_motors {
     double friction_1 = 20, friction_2 = 20, share = 0.5, scale_2 = 1, fight = 0;
 

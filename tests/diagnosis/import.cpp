@@ -341,6 +341,36 @@ TEST_CASE("import: the units of a log are checked against its machine, and no ot
     CHECK(checked(1, 1, -1).find("moves against the reference") != std::string::npos);
 }
 
+TEST_CASE("import: a mass that the record shows poorly is no unit") {
+    machine_description machine;
+    machine.axes.emplace_back().name = "x";
+    machine.axes[0].plant.mass_kg = 30; // and the record's mass is 1
+    machine.axes[0].plant.force_constant_N_per_V = 1;
+    const auto checked = [&](double other_force) {
+        machine_log log;
+        log.sample_period_s = 0.001;
+        axis_log a;
+        a.name = "x";
+        std::mt19937 random(3);
+        std::normal_distribution<double> noise;
+        double slow = 0;
+        for (int k = 0; k < 8000; ++k) {
+            const double t = 0.001 * k, w = 12, w2 = 31;
+            slow += 0.05 * (noise(random) - slow); // a force of the motion's own frequencies
+            a.position.push_back(std::sin(w * t) / (w * w) + std::sin(w2 * t) / (w2 * w2));
+            a.command.push_back(-std::sin(w * t) - std::sin(w2 * t) + other_force * slow);
+        }
+        a.reference = a.position;
+        log.axes = {a};
+        log.samples = a.position.size();
+        return said([&] { check_physics(machine, log); });
+    };
+    const std::string alone = checked(0);
+    CAPTURE(alone);
+    CHECK(alone.find("the command moves 1/30 of the mass of 30") != std::string::npos);
+    CHECK(checked(8) == "accepted"); // half of the command is another force: 1/30 may be 1/15
+}
+
 TEST_CASE("import: one number of a list that a cell holds") {
     const char* const map =
         R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "stamp", "unit": "us"},

@@ -68,7 +68,8 @@ stated number(const initialised_machine& m, const char* box, const std::string& 
 } // namespace
 
 TEST_CASE("init: the loops of a velocity drive come from the log, each within its interval") {
-    for (const auto& m : {p_drive, pi_drive}) {
+    for (const auto& m : {pi_drive, p_drive}) {
+        if (m.integral == 0 && !all_tests()) continue;
         const auto log = recorded(takes::volts, m);
         const auto begun = init_machine(asked(drive_kind::velocity, {{"mass", 100}}), &log);
         CHECK(number(begun, "drive", "velocity_per_V").holds(m.velocity_per_V));

@@ -327,7 +327,9 @@ TEST_CASE("read_log: what is not a number is refused with its place") {
     CHECK(with_cell("1e") == "log.csv:3:9: x_cmd_V: \"1e\" is not a number");
     CHECK(with_cell("+-1") == "log.csv:3:9: x_cmd_V: \"+-1\" is not a number");
     CHECK(with_cell("--1") == "log.csv:3:9: x_cmd_V: \"--1\" is not a number");
-    CHECK(with_cell("") == "log.csv:3:9: x_cmd_V: \"\" is empty");
+    CHECK(with_cell("") == "log.csv:3:9: x_cmd_V: \"\" is empty: leave the row out, and it will be filled in");
+    CHECK(with_cell("nan") ==
+          "log.csv:3:9: x_cmd_V: \"nan\" is not finite: leave the row out, and it will be filled in");
     CHECK(with_cell("\"1,5\"") == "log.csv:3:9: x_cmd_V: \"1,5\" is not a number");
     CHECK(with_cell("1\x1b[31m\xff") == "log.csv:3:9: x_cmd_V: \"1?[31m?\" is not a number");
     CHECK(with_cell(std::string("1\0", 2)) == "log.csv:3:9: x_cmd_V: \"1?\" is not a number");

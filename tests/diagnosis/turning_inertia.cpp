@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The shoulder of an arm whose elbow bends: its inertia follows the elbow's angle, which no machine file describes. It
-// is told, and no name stands in for it.
+// The shoulder of an arm whose elbow bends: its inertia follows the elbow's angle, which no machine file
+// describes. It is told, and no name stands in for it.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/match.hpp>
@@ -16,7 +16,8 @@ using workshop::said;
 
 namespace {
 
-/// Torque and angle of a shoulder of 0.5 kg m^2 plus `swing` cos(elbow), while the elbow bends by a drive of its own.
+/// Torque and angle of a shoulder of 0.5 kg m^2 plus `swing` cos(elbow), while the elbow bends by a drive of
+/// its own.
 std::string shoulder_and_elbow(double inertia, double swing) {
     constexpr double period = 0.002, h = period / 40, count = 2e-6, band = 2 * std::numbers::pi * 12;
     std::string out = "t_s,q1_ref_rad,q1_pos_rad,q1_cmd_Nm,q2_pos_rad\n";

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "quadrant_gap/comparison_report.hpp"
 #include "quadrant_gap/report.hpp"
 #include "quadrant_gap/summary.hpp"
 #include "sample_result.hpp"
@@ -18,4 +19,5 @@ int main(int argc, char** argv) {
         std::ofstream(directory / (std::string(name) + ".html")) << quadrant_gap::html_report(result);
         std::ofstream(directory / (std::string(name) + ".txt")) << quadrant_gap::summary(result);
     }
+    std::ofstream(directory / "differ.html") << quadrant_gap::html_report(sample::differing());
 }

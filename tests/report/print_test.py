@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSL-1.0
 """Prints a report as `chromium --print-to-pdf` does and looks at the paper: every chart in time has its lines, its
-legend has its colours, the title has no folder, and no text is lost.
+legend has its colours, the title has no folder, no word is cut off, and no page is empty.
 
 print_test.py REPORT.html OUT.pdf     exit code 77 (skipped) without chromium or poppler-utils
 """
+import collections
 import html
 import pathlib
 import re
@@ -49,6 +50,14 @@ def words_of(pdf):
     return out
 
 
+def words_of_source(source):
+    """What a reader of the report sees as text, but for what paper leaves out and what a chart writes."""
+    text = source[source.index("<main"):source.index("</main>")]
+    for left_out in (r"<noscript>.*?</noscript>", r'<div class="zoom">.*?</div>', r"<svg.*?</svg>"):
+        text = re.sub(left_out, " ", text, flags=re.S)
+    return html.unescape(re.sub(r"<[^>]*>", " ", text)).split()
+
+
 def main():
     report, pdf = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     for program in ("/usr/bin/chromium", "pdftoppm", "pdftotext"):
@@ -59,8 +68,14 @@ def main():
         subprocess.run(["/usr/bin/chromium", *FLAGS, f"--user-data-dir={profile}", f"--print-to-pdf={pdf}",
                         report.resolve().as_uri()], check=True, capture_output=True, timeout=100)
     source = report.read_text()
+    sizes = re.findall(r"^Page +\d+ size: +([\d.]+) x", subprocess.run(
+        ["pdfinfo", "-l", "999", pdf], check=True, capture_output=True, text=True).stdout, re.M)
     expected = len(re.findall(r'"kind":"time"', source))
     words = words_of(pdf)
+    empty = set(range(1, len(sizes) + 1)) - {w[0] for w in words}
+    check(sizes and not empty, f"of {len(sizes)} pages these are empty: {sorted(empty)}")
+    lost = collections.Counter(words_of_source(source)) - collections.Counter(w[5] for w in words)
+    check(not lost, f"words that are not on paper: {list(lost)[:20]}")
     pages = {}
     charts = [(a, b) for a, b in zip(words, words[1:]) if a[5] == "time" and b[5] == "[s]"]
     check(len(charts) == expected > 0, f"{len(charts)} of {expected} charts in time are on paper")

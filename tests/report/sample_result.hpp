@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "quadrant/diagnosis/compare/comparison_result.hpp"
 #include "quadrant/diagnosis/result/result.hpp"
 
 /// Made-up diagnoses for the tests of the report: an axis like EMPS, 24 s at 1 kHz.
@@ -222,6 +223,36 @@ inline diagnosis_result unexplained() {
     suspect.shrink = {0.03, 0.01, 0.05};
     d.causes = {suspect};
     return d;
+}
+
+/// Two logs that differ by a constant force with a long second name.
+inline comparison_result differing() {
+    comparison_result c;
+    c.likeness = likeness::differ;
+    c.first = c.second = c.across = explained();
+    c.machine_file = "axis.json";
+    c.first_file = "/logs/before.csv";
+    c.second_file = "/logs/after.csv";
+    compared_axis a;
+    a.name = "x";
+    a.likeness = likeness::differ;
+    a.force_before_N = 71.1;
+    a.force_after_N = a.force_own_N = 3.9;
+    a.force_common_N = 3.6;
+    a.floor_N = 2.7;
+    c.axes = {a};
+    difference d;
+    d.axis = "x";
+    d.effect = "constant_force";
+    d.probability = 0.97;
+    d.confusable_with = {"asymmetric_friction"};
+    d.second = {{"constant_force_N", {{-72.66, -73.7, -71.6}}}};
+    d.gap_before_force_rms_N = {70.4, 70, 71};
+    d.gap_after_force_rms_N = {3.9, 3.8, 4};
+    d.gap_before_position_rms_m = {1.3e-6, 1.2e-6, 1.4e-6};
+    d.gap_after_position_rms_m = {0.76e-6, 0.7e-6, 0.8e-6};
+    c.differences = {d};
+    return c;
 }
 
 /// Every string tries to become markup.

@@ -53,7 +53,7 @@ for header in sorted(include.rglob("*.hpp")):
     if "diagnosis" in header.parts:
         continue
     text = header.read_text()
-    for check, block, name in re.findall(r'\b(require_\w+)\(\s*"([a-z_0-9]+)\.([a-z_0-9.]+)"', text):
+    for check, block, name in re.findall(r'\b(require_\w+)(?:<\w+>)?\(\s*"([a-z_0-9]+)\.([a-z_0-9.]+)"', text):
         if check in SAYS:
             checks[block, name].add(check)
             texts[block] = text

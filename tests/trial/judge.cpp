@@ -153,11 +153,11 @@ TEST_CASE("judge: an effect that the file excludes has to be left without a name
 
 TEST_CASE("recalibration: finds the line that the answers were drawn from") {
     const auto drawn =
-        [](double slope, double offset) { // 20 000 of each probability, right exactly as often as the line says
+        [](double slope, double offset) { // 5000 of each probability, right exactly as often as the line says
             std::vector<std::pair<double, bool>> all;
             for (const double p : {0.1, 0.3, 0.6, 0.9, 0.97}) {
                 const double q = 1 / (1 + std::exp(-offset - slope * std::log(p / (1 - p))));
-                for (int k = 0; k < 20000; ++k) all.emplace_back(p, k < 20000 * q);
+                for (int k = 0; k < 5000; ++k) all.emplace_back(p, k < 5000 * q);
             }
             return recalibrate(all);
         };

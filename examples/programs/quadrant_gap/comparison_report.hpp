@@ -21,13 +21,14 @@ inline std::string differences_table(const comparison_result& c, const std::vect
             "<td data-label=\"First log\">{}</td><td data-label=\"Second log\">{}</td>"
             "<td data-label=\"Gap before → after, rms\">{}</td></tr>\n",
             escape(d.effect), escape(capital(voice(claim(d)))), escape(d.axis), probability(d.probability),
-            100 * d.probability, cell(d.first), cell(d.second), escape(gap_of(d, voice)));
+            100 * d.probability, cell(d.first), cell(d.second), lines(gaps_of(d, voice)));
         if (const effect* known = effect_named(d.effect))
             rows += fmt::format("<tr class=\"more\"><td colspan=\"5\"><small>Shown by: {}.<br>What to do: {}"
                                 "</small></td></tr>\n",
                                 escape(voice(known->exciting_motion)), escape(voice(known->remedy)));
     }
-    return "<table><thead><tr><th scope=\"col\">Effect</th><th scope=\"col\">Probability</th><th "
+    return "<table class=\"compared\"><thead><tr><th scope=\"col\">Effect</th><th "
+           "scope=\"col\">Probability</th><th "
            "scope=\"col\">First log</th><th scope=\"col\">Second log</th><th scope=\"col\">Gap before → "
            "after, rms</th></tr></thead><tbody>\n" +
            rows + "</tbody></table>";

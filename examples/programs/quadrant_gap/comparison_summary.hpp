@@ -114,16 +114,17 @@ inline std::string sentence(const comparison_result& c) {
     return worst == c.axes.end() ? "The logs have no axis that moves in both." : sentence(c, *worst);
 }
 
-/// How far the two come together with a difference.
-inline std::string gap_of(const difference& d, const axis_voice& voice) {
-    std::string text;
+/// How far the two come together with a difference, in force and in position.
+inline std::vector<std::string> gaps_of(const difference& d, const axis_voice& voice) {
+    std::vector<std::string> gaps;
     if (d.gap_before_force_rms_N.value > 0)
-        text = voice("force") + " gap " +
-               change(d.gap_before_force_rms_N.value, d.gap_after_force_rms_N.value, voice("N"));
+        gaps.push_back(voice("force") + " gap " +
+                       change(d.gap_before_force_rms_N.value, d.gap_after_force_rms_N.value, voice("N")));
     if (d.gap_before_position_rms_m.value > 0)
-        text += (text.empty() ? "" : ", ") + std::string("position gap ") +
-                change(d.gap_before_position_rms_m.value, d.gap_after_position_rms_m.value, voice("m"));
-    return text.empty() ? "no gap of force or position" : text;
+        gaps.push_back("position gap " +
+                       change(d.gap_before_position_rms_m.value, d.gap_after_position_rms_m.value, voice("m")));
+    if (gaps.empty()) gaps.emplace_back("no gap of force or position");
+    return gaps;
 }
 
 inline std::string summary_of(const comparison_result& c, const difference& d, bool decided) {
@@ -133,7 +134,8 @@ inline std::string summary_of(const comparison_result& c, const difference& d, b
                             probability(d.probability), decided ? "" : "; the other log does not exclude it"),
                 2);
     for (const std::string& line : lines_of(d, voice)) text += wrapped(line, 4);
-    text += wrapped(fmt::format("{} log: {}", d.found_in_second ? "second" : "first", gap_of(d, voice)), 4);
+    text += wrapped(
+        fmt::format("{} log: {}", d.found_in_second ? "second" : "first", listed(gaps_of(d, voice))), 4);
     if (decided && d.gain > 0)
         text += wrapped(fmt::format("asked of both: log-score {} better with it, {} worse in the other log",
                                     number(d.gain), number(d.loss)),

@@ -43,6 +43,10 @@ void run(const diagnose_options& o) {
     auto log = read_digested_log(o.log);
     std::optional<digested<machine_log>> holdout;
     if (!o.holdout.empty()) holdout = read_digested_log(o.holdout);
+    if (holdout && holdout->sha256 == log.sha256)
+        throw bad_input(o.holdout,
+                        "--holdout is the log itself, and judges nothing: leave it out, parts of the "
+                        "log are then held out, or give another motion");
     make_match(machine.contents, log.contents, holdout ? &holdout->contents : nullptr);
     quadrant_page::progress_line line(o.say.quiet);
     auto result = diagnose(

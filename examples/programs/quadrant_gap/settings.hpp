@@ -239,17 +239,19 @@ inline spans travel_of(const machine_log& log) {
 
 /// Corrections over the position (CSV): what to add to the command against forces that depend on the place
 /// (cogging, spring, gravity, a constant force), and what to add to the asked position on the way forth and
-/// back against errors of the encoder and play, as LinuxCNC's COMP_FILE of type 1 has it. An axis that is in
-/// no span gets one period from 0 on. An axis without such an effect has no rows.
+/// back, as LinuxCNC's COMP_FILE of type 1 has it: errors of the encoder, and play behind it (its loop corrects
+/// the play in front of it). An axis that is in no span gets one period from 0 on. An axis without such an
+/// effect has no rows.
 inline settings_text compensation_table(const machine_description& m, const spans& travel = {}) {
     settings_text out;
     out.text = "axis,position,command,forward,reverse\n";
     constexpr std::size_t most = 4000;
     for (const axis_description& a : m.axes) {
         const plant_model p(a, 0);
+        const double lost = a.transmission.backlash_m.value_or(0);
         const bool pushes = p.cogging.count > 0 || p.spring != 0 || p.weight() != 0 || p.constant_force != 0,
-                   shifts = p.cyclic.count > 0 || p.backlash > 0;
-        if (a.positions_only || !(pushes || shifts)) continue;
+                   shifts = p.cyclic.count > 0 || lost > 0;
+        if (!(pushes || shifts)) continue;
         double finest = 0;
         const auto resolve = [&](double period) {
             if (period > 0) finest = finest > 0 ? std::min(finest, period) : period;
@@ -267,10 +269,10 @@ inline settings_text compensation_table(const machine_description& m, const span
                                             wanted / static_cast<double>(most) / 16));
         for (std::size_t k = 0; k <= steps; ++k) {
             const double x = low + (high - low) * static_cast<double>(k) / static_cast<double>(steps),
-                         shift = p.cyclic.at(x);
-            out.text += fmt::format("{},{:.9g},{:.6g},{:.6g},{:.6g}\n", a.name, x,
-                                    -settings_detail::force_at(p, x) / p.force_constant + 0.0,
-                                    shift + p.backlash / 2, shift - p.backlash / 2);
+                         shift = p.cyclic.at(x),
+                         force = a.positions_only ? 0 : settings_detail::force_at(p, x) / p.force_constant;
+            out.text += fmt::format("{},{:.9g},{:.6g},{:.6g},{:.6g}\n", a.name, x, 0.0 - force,
+                                    shift + lost / 2, shift - lost / 2);
         }
     }
     if (out.text.find('\n') + 1 == out.text.size())

@@ -51,6 +51,44 @@ template <signal_tag Command = signal::voltage> struct modes_fit {
     }
 };
 
+namespace detail {
+/// What a search found, with intervals of 95 %.
+template <signal_tag In> modes_fit<In> with_intervals(const modal_search& best, std::size_t lines, double fastest) {
+    const auto variance = best.variances();
+    const double wider = 1.96 * std::sqrt(std::max(1.0, best.surprise()));
+    const auto spread = [&](std::size_t i) { return wider * std::sqrt(variance[i]); };
+    const auto ratio = [&](std::size_t i, double unit) { // an interval of a logarithm
+        return std::array{unit * std::exp(best.x[i]), unit * std::exp(best.x[i] - spread(i)),
+                          unit * std::exp(best.x[i] + spread(i))};
+    };
+    const auto linear = [&](std::size_t i, double unit) {
+        return std::array{unit * best.x[i], unit * (best.x[i] - spread(i)), unit * (best.x[i] + spread(i))};
+    };
+    const auto in = []<class Quantity>(const std::array<double, 3>& v, Quantity) {
+        return estimated<Quantity>{Quantity::from_value(v[0]), Quantity::from_value(v[1]),
+                                   Quantity::from_value(v[2])};
+    };
+    modes_fit<In> out{in(linear(0, fastest), per_second()),
+                      in(ratio(1, 1), gain_of<signal::acceleration, In>()),
+                      in(linear(2, 1 / fastest), duration()),
+                      {},
+                      lines,
+                      best.misfit(),
+                      best.surprise(),
+                      best.converged,
+                      {}};
+    for (std::size_t i = 3; i < best.x.size(); i += 3) {
+        const auto z = ratio(i + 1, 1), share = linear(i + 2, 1);
+        out.modes.push_back({in(ratio(i, 1 / (2 * std::numbers::pi)), frequency()),
+                             {z[0], z[1], z[2]},
+                             {share[0], share[1], share[2]}});
+    }
+    std::sort(out.modes.begin(), out.modes.end(),
+              [](const auto& a, const auto& b) { return a.centre.value < b.centre.value; });
+    return out;
+}
+} // namespace detail
+
 /// Fit of `flexible_axis_model` to a measured FRF: ln of model over measurement, each line weighed by its
 /// spread, as `fit_plant`. Modes come one after the other, each where it takes most of the misfit away, and all
 /// numbers are fitted together again. How many: given, or the least of the Bayesian criterion
@@ -88,37 +126,8 @@ modes_fit<In> fit_modes(const measured_frf& frf, const modes_fit_options& option
         if (options.modes || information.back() < best.information()) best = now;
     }
 
-    const auto variance = best.variances();
-    const double wider = 1.96 * std::sqrt(std::max(1.0, best.surprise()));
-    const auto spread = [&](std::size_t i) { return wider * std::sqrt(variance[i]); };
-    const auto ratio = [&](std::size_t i, double unit) { // an interval of a logarithm
-        return std::array{unit * std::exp(best.x[i]), unit * std::exp(best.x[i] - spread(i)),
-                          unit * std::exp(best.x[i] + spread(i))};
-    };
-    const auto linear = [&](std::size_t i, double unit) {
-        return std::array{unit * best.x[i], unit * (best.x[i] - spread(i)), unit * (best.x[i] + spread(i))};
-    };
-    const auto in = []<class Quantity>(const std::array<double, 3>& v, Quantity) {
-        return estimated<Quantity>{Quantity::from_value(v[0]), Quantity::from_value(v[1]),
-                                   Quantity::from_value(v[2])};
-    };
-    modes_fit<In> out{in(linear(0, fastest), per_second()),
-                      in(ratio(1, 1), gain_of<signal::acceleration, In>()),
-                      in(linear(2, 1 / fastest), duration()),
-                      {},
-                      points.size(),
-                      best.misfit(),
-                      best.surprise(),
-                      best.converged,
-                      information};
-    for (std::size_t i = 3; i < best.x.size(); i += 3) {
-        const auto z = ratio(i + 1, 1), share = linear(i + 2, 1);
-        out.modes.push_back({in(ratio(i, 1 / (2 * std::numbers::pi)), frequency()),
-                             {z[0], z[1], z[2]},
-                             {share[0], share[1], share[2]}});
-    }
-    std::sort(out.modes.begin(), out.modes.end(),
-              [](const auto& a, const auto& b) { return a.centre.value < b.centre.value; });
+    auto out = detail::with_intervals<In>(best, points.size(), fastest);
+    out.information = information;
     return out;
 }
 

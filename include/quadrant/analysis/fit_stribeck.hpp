@@ -33,6 +33,47 @@ struct stribeck_fit {
     }
 };
 
+namespace detail {
+/// The points of a friction map as eq. (3.5) is fitted to them, forces in units of the largest one.
+struct stribeck_points {
+    const std::vector<friction_map::point>& points;
+    double shape, level, fastest;
+
+    double error(const friction_map::point& p) const {
+        return std::max(p.standard_error.value(), 1e-3 * level);
+    }
+    /// Fc, viscous, and the fall unless vs is 0; in units of level and level/fastest.
+    least_squares::solution line(double vs) const {
+        least_squares out(vs > 0 ? 3 : 2);
+        for (const auto& p : points) {
+            const double w = level / error(p), v = p.speed.value();
+            std::vector<double> row{w, w * v / fastest};
+            if (vs > 0) row.push_back(w * std::exp(-std::pow(v / vs, shape)));
+            out.add(row, w * p.friction.value() / level);
+        }
+        return out.solve();
+    }
+    /// x: Fc, viscous, Fs, ln Vs.
+    std::vector<double> residuals(const std::vector<double>& x) const {
+        std::vector<double> r;
+        for (const auto& p : points) {
+            const double v = p.speed.value(), fall = x[2] - x[0];
+            const double f = x[0] + x[1] * v / fastest + fall * std::exp(-std::pow(v / std::exp(x[3]), shape));
+            r.push_back((f * level - p.friction.value()) / error(p));
+        }
+        return r;
+    }
+    /// Where a fit of all four numbers starts; the fall is seen in none of these curves: 0.
+    double best_velocity(double straight) const {
+        double best = HUGE_VAL, start = 0;
+        for (double vs = 0.5 * points.front().speed.value(); vs < 2 * fastest; vs *= 1.3)
+            if (const auto each = line(vs); each.residual < best && each.x[2] > 0)
+                best = each.residual, start = vs;
+        return best < straight ? start : 0;
+    }
+};
+} // namespace detail
+
 /// Fit of [Jamaludin2008] eq. (3.5), F = Fc + (Fs - Fc) exp(-(v/Vs)^shape) + viscous v, v > 0, by weighted
 /// nonlinear least squares; starts on a grid of Vs (the rest is linear), then Levenberg-Marquardt. Each point
 /// counts by its standard error, none of them better than a thousandth of the force. Intervals: of the map's
@@ -52,30 +93,7 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     double level = 0;
     for (const auto& p : points) level = std::max(level, std::abs(p.friction.value()));
     require_positive("fit_stribeck.friction (largest)", level);
-    const auto error = [&](const friction_map::point& p) {
-        return std::max(p.standard_error.value(), 1e-3 * level);
-    };
-    const auto line =
-        [&](double vs) { // Fc, viscous, and the fall unless vs is 0; in units of level and level/fastest
-            least_squares out(vs > 0 ? 3 : 2);
-            for (const auto& p : points) {
-                const double w = level / error(p), v = p.speed.value();
-                std::vector<double> row{w, w * v / fastest};
-                if (vs > 0) row.push_back(w * std::exp(-std::pow(v / vs, shape)));
-                out.add(row, w * p.friction.value() / level);
-            }
-            return out.solve();
-        };
-    // x: Fc, viscous, Fs, ln Vs
-    const auto residuals = [&](const std::vector<double>& x) {
-        std::vector<double> r;
-        for (const auto& p : points) {
-            const double v = p.speed.value(), fall = x[2] - x[0];
-            const double f = x[0] + x[1] * v / fastest + fall * std::exp(-std::pow(v / std::exp(x[3]), shape));
-            r.push_back((f * level - p.friction.value()) / error(p));
-        }
-        return r;
-    };
+    const detail::stribeck_points fitted{points, shape, level, fastest};
     const auto widening = [&](double surprise, std::size_t unknowns) { // of the standard errors, to 95 %
         const double t = student_95(map.freedom);
         return surprise <= 1 ? t
@@ -88,31 +106,26 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     };
     using viscosity = gain_of<signal::force, signal::velocity>;
     using speed = quantity_of<signal::velocity>;
-    const auto straight = line(0);
+    const auto straight = fitted.line(0);
     stribeck_fit out{};
     out.shape = shape;
     out.limits = "Fs is not visible: no fall of the friction with two speeds or more below it";
     out.converged = true;
-    const auto give_line = [&] {
-        const double freedom = double(points.size() - 2);
-        out.surprise = straight.residual / freedom;
-        const double wide = widening(out.surprise, 2);
-        out.coulomb = about(stribeck_fit::force(), level * straight.x[0],
-                            wide * level * std::sqrt(straight.inverse_diagonal[0]));
-        out.viscous = about(viscosity(), level / fastest * straight.x[1],
-                            wide * level / fastest * std::sqrt(straight.inverse_diagonal[1]));
-    };
-    give_line();
+    out.surprise = straight.residual / double(points.size() - 2);
+    const double wide_line = widening(out.surprise, 2);
+    out.coulomb = about(stribeck_fit::force(), level * straight.x[0],
+                        wide_line * level * std::sqrt(straight.inverse_diagonal[0]));
+    out.viscous = about(viscosity(), level / fastest * straight.x[1],
+                        wide_line * level / fastest * std::sqrt(straight.inverse_diagonal[1]));
     if (points.size() < 5) {
         out.limits = "Fs is not visible: 4 speeds settle no curve of 4 parameters, record 5 or more";
         return out;
     }
-    double best = HUGE_VAL, start = 0;
-    for (double vs = 0.5 * slowest; vs < 2 * fastest; vs *= 1.3)
-        if (const auto each = line(vs); each.residual < best && each.x[2] > 0) best = each.residual, start = vs;
-    if (!(best < straight.residual)) return out;
-    const auto at = line(start).x;
-    const auto fit = minimise(residuals, {at[0], at[1], at[0] + at[2], std::log(start)});
+    const double start = fitted.best_velocity(straight.residual);
+    if (start == 0) return out;
+    const auto at = fitted.line(start).x;
+    const auto fit = minimise([&](const auto& x) { return fitted.residuals(x); },
+                              {at[0], at[1], at[0] + at[2], std::log(start)});
     const double vs = std::exp(fit.x[3]);
     const double surprise = fit.cost / double(points.size() - 4);
     const double wide = widening(surprise, 4);
@@ -125,9 +138,8 @@ inline stribeck_fit fit_stribeck(const friction_map& map, double shape = 1) {
     out.coulomb = about(stribeck_fit::force(), level * fit.x[0], level * reach(0));
     out.viscous = about(viscosity(), level / fastest * fit.x[1], level / fastest * reach(1));
     out.static_level = about(stribeck_fit::force(), level * fit.x[2], level * reach(2));
-    const auto velocity = [](double v) { return speed::from_value(v); };
-    out.stribeck_velocity = {velocity(vs), velocity(vs * std::exp(-reach(3))),
-                             velocity(vs * std::exp(reach(3)))};
+    out.stribeck_velocity = {speed::from_value(vs), speed::from_value(vs * std::exp(-reach(3))),
+                             speed::from_value(vs * std::exp(reach(3)))};
     return out;
 }
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "digits.hpp"
 #include "finite_bits.hpp"
+#include "rule.hpp"
 #include "select.hpp"
 #include "signal.hpp"
-#include "unit_text.hpp"
 
-#include <array>
-#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #ifdef __cpp_exceptions
 #    include <optional>
@@ -22,105 +20,6 @@
 /// (-fno-exceptions) make.hpp says why, and a constructor called directly ends in on_refusal. A step does
 /// neither. What is no template by itself carries the instruction set, see lanes/instruction_set.hpp.
 namespace quadrant::inline v0 {
-
-namespace detail {
-/// Words and numbers into a buffer that is never overrun; `used` counts what there was to write.
-struct text_buffer {
-    char* out;
-    std::size_t size, used = 0;
-    [[gnu::always_inline]] void add(const char* words) {
-        for (; *words != '\0'; ++words, ++used)
-            if (used < size) out[used] = *words;
-    }
-    [[gnu::always_inline]] void add(double number) { add(digits(number).text.data()); }
-};
-
-#ifdef __cpp_exceptions
-template <class Isa = isa::here, class Written> std::string written(const Written& what) {
-    text_buffer counted{nullptr, 0};
-    what.write(counted);
-    std::string out(counted.used, ' ');
-    text_buffer text{out.data(), out.size()};
-    what.write(text);
-    return out;
-}
-#endif
-
-/// What must hold, words with numbers between them: "must not exceed the capacity (" + shortest(8) + ")".
-/// Nothing is written, copied or allocated before the rule is broken; the words are literals. Nine pieces at
-/// most.
-class rule {
-public:
-    constexpr rule() = default;
-    constexpr rule(const char* words) : pieces_{{{words, 0, false}}}, count_(1) {}
-    constexpr explicit rule(double number, const char* unit = nullptr)
-        : pieces_{{{unit, number, true}}}, count_(1) {}
-    constexpr friend rule operator+(rule left, const rule& right) {
-        for (std::size_t i = 0; i < right.count_ && left.count_ < left.pieces_.size(); ++i)
-            left.pieces_[left.count_++] = right.pieces_[i];
-        return left;
-    }
-    template <class Isa = isa::here> void write(text_buffer& text) const {
-        for (std::size_t i = 0; i < count_; ++i) {
-            if (pieces_[i].counts) text.add(pieces_[i].number);
-            if (pieces_[i].words != nullptr) text.add(pieces_[i].words);
-        }
-    }
-#ifdef __cpp_exceptions
-    operator std::string() const { return written(*this); }
-#endif
-
-private:
-    struct piece {
-        const char* words; // null: none; behind a number its unit
-        double number;
-        bool counts; // whether there is a number
-    };
-    std::array<piece, 9> pieces_{};
-    std::size_t count_ = 0;
-};
-constexpr rule shortest(double value) { return rule(value); }
-/// "notch.centre", or a block's name and ".period" where several blocks share the check.
-struct field_name {
-    constexpr field_name() = default;
-    constexpr field_name(const char* name, const char* rest = "") : block(name), field(rest) {}
-    const char *block = nullptr, *field = nullptr;
-};
-
-template <multi_lane Lanes>
-requires(lane_count<Lanes> == 1) constexpr double plain(const Lanes& x) noexcept { return x[0]; }
-constexpr double plain(double x) noexcept { return x; }
-template <carries_partials Dual> constexpr double plain(const Dual& x) noexcept {
-    return static_cast<double>(x.value);
-}
-template <class Unit, class Real> constexpr double plain(const boost::units::quantity<Unit, Real>& x) noexcept {
-    return plain(x.value());
-}
-
-/// A number and the letters of its unit, with a space before them, where the type does not say it:
-/// in_unit(60, " degrees").
-struct in_unit {
-    double value;
-    const char* unit;
-    template <class Number>
-    constexpr in_unit(const Number& number, const char* letters)
-        : value(detail::plain(number)), unit(letters) {}
-};
-constexpr double plain(const in_unit& x) noexcept { return x.value; }
-
-/// The letters of the unit of a value; none for a bare number.
-template <class Value> constexpr const char* unit_of(const Value&) noexcept { return nullptr; }
-template <class Unit, class Real> constexpr const char* unit_of(const quantity<Unit, Real>&) noexcept {
-    return unit_text<quantity<Unit, double>>.text.data();
-}
-constexpr const char* unit_of(const in_unit& x) noexcept { return x.unit; }
-
-/// A number in a rule, with its unit.
-constexpr rule shortest(const in_unit& value) { return rule(value.value, value.unit); }
-template <class Unit, class Real> constexpr rule shortest(const quantity<Unit, Real>& value) {
-    return shortest(in_unit(value, unit_of(value)));
-}
-} // namespace detail
 
 /// Why a block was not made: literals and numbers, free to copy.
 struct refused_parameter {
@@ -191,6 +90,24 @@ template <class Isa = isa::here>
 void require_number(bool holds, const field_name& field, double x, const char* unit, const rule& must) {
     if (!holds || is_nan(x)) refuse({field, x, must, unit});
 }
+/// The numbers that a type holds with all their digits, zero left out: without those that it rounds to zero, to
+/// few digits or to infinity.
+struct number_range {
+    double least, most;
+};
+template <class Real> constexpr number_range range_of() noexcept {
+    using limits = std::numeric_limits<std::conditional_t<std::is_same_v<Real, float>, float, double>>;
+    return {double(limits::min()), double(limits::max())};
+}
+template <class Isa = isa::here>
+void require_in_range(const field_name& field, double x, const char* unit, const number_range& range) {
+    const double size = x < 0 ? -x : x;
+    if (size != 0 && !(size >= range.least && size <= range.most))
+        refuse({field, x,
+                "must lie between " + rule(range.least) + " and " + rule(range.most) +
+                    " in size in this number type",
+                unit});
+}
 } // namespace detail
 
 /// Refuses `value` unless `holds`, naming block, field, value and rule. A NaN keeps no rule, whatever a
@@ -207,30 +124,47 @@ void require_lanes(Rule holds, const detail::field_name& field, const Value& val
     for (std::size_t i = 0; i < lane_count<Value>; ++i) require(holds(i), field, lane(value, i), must);
 }
 
-/// The rules that come up everywhere. Of a number of lanes each has to keep them.
-template <class Value, class Isa = isa::here>
+/// The rules that come up everywhere. Of a number of lanes each has to keep them. `Real`: the number type that
+/// the block computes in; a value that it cannot hold (1e-42 or 1e40 in float, 1e-320 in double) is refused,
+/// too.
+template <class Real = double, class Value, class Isa = isa::here>
 void require_finite(const detail::field_name& field, const Value& value) {
-    for (std::size_t i = 0; i < lane_count<Value>; ++i)
-        if (const double x = detail::plain(lane(value, i)); !detail::is_finite(x))
-            detail::require_number<Isa>(false, field, x, detail::unit_of(value), "must be finite");
+    for (std::size_t i = 0; i < lane_count<Value>; ++i) {
+        const double x = detail::plain(lane(value, i));
+        detail::require_number<Isa>(detail::is_finite(x), field, x, detail::unit_of(value), "must be finite");
+        detail::require_in_range<Isa>(field, x, detail::unit_of(value), detail::range_of<Real>());
+    }
 }
 /// Finite and above 0.
-template <class Value, class Isa = isa::here>
+template <class Real = double, class Value, class Isa = isa::here>
 void require_positive(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
         detail::require_number<Isa>(detail::is_finite(x) && x > 0, field, x, detail::unit_of(value),
                                     "must be finite and above 0");
+        detail::require_in_range<Isa>(field, x, detail::unit_of(value), detail::range_of<Real>());
     }
 }
 /// Finite and not below 0.
-template <class Value, class Isa = isa::here>
+template <class Real = double, class Value, class Isa = isa::here>
 void require_not_negative(const detail::field_name& field, const Value& value) {
     for (std::size_t i = 0; i < lane_count<Value>; ++i) {
         const double x = detail::plain(lane(value, i));
         detail::require_number<Isa>(detail::is_finite(x) && x >= 0, field, x, detail::unit_of(value),
                                     "must be finite and not below 0");
+        detail::require_in_range<Isa>(field, x, detail::unit_of(value), detail::range_of<Real>());
     }
+}
+/// Coefficients that a block makes of a parameter: their product with an ordinary signal has to be a number, so
+/// none may exceed the root of the largest one.
+template <class Real, class Value, class... Coefficients>
+void require_coefficients(const detail::field_name& field, const Value& of, const Coefficients&... each) {
+    const auto held = [](double c) {
+        return detail::is_finite(c) && c / detail::range_of<Real>().most * c <= 1;
+    };
+    for (std::size_t i = 0; i < lane_count<Real>; ++i)
+        require((held(detail::plain(lane(each, i))) && ...), field, lane(of, i),
+                "must leave coefficients that this number type can hold");
 }
 /// A corner or centre frequency of a block that runs every `period`.
 template <class Value, class Isa = isa::here>

@@ -25,7 +25,9 @@ public:
     struct parameters {};
     struct state {};
 
-    absent(const parameters& p, duration period) : given_(p) { require_positive("absent.period", period); }
+    absent(const parameters& p, duration period) : given_(p) {
+        require_positive<Real>("absent.period", period);
+    }
 
     value operator()(argument x) noexcept { return out_.keep(finite(x), value()); }
     void reset() noexcept { out_.reset(); }
@@ -61,7 +63,9 @@ public:
     struct parameters {};
     struct state {};
 
-    through(const parameters& p, duration period) : given_(p) { require_positive("through.period", period); }
+    through(const parameters& p, duration period) : given_(p) {
+        require_positive<Real>("through.period", period);
+    }
 
     value operator()(value x) noexcept { return out_.keep(finite(x), x); }
     void reset() noexcept { out_.reset(); }

@@ -52,7 +52,7 @@ public:
 
     acceleration_feedback(const parameters& p, duration period)
         : given_(p), law_(p.law, period), filter_({p.corner}, period), gain_(in_real<real>(p.gain)) {
-        require_not_negative("acceleration_feedback.gain", p.gain);
+        require_not_negative<real>("acceleration_feedback.gain", p.gain);
     }
 
     value operator()(const axis_motion<real>& reference, position x, velocity v, acceleration a) noexcept {
@@ -60,7 +60,8 @@ public:
             return out_.hold();
         added_ = gain_ * filter_(reference.acceleration - a);
         of_law_ = law_(reference, x, v);
-        return out_.keep(of_law_ + added_);
+        const value u = of_law_ + added_;
+        return finite(u) ? out_.keep(u) : out_.hold();
     }
     value operator()(const axis_motion<real>& reference, position x, velocity v) noexcept {
         return (*this)(reference, x, v, reference.acceleration);

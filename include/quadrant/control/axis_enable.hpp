@@ -73,11 +73,11 @@ public:
     axis_enable(const parameters& p, duration period)
         : given_(p), period_(in_real<Real>(period)), fastest_(in_real<Real>(p.velocity)),
           gentle_(in_real<Real>(p.deceleration)), hard_(in_real<Real>(p.emergency_deceleration)) {
-        require_positive("axis_enable.period", period);
-        require_positive("axis_enable.velocity", p.velocity);
-        require_positive("axis_enable.deceleration", p.deceleration);
-        require_positive("axis_enable.emergency_deceleration", p.emergency_deceleration);
-        require_not_negative("axis_enable.brake_time", p.brake_time);
+        require_positive<Real>("axis_enable.period", period);
+        require_positive<Real>("axis_enable.velocity", p.velocity);
+        require_positive<Real>("axis_enable.deceleration", p.deceleration);
+        require_positive<Real>("axis_enable.emergency_deceleration", p.emergency_deceleration);
+        require_not_negative<Real>("axis_enable.brake_time", p.brake_time);
         brake_ = std::size_t(std::ceil(p.brake_time.value() / period.value() * (1 - 1e-12)));
     }
 

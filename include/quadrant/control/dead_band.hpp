@@ -40,8 +40,8 @@ public:
     struct state {};
 
     dead_band(const parameters& p, duration period) : given_(p), half_width_(in_real<Real>(p.half_width)) {
-        require_positive("dead_band.period", period);
-        require_not_negative("dead_band.half_width", p.half_width);
+        require_positive<Real>("dead_band.period", period);
+        require_not_negative<Real>("dead_band.half_width", p.half_width);
     }
 
     value operator()(value x) noexcept { return out_.keep(finite(x), shifted(x)); }

@@ -46,12 +46,12 @@ public:
 
     following_error(const parameters& p, duration period)
         : given_(p), window_(in_real<Real>(p.window)), per_speed_(in_real<Real>(p.per_speed)) {
-        require_positive("following_error.period", period);
-        require_positive("following_error.window", p.window);
-        require_not_negative("following_error.per_speed", p.per_speed);
+        require_positive<Real>("following_error.period", period);
+        require_positive<Real>("following_error.window", p.window);
+        require_not_negative<Real>("following_error.per_speed", p.per_speed);
         require(p.warning > 0 && p.warning <= 1, "following_error.warning", p.warning,
                 "must lie above 0 and not above 1");
-        require_not_negative("following_error.patience", p.patience);
+        require_not_negative<Real>("following_error.patience", p.patience);
         patience_ = std::size_t(std::ceil(p.patience.value() / period.value() * (1 - 1e-12)));
     }
 

@@ -43,10 +43,10 @@ public:
     struct state {};
 
     gain_schedule(const parameters& p, duration period) : given_(p) {
-        require_positive("gain_schedule.period", period);
+        require_positive<Real>("gain_schedule.period", period);
         for (std::size_t i = 0; i < Nodes; ++i) {
-            require_finite("gain_schedule.at", p.at[i]);
-            require_finite("gain_schedule.gain", p.gain[i]);
+            require_finite<Real>("gain_schedule.at", p.at[i]);
+            require_finite<Real>("gain_schedule.gain", p.gain[i]);
             require(i == 0 || detail::plain(p.at[i]) > detail::plain(p.at[i - 1]), "gain_schedule.at", p.at[i],
                     "must lie above the one before it (" + detail::shortest(p.at[i == 0 ? 0 : i - 1]) + ")");
             at_[i] = in_real<Real>(p.at[i]);

@@ -37,7 +37,7 @@ public:
 
     limiter(const parameters& p, duration period)
         : given_(p), low_(in_real<Real>(p.low)), high_(in_real<Real>(p.high)) {
-        require_positive("limiter.period", period);
+        require_positive<Real>("limiter.period", period);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             const auto low_given = lane(p.low, i), high_given = lane(p.high, i);
             const double low = detail::plain(low_given), high = detail::plain(high_given);

@@ -159,23 +159,23 @@ private:
         return e > deadband_ ? position(e - deadband_) : e < -deadband_ ? position(e + deadband_) : position();
     }
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("linuxcnc_pid.period", period);
-        require_finite("linuxcnc_pid.pgain", p.pgain);
-        require_finite("linuxcnc_pid.igain", p.igain);
-        require_finite("linuxcnc_pid.dgain", p.dgain);
-        require_finite("linuxcnc_pid.ff0", p.ff0);
-        require_finite("linuxcnc_pid.ff1", p.ff1);
-        require_finite("linuxcnc_pid.ff2", p.ff2);
-        require_finite("linuxcnc_pid.ff3", p.ff3);
-        require_finite("linuxcnc_pid.bias", p.bias);
-        require_not_negative("linuxcnc_pid.deadband", p.deadband);
-        require_not_negative("linuxcnc_pid.maxerror", p.maxerror);
-        require_not_negative("linuxcnc_pid.maxerror_i", p.maxerror_i);
-        require_not_negative("linuxcnc_pid.maxerror_d", p.maxerror_d);
-        require_not_negative("linuxcnc_pid.maxcmd_d", p.maxcmd_d);
-        require_not_negative("linuxcnc_pid.maxcmd_dd", p.maxcmd_dd);
-        require_not_negative("linuxcnc_pid.maxcmd_ddd", p.maxcmd_ddd);
-        require_not_negative("linuxcnc_pid.maxoutput", p.maxoutput);
+        require_positive<Real>("linuxcnc_pid.period", period);
+        require_finite<Real>("linuxcnc_pid.pgain", p.pgain);
+        require_finite<Real>("linuxcnc_pid.igain", p.igain);
+        require_finite<Real>("linuxcnc_pid.dgain", p.dgain);
+        require_finite<Real>("linuxcnc_pid.ff0", p.ff0);
+        require_finite<Real>("linuxcnc_pid.ff1", p.ff1);
+        require_finite<Real>("linuxcnc_pid.ff2", p.ff2);
+        require_finite<Real>("linuxcnc_pid.ff3", p.ff3);
+        require_finite<Real>("linuxcnc_pid.bias", p.bias);
+        require_not_negative<Real>("linuxcnc_pid.deadband", p.deadband);
+        require_not_negative<Real>("linuxcnc_pid.maxerror", p.maxerror);
+        require_not_negative<Real>("linuxcnc_pid.maxerror_i", p.maxerror_i);
+        require_not_negative<Real>("linuxcnc_pid.maxerror_d", p.maxerror_d);
+        require_not_negative<Real>("linuxcnc_pid.maxcmd_d", p.maxcmd_d);
+        require_not_negative<Real>("linuxcnc_pid.maxcmd_dd", p.maxcmd_dd);
+        require_not_negative<Real>("linuxcnc_pid.maxcmd_ddd", p.maxcmd_ddd);
+        require_not_negative<Real>("linuxcnc_pid.maxoutput", p.maxoutput);
         return p;
     }
 

@@ -68,8 +68,8 @@ public:
         : given_(p), period_(period), position_loop_({p.position_gain}, period),
           velocity_loop_({p.gain, p.integral_gain, p.limit, p.anti_windup}, period),
           weight_(Real(p.velocity_weight)), acceleration_gain_(in_real<Real>(p.acceleration_gain)) {
-        require_finite("p_pi.velocity_weight", p.velocity_weight);
-        require_finite("p_pi.acceleration_gain", p.acceleration_gain);
+        require_finite<Real>("p_pi.velocity_weight", p.velocity_weight);
+        require_finite<Real>("p_pi.acceleration_gain", p.acceleration_gain);
     }
 
     value operator()(const axis_motion<Real>& reference, position measured, velocity tachometer) noexcept {

@@ -77,13 +77,15 @@ public:
     pid(const parameters& p, duration period)
         : given_(p), period_(period), loop_({p.gain, p.integral_gain, p.limit, p.anti_windup}, period),
           derivative_gain_(in_real<Real>(p.derivative_gain)), weight_(Real(p.velocity_weight)) {
-        require_not_negative("pid.derivative_gain", p.derivative_gain);
-        require_finite("pid.position_weight", p.position_weight);
-        require_finite("pid.velocity_weight", p.velocity_weight);
+        require_not_negative<Real>("pid.derivative_gain", p.derivative_gain);
+        require_finite<Real>("pid.position_weight", p.position_weight);
+        require_finite<Real>("pid.velocity_weight", p.velocity_weight);
         require(p.derivative_corner > frequency(), "pid.derivative_corner", p.derivative_corner,
                 "must be above 0 (infinite: no filter)");
         set_aside_ =
             in_real<Real>(gain_of<Command, signal::position, number>(p.gain * (p.position_weight - number(1))));
+        require_coefficients<Real>("pid.position_weight", p.position_weight,
+                                   (p.gain * (p.position_weight - number(1))).value());
         share_ = 1 - std::exp(-2 * std::numbers::pi * p.derivative_corner.value() * period.value());
     }
 

@@ -161,19 +161,20 @@ private:
 
     static const parameters& checked(const parameters& p, duration period) {
         using detail::plain;
-        require_positive("predictive.period", period);
+        require_positive<Real>("predictive.period", period);
         require(detail::is_finite(plain(p.plant.gain)) && plain(p.plant.gain) > 0, "predictive.plant.gain",
                 p.plant.gain, "must be finite and above 0: the command has to control the axis");
-        require_not_negative("predictive.plant.viscous_rate", p.plant.viscous_rate);
+        require_not_negative<Real>("predictive.plant.viscous_rate", p.plant.viscous_rate);
         require(p.horizon >= 1 && p.horizon <= Preview, "predictive.horizon", double(p.horizon),
                 "must lie between 1 and the preview (" + detail::shortest(double(Preview)) + " periods)");
         const auto& w = p.weights.error;
         const double xx = plain(w[0][0]), xv = plain(w[0][1]), vx = plain(w[1][0]), vv = plain(w[1][1]);
-        require_positive("predictive.weights.error[0][0]", xx); // else nothing brings the axis to its place
+        require_positive<Real>("predictive.weights.error[0][0]",
+                               xx); // else nothing brings the axis to its place
         require(detail::is_finite(vv) && vv >= 0 && xv == vx && xv * xv <= xx * vv * (1 + 1e-12),
                 "predictive.weights.error (determinant)", xx * vv - xv * vx,
                 "must be symmetric and positive semidefinite");
-        require_positive("predictive.weights.increment", p.weights.increment);
+        require_positive<Real>("predictive.weights.increment", p.weights.increment);
         require(plain(p.limit) > 0, "predictive.limit", p.limit, "must be above 0");
         require(plain(p.rate_limit) > 0, "predictive.rate_limit", p.rate_limit, "must be above 0");
         return p;

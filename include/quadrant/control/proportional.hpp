@@ -33,8 +33,8 @@ public:
     struct state {};
 
     proportional(const parameters& p, duration period) : given_(p), gain_(in_real<Real>(p.gain)) {
-        require_positive("proportional.period", period);
-        require_finite("proportional.gain", p.gain);
+        require_positive<Real>("proportional.period", period);
+        require_finite<Real>("proportional.gain", p.gain);
     }
 
     value operator()(argument x) noexcept {

@@ -73,9 +73,9 @@ public:
 
     proportional_integral(const parameters& p, duration period)
         : given_(p), gain_(in_real<Real>(p.gain)), limit_(in_real<Real>(p.limit)) {
-        require_positive("proportional_integral.period", period);
-        require_not_negative("proportional_integral.gain", p.gain);
-        require_not_negative("proportional_integral.integral_gain", p.integral_gain);
+        require_positive<Real>("proportional_integral.period", period);
+        require_not_negative<Real>("proportional_integral.gain", p.gain);
+        require_not_negative<Real>("proportional_integral.integral_gain", p.integral_gain);
         require_lanes([&](std::size_t i) { return detail::plain(lane(p.limit, i)) > 0; },
                       "proportional_integral.limit", p.limit, "must be above 0 (infinite: no limit)");
         per_sample_ =

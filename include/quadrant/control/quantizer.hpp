@@ -4,6 +4,8 @@
 #include "../base/finite.hpp"
 
 #include <cmath>
+#include <concepts>
+#include <cstdint>
 
 namespace quadrant::inline v0 {
 
@@ -34,8 +36,8 @@ public:
     struct state {};
 
     quantizer(const parameters& p, duration period) : given_(p), step_(in_real<Real>(p.step)) {
-        require_positive("quantizer.period", period);
-        require_not_negative("quantizer.step", p.step);
+        require_positive<Real>("quantizer.period", period);
+        require_not_negative<Real>("quantizer.step", p.step);
     }
 
     value operator()(value x) noexcept {
@@ -60,8 +62,19 @@ public:
     state now() const noexcept { return {}; }
 
 private:
+    /// Halves away from zero. Of a double without a call (before SSE4.1 `round` is one): the largest number
+    /// below one half is added, so that nothing below a half reaches the next whole number.
+    static Real whole(Real x) noexcept {
+        if constexpr (std::same_as<Real, double> && sizeof(void*) == 8) {
+            const double size = std::abs(x);
+            if (!(size < 0x1p52)) return x;
+            return std::copysign(double(static_cast<std::int64_t>(size + 0x1.fffffffffffffp-2)), x);
+        } else {
+            using std::round;
+            return Real(round(x));
+        }
+    }
     value rounded(value x) const noexcept {
-        using std::round;
         if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
             if (none(rounds_)) return x;
         // Off by a step where a division would meet the middle between two of them.
@@ -69,7 +82,7 @@ private:
             const Real whole = nearest(Real(x * inverse_step_));
             return select(rounds_, value(whole * step_), x);
         } else
-            return select(rounds_, value(Real(round(Real(x / step_))) * step_), x);
+            return select(rounds_, value(whole(Real(x / step_)) * step_), x);
     }
 
     parameters given_;

@@ -35,7 +35,7 @@ public:
     };
 
     rate_limiter(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("rate_limiter.period", period);
+        require_positive<Real>("rate_limiter.period", period);
         require_lanes([&](std::size_t i) { return detail::plain(lane(p.rate, i)) > 0; }, "rate_limiter.rate",
                       p.rate, "must be above 0 (infinite: no bound)");
         most_ = value::from_value(Real(p.rate.value() * number(period.value())));

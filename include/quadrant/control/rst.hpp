@@ -78,14 +78,14 @@ public:
     };
 
     rst(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("rst.period", period);
+        require_positive<Real>("rst.period", period);
         require_lanes([&](std::size_t i) { return detail::plain(lane(p.r[0], i)) == 1; }, "rst.r[0]", p.r[0],
                       "must be 1");
         require(p.recovery[0] == 1, "rst.recovery[0]", p.recovery[0], "must be 1");
         number size{}, difference{};
         const auto take = [&](auto& own, const auto& from, const detail::field_name& name, number sign) {
             for (std::size_t i = 0; i < from.size(); ++i) {
-                require_finite(name, from[i]);
+                require_finite<Real>(name, from[i]);
                 own[i] = in_real<Real>(from[i]);
                 size += absolute(detail::bare(from[i])), difference += sign * detail::bare(from[i]);
             }
@@ -98,8 +98,8 @@ public:
             },
             "rst.reference", difference, "must have the sum of feedback (difference)");
         for (std::size_t i = 0; i <= R; ++i) {
-            require_finite("rst.r", p.r[i]);
-            require_finite("rst.recovery", p.recovery[i]);
+            require_finite<Real>("rst.r", p.r[i]);
+            require_finite<Real>("rst.recovery", p.recovery[i]);
             r_[i] = Real(p.r[i]), w_[i] = Real(p.recovery[i]);
         }
         // Of the parameters as they are given, before they are rounded to Real.

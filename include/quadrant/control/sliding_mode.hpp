@@ -129,12 +129,12 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("sliding_mode.period", period);
-        require_positive("sliding_mode.plant.gain", p.plant.gain);
-        require_not_negative("sliding_mode.plant.viscous_rate", p.plant.viscous_rate);
-        require_positive("sliding_mode.sliding", p.sliding);
-        require_not_negative("sliding_mode.gain", p.gain);
-        require_not_negative("sliding_mode.adaptation", p.adaptation);
+        require_positive<Real>("sliding_mode.period", period);
+        require_positive<Real>("sliding_mode.plant.gain", p.plant.gain);
+        require_not_negative<Real>("sliding_mode.plant.viscous_rate", p.plant.viscous_rate);
+        require_positive<Real>("sliding_mode.sliding", p.sliding);
+        require_not_negative<Real>("sliding_mode.gain", p.gain);
+        require_not_negative<Real>("sliding_mode.adaptation", p.adaptation);
         return p;
     }
 

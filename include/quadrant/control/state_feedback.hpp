@@ -154,13 +154,13 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("state_feedback.period", period);
-        require_positive("state_feedback.plant.gain", p.plant.gain);
-        require_not_negative("state_feedback.plant.viscous_rate", p.plant.viscous_rate);
-        require_finite("state_feedback.position_gain", p.position_gain);
-        require_finite("state_feedback.velocity_gain", p.velocity_gain);
-        require_positive("state_feedback.encoder_noise", p.encoder_noise);
-        require_positive("state_feedback.drift", p.drift);
+        require_positive<Real>("state_feedback.period", period);
+        require_positive<Real>("state_feedback.plant.gain", p.plant.gain);
+        require_not_negative<Real>("state_feedback.plant.viscous_rate", p.plant.viscous_rate);
+        require_finite<Real>("state_feedback.position_gain", p.position_gain);
+        require_finite<Real>("state_feedback.velocity_gain", p.velocity_gain);
+        require_positive<Real>("state_feedback.encoder_noise", p.encoder_noise);
+        require_positive<Real>("state_feedback.drift", p.drift);
         return p;
     }
 

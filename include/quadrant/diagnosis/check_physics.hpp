@@ -115,8 +115,10 @@ private:
             "moves the axis, a hand or another drive: then the log says nothing of its friction)",
             c_.friction, a_.command_unit, column("pos", m_), command_column()));
     }
+    /// Noise of the acceleration makes the slope of the command over it too small. The other slope is an upper
+    /// bound of the same number. Only where both are off by a unit it is one.
     void against_the_mass(double ratio) const {
-        if (ratio < slip_of_a_unit && ratio > 1 / slip_of_a_unit) return;
+        if (ratio < slip_of_a_unit && ratio / c_.share_of_left > 1 / slip_of_a_unit) return;
         refuse(fmt::format(
             "the command moves {} the {} of {:g}: check the units of {} ({}), of {} ({}), and of {}",
             times(ratio), text_of("mass", a_.kind), known_.mass, column("pos", m_),

@@ -139,15 +139,12 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
 
 /// What the owner excludes although it explains the record better than what is named.
 inline void note_excluded(diagnosis_result& out, const std::vector<cause>& causes) {
-    const auto label = [](const std::string& name) {
-        const effect* e = effect_named(name);
-        return e ? e->label : std::string_view(name);
-    };
     for (const cause& x : causes)
         if (!x.better_excluded.empty())
             out.notes.push_back(fmt::format("axis {}: {}, which the machine file excludes, explains the record "
                                             "better than {} does: check excluded_effects.",
-                                            x.axis, label(x.better_excluded), label(x.effect)));
+                                            x.axis, label_of_effect(x.better_excluded),
+                                            label_of_effect(x.effect)));
 }
 
 /// What the search did not come to before its time was up.

@@ -49,6 +49,12 @@ private:
         return line;
     }
 
+    /// A cell in which a recorder had nothing to write.
+    static bool no_reading(std::string_view cell) {
+        double value = 0;
+        return cell.empty() || (parse_number(cell, value) && std::isnan(value));
+    }
+
     void reserve() {
         const auto lines = static_cast<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n')) + 1;
         const std::size_t most =
@@ -74,7 +80,9 @@ private:
             double value = 0;
             if (const char* fault = parse_number(cells.text(), value))
                 refuse(line_, line, cells.offset(),
-                       fmt::format("{}: {} {}", column.name, in_quotes(cells.text()), fault));
+                       fmt::format("{}: {} {}{}", column.name, in_quotes(cells.text()), fault,
+                                   no_reading(cells.text()) ? ": leave the row out, and it will be filled in"
+                                                            : ""));
             column.values.push_back(value);
             column.step.add(cells.text(), value);
         }

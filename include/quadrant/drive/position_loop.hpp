@@ -39,9 +39,9 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, Real h) {
-        require_positive("position_loop.step", h);
-        require_not_negative("position_loop.gain", p.gain);
-        require_finite("position_loop.velocity_feedforward", p.velocity_feedforward);
+        require_positive<Real>("position_loop.step", h);
+        require_not_negative<Real>("position_loop.gain", p.gain);
+        require_finite<Real>("position_loop.velocity_feedforward", p.velocity_feedforward);
         return p;
     }
 

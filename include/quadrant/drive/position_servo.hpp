@@ -53,9 +53,9 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, Real h) {
-        require_positive("position_servo.step", h);
-        require_positive("position_servo.gain", p.gain);
-        require_not_negative("position_servo.minimum", p.minimum);
+        require_positive<Real>("position_servo.step", h);
+        require_positive<Real>("position_servo.gain", p.gain);
+        require_not_negative<Real>("position_servo.minimum", p.minimum);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             require(lane(p.maximum, i) > 0, "position_servo.maximum", lane(p.maximum, i), "must be above 0");
             require(lane(p.rate, i) > 0, "position_servo.rate", lane(p.rate, i),

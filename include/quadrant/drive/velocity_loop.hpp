@@ -61,9 +61,9 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, Real h) {
-        require_positive("velocity_loop.step", h);
-        require_not_negative("velocity_loop.gain", p.gain);
-        require_not_negative("velocity_loop.integral", p.integral);
+        require_positive<Real>("velocity_loop.step", h);
+        require_not_negative<Real>("velocity_loop.gain", p.gain);
+        require_not_negative<Real>("velocity_loop.integral", p.integral);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             require(lane(p.filter_Hz, i) > 0, "velocity_loop.filter_Hz", lane(p.filter_Hz, i),
                     "must be above 0 (infinite: no filter)");

@@ -51,10 +51,10 @@ public:
     backlash_compensation(const parameters& p, duration period)
         : given_(p), half_(in_real<Real>(quantity_of<Signal, number>(p.play * number(0.5)))),
           hysteresis_(in_real<Real>(p.hysteresis)), period_(period) {
-        require_positive("backlash_compensation.period", period);
-        require_not_negative("backlash_compensation.play", p.play);
-        require_positive("backlash_compensation.rate", p.rate);
-        require_not_negative("backlash_compensation.hysteresis", p.hysteresis);
+        require_positive<Real>("backlash_compensation.period", period);
+        require_not_negative<Real>("backlash_compensation.play", p.play);
+        require_positive<Real>("backlash_compensation.rate", p.rate);
+        require_not_negative<Real>("backlash_compensation.hysteresis", p.hysteresis);
         most_ = value::from_value(Real(p.rate.value() * number(period.value())));
     }
 

@@ -49,13 +49,13 @@ public:
 
     cogging_harmonics(const parameters& p, duration period) : given_(p), pitch_(in_real<Real>(p.pitch)) {
         using std::cos, std::sin;
-        require_positive("cogging_harmonics.period", period);
-        require_positive("cogging_harmonics.pitch", p.pitch);
+        require_positive<Real>("cogging_harmonics.period", period);
+        require_positive<Real>("cogging_harmonics.pitch", p.pitch);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             const harmonic& h = p.harmonics[i];
             require(h.order >= 1, "cogging_harmonics.order", double(h.order), "must be 1 or more");
-            require_finite("cogging_harmonics.amplitude", h.amplitude);
-            require_finite("cogging_harmonics.phase", h.phase);
+            require_finite<Real>("cogging_harmonics.amplitude", h.amplitude);
+            require_finite<Real>("cogging_harmonics.phase", h.phase);
             sine_[i] = in_real<Real>(quantity_of<Out, number>(h.amplitude * number(cos(h.phase))));
             cosine_[i] = in_real<Real>(quantity_of<Out, number>(h.amplitude * number(sin(h.phase))));
         }

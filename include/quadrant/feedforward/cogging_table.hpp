@@ -45,10 +45,10 @@ public:
     struct state {};
 
     cogging_table(const parameters& p, duration period) : given_(p), pitch_(in_real<Real>(p.pitch)) {
-        require_positive("cogging_table.period", period);
-        require_positive("cogging_table.pitch", p.pitch);
+        require_positive<Real>("cogging_table.period", period);
+        require_positive<Real>("cogging_table.pitch", p.pitch);
         for (std::size_t i = 0; i < Points; ++i) {
-            require_finite("cogging_table.points", p.points[i]);
+            require_finite<Real>("cogging_table.points", p.points[i]);
             points_[i] = in_real<Real>(p.points[i]);
         }
     }

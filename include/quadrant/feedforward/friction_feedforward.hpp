@@ -69,10 +69,10 @@ public:
 
     friction_feedforward(const parameters& p, duration period)
         : given_(p), law_(p.law, period), width_(in_real<Real>(p.width)) {
-        require_positive("friction_feedforward.period", period);
-        require_positive("friction_feedforward.force_constant", p.force_constant);
-        require_positive("friction_feedforward.width", p.width);
-        require_not_negative("friction_feedforward.scale", p.scale);
+        require_positive<Real>("friction_feedforward.period", period);
+        require_positive<Real>("friction_feedforward.force_constant", p.force_constant);
+        require_positive<Real>("friction_feedforward.width", p.width);
+        require_not_negative<Real>("friction_feedforward.scale", p.scale);
         share_ = in_real<Real>(gain_of<Command, typename Law::output, number>(p.scale / p.force_constant));
     }
 

@@ -37,9 +37,9 @@ public:
     struct state {};
 
     inverse_model(const parameters& p, duration period) : given_(p) {
-        require_positive("inverse_model.period", period);
-        require_positive("inverse_model.gain", p.gain);
-        require_not_negative("inverse_model.viscous_rate", p.viscous_rate);
+        require_positive<Real>("inverse_model.period", period);
+        require_positive<Real>("inverse_model.gain", p.gain);
+        require_not_negative<Real>("inverse_model.viscous_rate", p.viscous_rate);
         inertia_ = in_real<Real>(gain_of<Command, signal::acceleration, number>(number(1) / p.gain));
         drag_ = in_real<Real>(gain_of<Command, signal::velocity, number>(p.viscous_rate / p.gain));
     }

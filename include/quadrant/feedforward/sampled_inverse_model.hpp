@@ -48,12 +48,15 @@ public:
     };
 
     sampled_inverse_model(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("sampled_inverse_model.period", period);
-        require(detail::is_finite(detail::plain(p.numerator[0])) && p.numerator[0] != number(0),
-                "sampled_inverse_model.numerator", p.numerator[0], "must be finite and not 0");
+        require_positive<Real>("sampled_inverse_model.period", period);
+        require_finite<Real>("sampled_inverse_model.numerator", p.numerator[0]);
+        require(p.numerator[0] != number(0), "sampled_inverse_model.numerator", p.numerator[0],
+                "must be finite and not 0");
         number per_period = number(1) / p.numerator[0];
         for (std::size_t i = 0; i <= Order; ++i) {
-            require_finite("sampled_inverse_model.denominator", p.denominator[i]);
+            require_finite<Real>("sampled_inverse_model.denominator", p.denominator[i]);
+            require_coefficients<Real>("sampled_inverse_model.denominator", p.denominator[i],
+                                       p.denominator[i] * per_period, per_period);
             weight_[i] = Real(p.denominator[i] * per_period);
             per_period = per_period / number(period.value());
         }

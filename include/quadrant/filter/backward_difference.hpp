@@ -33,7 +33,7 @@ public:
     };
 
     backward_difference(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("backward_difference.period", period);
+        require_positive<Real>("backward_difference.period", period);
         rate_ = quantity<si::frequency, Real>::from_value(Real(1 / period.value()));
     }
 

@@ -47,7 +47,7 @@ public:
     };
 
     butterworth(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("butterworth.period", period);
+        require_positive<Real>("butterworth.period", period);
         require_below_nyquist("butterworth.corner", p.corner, period);
         coefficients_ = second_order<Real>("butterworth.corner", p.corner, number(std::numbers::sqrt2), period);
     }

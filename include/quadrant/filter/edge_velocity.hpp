@@ -56,8 +56,8 @@ public:
     };
 
     edge_velocity(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("edge_velocity.period", period);
-        require_positive("edge_velocity.step", p.step);
+        require_positive<Real>("edge_velocity.period", period);
+        require_positive<Real>("edge_velocity.step", p.step);
         require(detail::is_finite(p.window.value()) && p.window >= period, "edge_velocity.window", p.window,
                 "must be finite and not below the period (" + detail::shortest(period) + ")");
         require(p.rest >= p.window && p.rest / period < most_samples, "edge_velocity.rest", p.rest,

@@ -46,8 +46,8 @@ public:
     };
 
     filtered_derivative(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("filtered_derivative.period", period);
-        require_positive("filtered_derivative.corner", p.corner);
+        require_positive<Real>("filtered_derivative.period", period);
+        require_positive<Real>("filtered_derivative.corner", p.corner);
         require_held<Real>("filtered_derivative.corner", p.corner, period);
         const number wc = number(2 * std::numbers::pi) * p.corner.value(), wt = wc * number(period.value());
         lose_ = Real(2 * wt / (2 + wt));

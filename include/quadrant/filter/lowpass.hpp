@@ -48,7 +48,7 @@ public:
     };
 
     lowpass(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("lowpass.period", period);
+        require_positive<Real>("lowpass.period", period);
         require_below_nyquist("lowpass.corner", p.corner, period);
         require_held<Real>("lowpass.corner", p.corner, period);
         using std::tan;

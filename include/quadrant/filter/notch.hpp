@@ -47,9 +47,9 @@ public:
     };
 
     notch(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("notch.period", period);
+        require_positive<Real>("notch.period", period);
         require_below_nyquist("notch.centre", p.centre, period);
-        require_positive("notch.width", p.width);
+        require_positive<Real>("notch.width", p.width);
         coefficients_ = second_order<Real>("notch.centre", p.centre, p.width, period);
     }
 

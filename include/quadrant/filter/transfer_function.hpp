@@ -147,10 +147,10 @@ private:
     transfer_function(const parameters& p, const differences<Order, number>& d, duration period,
                       double rounding)
         : given_(p), period_(period) {
-        require_positive("transfer_function.period", period);
+        require_positive<Real>("transfer_function.period", period);
         for (std::size_t i = 0; i <= Order; ++i) {
-            require_finite("transfer_function.numerator", p.numerator[i]);
-            require_finite("transfer_function.denominator", p.denominator[i]);
+            require_finite<Real>("transfer_function.numerator", p.numerator[i]);
+            require_finite<Real>("transfer_function.denominator", p.denominator[i]);
         }
         const number a0 = p.denominator[0];
         require_lanes([&](std::size_t i) { return detail::plain(lane(a0, i)) != 0; },
@@ -158,9 +158,9 @@ private:
         number size_of_a(0);
         for (std::size_t i = 0; i <= Order; ++i) {
             b_[i] = gain::from_value(Real(d.numerator[i] / a0));
-            require_finite("transfer_function.numerator / denominator[0]", b_[i]);
+            require_coefficients<Real>("transfer_function.denominator[0]", a0, d.numerator[i] / a0,
+                                       d.denominator[i] / a0);
             if (i > 0) a_[i - 1] = Real(d.denominator[i] / a0);
-            if (i > 0) require_finite("transfer_function.denominator / denominator[0]", a_[i - 1]);
             size_of_a += absolute(p.denominator[i]);
         }
         // Closer to z = 1 than coefficients in z can resolve: the sum is nothing but their rounding.

@@ -34,7 +34,7 @@ public:
     };
 
     two_sample_derivative(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("two_sample_derivative.period", period);
+        require_positive<Real>("two_sample_derivative.period", period);
         half_rate_ = quantity<si::frequency, Real>::from_value(Real(0.5 / period.value()));
     }
 

@@ -34,9 +34,9 @@ public:
 
     coulomb_viscous(const parameters& p, duration period)
         : given_(p), coulomb_(in_real<Real>(p.coulomb)), viscous_(in_real<Real>(p.viscous)) {
-        require_positive("coulomb_viscous.period", period);
-        require_not_negative("coulomb_viscous.coulomb", p.coulomb);
-        require_not_negative("coulomb_viscous.viscous", p.viscous);
+        require_positive<Real>("coulomb_viscous.period", period);
+        require_not_negative<Real>("coulomb_viscous.coulomb", p.coulomb);
+        require_not_negative<Real>("coulomb_viscous.viscous", p.viscous);
     }
 
     value operator()(argument v) noexcept {

@@ -54,11 +54,11 @@ public:
     dahl(const parameters& p, duration period)
         : given_(p), coulomb_(in_real<Real>(p.coulomb)), stiffness_(in_real<Real>(p.stiffness)),
           viscous_(in_real<Real>(p.viscous)), period_(time::from_value(Real(period.value()))) {
-        require_positive("dahl.period", period);
-        require_positive("dahl.coulomb", p.coulomb);
-        require_positive("dahl.stiffness", p.stiffness);
+        require_positive<Real>("dahl.period", period);
+        require_positive<Real>("dahl.coulomb", p.coulomb);
+        require_positive<Real>("dahl.stiffness", p.stiffness);
         require(p.shape >= 0 && p.shape <= 4, "dahl.shape", p.shape, "must lie between 0 and 4");
-        require_not_negative("dahl.viscous", p.viscous);
+        require_not_negative<Real>("dahl.viscous", p.viscous);
     }
 
     value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }

@@ -53,10 +53,10 @@ public:
         : given_(p), curve_(p.curve, period), stiffness_(in_real<Real>(p.stiffness)),
           damping_(in_real<Real>(p.damping)), damping_velocity_(in_real<Real>(p.damping_velocity)),
           period_(time::from_value(Real(period.value()))) {
-        require_positive("lugre.curve.coulomb", p.curve.coulomb);
-        require_positive("lugre.stiffness", p.stiffness);
-        require_not_negative("lugre.damping", p.damping);
-        require_not_negative("lugre.damping_velocity", p.damping_velocity);
+        require_positive<Real>("lugre.curve.coulomb", p.curve.coulomb);
+        require_positive<Real>("lugre.stiffness", p.stiffness);
+        require_not_negative<Real>("lugre.damping", p.damping);
+        require_not_negative<Real>("lugre.damping_velocity", p.damping_velocity);
     }
 
     value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }

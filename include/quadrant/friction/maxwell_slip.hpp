@@ -77,13 +77,13 @@ public:
     maxwell_slip(const parameters& p, duration period)
         : given_(p), curve_(p.curve, period), weights_(normalised(p)), attraction_(in_real<Real>(p.attraction)),
           period_(time::from_value(Real(period.value()))) {
-        require_positive("maxwell_slip.curve.coulomb", p.curve.coulomb);
+        require_positive<Real>("maxwell_slip.curve.coulomb", p.curve.coulomb);
         for (std::size_t i = 0; i < N; ++i) {
-            require_positive("maxwell_slip.stiffness", p.stiffness[i]);
+            require_positive<Real>("maxwell_slip.stiffness", p.stiffness[i]);
             stiffness_[i] = in_real<Real>(p.stiffness[i]);
             stiffness_step_[i] = stiffness_[i] * period_;
         }
-        require_positive("maxwell_slip.attraction", p.attraction);
+        require_positive<Real>("maxwell_slip.attraction", p.attraction);
         attraction_step_ = attraction_ * period_;
     }
 
@@ -228,9 +228,9 @@ private:
         }
         for (std::size_t i = 0; i < N; ++i) {
             if (by_force)
-                require_positive("maxwell_slip.forces", p.forces[i]);
+                require_positive<Real>("maxwell_slip.forces", p.forces[i]);
             else {
-                require_positive("maxwell_slip.weights", p.weights[i]);
+                require_positive<Real>("maxwell_slip.weights", p.weights[i]);
                 require(p.forces[i].value() == number(0), "maxwell_slip.forces", p.forces[i],
                         "must be zero where weights are given");
             }

@@ -126,11 +126,11 @@ private:
     static Real along(const auto& positive, Real force) noexcept { return select(positive, force, -force); }
 
     static const parameters& checked(const parameters& p) {
-        require_not_negative("slip_contact.level", p.level);
-        require_not_negative("slip_contact.excess", p.excess);
-        require_positive("slip_contact.stribeck_velocity", p.stribeck_velocity);
-        require_not_negative("slip_contact.viscous", p.viscous);
-        require_not_negative("slip_contact.damping", p.damping);
+        require_not_negative<Real>("slip_contact.level", p.level);
+        require_not_negative<Real>("slip_contact.excess", p.excess);
+        require_positive<Real>("slip_contact.stribeck_velocity", p.stribeck_velocity);
+        require_not_negative<Real>("slip_contact.viscous", p.viscous);
+        require_not_negative<Real>("slip_contact.damping", p.damping);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             const double c = detail::plain(lane(p.attraction, i));
             require(c > 0, "slip_contact.attraction", c, "must be above 0");
@@ -148,9 +148,9 @@ private:
                     "must lie between -1 and 1, both excluded");
         }
         for (std::size_t i = 0; i < N; ++i) {
-            require_not_negative("slip_contact.weights", p.weights[i]);
-            require_not_negative("slip_contact.stiffness", p.stiffness[i]);
-            require_not_negative("slip_contact.give", p.give[i]);
+            require_not_negative<Real>("slip_contact.weights", p.weights[i]);
+            require_not_negative<Real>("slip_contact.stiffness", p.stiffness[i]);
+            require_not_negative<Real>("slip_contact.give", p.give[i]);
         }
         return p;
     }

@@ -44,14 +44,14 @@ public:
         : given_(p), coulomb_(in_real<Real>(p.coulomb)),
           excess_(in_real<Real>(quantity_of<Out, number>(p.static_level - p.coulomb))),
           velocity_(in_real<Real>(p.stribeck_velocity)), viscous_(in_real<Real>(p.viscous)) {
-        require_positive("stribeck.period", period);
-        require_not_negative("stribeck.coulomb", p.coulomb);
-        require_finite("stribeck.static_level", p.static_level);
+        require_positive<Real>("stribeck.period", period);
+        require_not_negative<Real>("stribeck.coulomb", p.coulomb);
+        require_finite<Real>("stribeck.static_level", p.static_level);
         require_lanes([&](std::size_t i) { return lane(p.static_level, i) >= lane(p.coulomb, i); },
                       "stribeck.static_level", p.static_level,
                       "must not be below coulomb (" + detail::shortest(lane(p.coulomb, 0)) + ")");
-        require_positive("stribeck.stribeck_velocity", p.stribeck_velocity);
-        require_not_negative("stribeck.viscous", p.viscous);
+        require_positive<Real>("stribeck.stribeck_velocity", p.stribeck_velocity);
+        require_not_negative<Real>("stribeck.viscous", p.viscous);
         require(p.shape >= 0.25 && p.shape <= 4, "stribeck.shape", p.shape, "must lie between 0.25 and 4");
     }
 

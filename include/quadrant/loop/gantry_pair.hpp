@@ -53,12 +53,12 @@ public:
     gantry_pair(const parameters& p, duration period)
         : given_(p), first_(Real(p.share)), second_(Real(number(1) - p.share)), limit_(in_real<Real>(p.limit)),
           offset_(in_real<Real>(p.offset)) {
-        require_positive("gantry_pair.period", period);
+        require_positive<Real>("gantry_pair.period", period);
         require(detail::plain(p.share) > 0 && detail::plain(p.share) < 1, "gantry_pair.share", p.share,
                 "must lie between 0 and 1");
         require(detail::plain(p.limit) > 0, "gantry_pair.limit", p.limit,
                 "must be above 0 (infinite: no limit)");
-        require_finite("gantry_pair.offset", p.offset);
+        require_finite<Real>("gantry_pair.offset", p.offset);
     }
 
     modes operator()(position first, position second) noexcept {

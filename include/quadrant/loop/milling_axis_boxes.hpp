@@ -77,8 +77,8 @@ struct milling_axis_boxes : detail::velocity_boxes<Real> {
 
 private:
     static auto checked(const parameters& p) {
-        require_positive("milling_axis_boxes.plant_gain", p.plant_gain);
-        require_not_negative("milling_axis_boxes.plant_pole", p.plant_pole);
+        require_positive<Real>("milling_axis_boxes.plant_gain", p.plant_gain);
+        require_not_negative<Real>("milling_axis_boxes.plant_pole", p.plant_pole);
         return p.plant_gain;
     }
 };

@@ -61,7 +61,7 @@ public:
     };
 
     cycle_tracker(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("cycle_tracker.period", period);
+        require_positive<Real>("cycle_tracker.period", period);
         require(detail::plain(p.range) > 0 && detail::plain(p.range) < 0.5, "cycle_tracker.range", p.range,
                 "must lie between 0 and 0.5");
         const number periods = p.cycle.value() / number(period.value());
@@ -72,7 +72,7 @@ public:
                     detail::shortest(double(Capacity) * period) + " (capacity)");
         require(p.settles_in.value() >= detail::plain(p.cycle), "cycle_tracker.settles_in", p.settles_in,
                 "must be at least one cycle");
-        require_not_negative("cycle_tracker.least", p.least);
+        require_not_negative<Real>("cycle_tracker.least", p.least);
         forgets_ = period.value() / p.settles_in.value();
         reset();
     }

@@ -46,7 +46,7 @@ public:
     };
 
     delay_line(const parameters& p, duration period) : given_(p), period_(period), length_(p.length) {
-        require_positive("delay_line.period", period);
+        require_positive<Real>("delay_line.period", period);
         require(p.length <= Capacity, "delay_line.length", double(p.length),
                 "must not exceed the capacity (" + detail::shortest(double(Capacity)) + ")");
     }

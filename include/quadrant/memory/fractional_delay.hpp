@@ -58,7 +58,7 @@ public:
     };
 
     fractional_delay(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("fractional_delay.period", period);
+        require_positive<Real>("fractional_delay.period", period);
         delay(p.delay);
         require(!limited_ && !out_.faulted(), "fractional_delay.delay", p.delay,
                 "must lie between " + detail::shortest(least * period) + " and " +

@@ -89,8 +89,8 @@ public:
     };
 
     repetitive(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("repetitive.period", period);
-        require_not_negative("repetitive.fade", p.fade);
+        require_positive<Real>("repetitive.period", period);
+        require_not_negative<Real>("repetitive.fade", p.fade);
         require(p.ahead < LearningTaps, "repetitive.ahead", double(p.ahead),
                 "must be below the taps of learning (" + detail::shortest(double(LearningTaps)) + ")");
         const double least = double(p.ahead + half + 2), cycles = detail::plain(p.cycle) / period.value();
@@ -100,17 +100,17 @@ public:
                     " (look-ahead of learning and smoothing, and two periods) and " +
                     detail::shortest(double(Capacity) * period) + " (capacity)");
         for (std::size_t i = 0; i < Order; ++i) {
-            require_finite("repetitive.weights", p.weights[i]);
+            require_finite<Real>("repetitive.weights", p.weights[i]);
             weights_[i] = Real(p.weights[i]);
         }
         for (std::size_t i = 0; i < LearningTaps; ++i) {
-            require_finite("repetitive.learning", p.learning[i]);
+            require_finite<Real>("repetitive.learning", p.learning[i]);
             learning_[i] = Real(p.learning[i]);
         }
         for (std::size_t i = 0; i < SmoothingTaps; ++i) {
             const double one = detail::plain(p.smoothing[i]),
                          other = detail::plain(p.smoothing[SmoothingTaps - 1 - i]);
-            require_finite("repetitive.smoothing", p.smoothing[i]);
+            require_finite<Real>("repetitive.smoothing", p.smoothing[i]);
             require(std::abs(one - other) <= 1e-12 * (std::abs(one) + std::abs(other)), "repetitive.smoothing",
                     p.smoothing[i], "must be symmetric (linear phase)");
             smoothing_[i] = Real(p.smoothing[i]);

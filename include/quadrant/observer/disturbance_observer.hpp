@@ -93,7 +93,8 @@ public:
         for (std::size_t i = 0; i <= order; ++i) {
             from_measured_[i] = gain_of<Command, Measured, Real>::from_value(Real(inverse[i] / under[0]));
             from_command_[i] = Real(over[i] / under[0]);
-            require_finite("disturbance_observer.plant.denominator", from_measured_[i]);
+            require_coefficients<Real>("disturbance_observer.plant.denominator", p.plant.denominator[0],
+                                       inverse[i] / under[0], over[i] / under[0], under[i] / under[0]);
             if (i > 0) feedback_[i - 1] = Real(under[i] / under[0]);
         }
         for (std::size_t i = 0; i < order; ++i)
@@ -217,11 +218,12 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("disturbance_observer.period", period);
+        require_positive<Real>("disturbance_observer.period", period);
         require_below_nyquist("disturbance_observer.corner", p.corner, period);
         require_held<Real>("disturbance_observer.corner", p.corner, period);
-        for (const auto& c : p.plant.numerator) require_finite("disturbance_observer.plant.numerator", c);
-        for (const auto& c : p.plant.denominator) require_finite("disturbance_observer.plant.denominator", c);
+        for (const auto& c : p.plant.numerator) require_finite<Real>("disturbance_observer.plant.numerator", c);
+        for (const auto& c : p.plant.denominator)
+            require_finite<Real>("disturbance_observer.plant.denominator", c);
         const auto not_zero = [](const number& c) {
             return [&c](std::size_t i) { return detail::plain(lane(c, i)) != 0; };
         };

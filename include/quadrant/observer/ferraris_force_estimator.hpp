@@ -84,9 +84,9 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("ferraris_force_estimator.period", period);
-        require_positive("ferraris_force_estimator.mass", p.mass);
-        require_positive("ferraris_force_estimator.force_constant", p.force_constant);
+        require_positive<Real>("ferraris_force_estimator.period", period);
+        require_positive<Real>("ferraris_force_estimator.mass", p.mass);
+        require_positive<Real>("ferraris_force_estimator.force_constant", p.force_constant);
         require_below_nyquist("ferraris_force_estimator.corner", p.corner, period);
         require_held<Real>("ferraris_force_estimator.corner", p.corner, period);
         return p;

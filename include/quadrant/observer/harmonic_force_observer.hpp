@@ -72,10 +72,10 @@ public:
         true; ///< a loop feeds the command that acted since the sample before
 
     harmonic_force_observer(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("harmonic_force_observer.period", period);
-        require_positive("harmonic_force_observer.plant.gain", p.plant.gain);
-        require_not_negative("harmonic_force_observer.plant.viscous_rate", p.plant.viscous_rate);
-        require_not_negative("harmonic_force_observer.lead", p.lead);
+        require_positive<Real>("harmonic_force_observer.period", period);
+        require_positive<Real>("harmonic_force_observer.plant.gain", p.plant.gain);
+        require_not_negative<Real>("harmonic_force_observer.plant.viscous_rate", p.plant.viscous_rate);
+        require_not_negative<Real>("harmonic_force_observer.lead", p.lead);
         for (std::size_t i = 0; i < Harmonics; ++i) {
             require_below_nyquist("harmonic_force_observer.harmonics", p.harmonics[i], period);
             for (std::size_t j = 0; j < i; ++j)
@@ -91,8 +91,8 @@ public:
         }
         model_ = detail::harmonic_model<Harmonics>::of(p.plant.viscous_rate.value() * T, angles);
         if constexpr (std::same_as<Design, expected_noise<Command>>) {
-            require_positive("harmonic_force_observer.design.encoder", p.design.encoder);
-            require_positive("harmonic_force_observer.design.drift", p.design.drift);
+            require_positive<Real>("harmonic_force_observer.design.encoder", p.design.encoder);
+            require_positive<Real>("harmonic_force_observer.design.drift", p.design.drift);
             const double wander = p.design.drift.value() * thrust / p.design.encoder.value();
             scaled_gain_ = model_.gain_for(wander * wander * T);
         } else {

@@ -64,13 +64,13 @@ public:
     };
 
     kalman(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("kalman.period", period);
-        require_positive("kalman.mass", p.mass);
-        require_positive("kalman.force_constant", p.force_constant);
-        require_not_negative("kalman.viscous", p.viscous);
-        require_positive("kalman.encoder_noise", p.encoder_noise);
-        require_positive("kalman.drift", p.drift);
-        require_not_negative("kalman.half_step", p.half_step);
+        require_positive<Real>("kalman.period", period);
+        require_positive<Real>("kalman.mass", p.mass);
+        require_positive<Real>("kalman.force_constant", p.force_constant);
+        require_not_negative<Real>("kalman.viscous", p.viscous);
+        require_positive<Real>("kalman.encoder_noise", p.encoder_noise);
+        require_positive<Real>("kalman.drift", p.drift);
+        require_not_negative<Real>("kalman.half_step", p.half_step);
         half_step_ = Real(p.half_step.value());
         // In units of the encoder's noise, the period, and the force that moves the mass by one in the other:
         // all of order one.

@@ -54,7 +54,7 @@ public:
           correction_(in_real<Real>(p.correction)),
           period_(quantity<si::time, Real>::from_value(Real(period.value()))) {
         law(p.friction, period); // checks
-        require_not_negative("lugre_observer.correction", p.correction);
+        require_not_negative<Real>("lugre_observer.correction", p.correction);
     }
 
     value operator()(argument v, position behind = position()) noexcept {

@@ -57,7 +57,9 @@ public:
           rate_(Real(number(period.value() / p.settles_in.value()) /
                      (p.friction.curve.coulomb.value() * p.friction.curve.coulomb.value()))) {
         law(p.friction, period); // checks the viscous part, too
-        require_positive("maxwell_slip_observer.settles_in", p.settles_in);
+        require_coefficients<Real>("maxwell_slip_observer.friction.curve.coulomb", p.friction.curve.coulomb,
+                                   rate_);
+        require_positive<Real>("maxwell_slip_observer.settles_in", p.settles_in);
         require(detail::plain(p.lowest) > 0 && detail::plain(p.lowest) <= 1, "maxwell_slip_observer.lowest",
                 p.lowest, "must be above 0 and not above 1");
         require(std::isfinite(detail::plain(p.highest)) && detail::plain(p.highest) >= 1,

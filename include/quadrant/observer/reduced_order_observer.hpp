@@ -57,10 +57,10 @@ public:
     reduced_order_observer(const parameters& p, duration period)
         : given_(p), period_(period), mass_(in_real<Real>(p.mass)),
           force_constant_(in_real<Real>(p.force_constant)), viscous_(in_real<Real>(p.viscous)) {
-        require_positive("reduced_order_observer.period", period);
-        require_positive("reduced_order_observer.mass", p.mass);
-        require_positive("reduced_order_observer.force_constant", p.force_constant);
-        require_not_negative("reduced_order_observer.viscous", p.viscous);
+        require_positive<Real>("reduced_order_observer.period", period);
+        require_positive<Real>("reduced_order_observer.mass", p.mass);
+        require_positive<Real>("reduced_order_observer.force_constant", p.force_constant);
+        require_not_negative<Real>("reduced_order_observer.viscous", p.viscous);
         require_below_nyquist("reduced_order_observer.corner", p.corner, period);
         const number h = std::numbers::pi * p.corner.value() * period.value(); // l1 T / 2
         forget_ = Real(2 * h / (1 + h));

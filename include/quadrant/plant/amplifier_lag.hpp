@@ -46,7 +46,7 @@ public:
 
 private:
     static const parameters& checked(const parameters& p) {
-        require_not_negative("amplifier_lag.lag", p.lag);
+        require_not_negative<Real>("amplifier_lag.lag", p.lag);
         return p;
     }
 

@@ -35,8 +35,8 @@ public:
     };
 
     backlash(const parameters& p, duration period) : given_(p), half_(in_real<Real>(p.width) * Real(0.5)) {
-        require_positive("backlash.period", period);
-        require_not_negative("backlash.width", p.width);
+        require_positive<Real>("backlash.period", period);
+        require_not_negative<Real>("backlash.width", p.width);
     }
 
     value operator()(argument x) noexcept {

@@ -154,11 +154,11 @@ private:
     template <class Number> using way_per_angle = quantity<unit_quotient<si::length, si::plane_angle>, Number>;
 
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("ball_screw_drive.period", period);
-        require_positive("ball_screw_drive.inertia", p.inertia);
-        require_not_negative("ball_screw_drive.viscous", p.viscous);
-        require_positive("ball_screw_drive.torque_constant", p.torque_constant);
-        require_positive("ball_screw_drive.pitch", p.pitch);
+        require_positive<Real>("ball_screw_drive.period", period);
+        require_positive<Real>("ball_screw_drive.inertia", p.inertia);
+        require_not_negative<Real>("ball_screw_drive.viscous", p.viscous);
+        require_positive<Real>("ball_screw_drive.torque_constant", p.torque_constant);
+        require_positive<Real>("ball_screw_drive.pitch", p.pitch);
         require(p.substeps >= 1 && p.substeps <= 1000, "ball_screw_drive.substeps",
                 static_cast<double>(p.substeps), "must lie between 1 and 1000");
         return p;

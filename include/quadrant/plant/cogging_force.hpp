@@ -29,7 +29,7 @@ public:
     struct state {};
 
     cogging_force(const parameters& p, duration sample_period) : given_(p), sum_("cogging_force", p) {
-        require_positive("cogging_force.sample_period", sample_period);
+        require_positive<Real>("cogging_force.sample_period", sample_period);
     }
 
     value operator()(argument x) noexcept {

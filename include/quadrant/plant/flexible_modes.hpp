@@ -72,20 +72,22 @@ public:
     };
 
     flexible_modes(const parameters& p, duration period) : given_(p), period_(period) {
-        require_positive("flexible_modes.period", period);
-        require_positive("flexible_modes.mass", p.mass);
+        require_positive<Real>("flexible_modes.period", period);
+        require_positive<Real>("flexible_modes.mass", p.mass);
         for (std::size_t i = 0; i < Modes; ++i) {
             const auto& m = p.modes[i];
-            require_positive("flexible_modes.centre", m.centre);
+            require_positive<Real>("flexible_modes.centre", m.centre);
             require(m.damping >= number(0) && m.damping < number(1), "flexible_modes.damping", m.damping,
                     "must not be below 0 and must be below 1");
-            require_finite("flexible_modes.share", m.share);
+            require_finite<Real>("flexible_modes.share", m.share);
             const detail::oscillator<number> bell(m.centre.value(), m.damping, number(period.value()));
+            const number compliance = m.share / (p.mass.value() * bell.stiffness);
+            require_coefficients<Real>("flexible_modes.centre", m.centre, bell.onward, bell.back, compliance);
             steps_[i] = {.away = Real(bell.stay - number(1)),
                          .onward = Real(bell.onward),
                          .back = Real(bell.back),
                          .loss = Real(bell.keep - number(1)),
-                         .compliance = Real(m.share / (p.mass.value() * bell.stiffness))};
+                         .compliance = Real(compliance)};
         }
     }
 

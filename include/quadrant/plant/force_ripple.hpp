@@ -37,7 +37,7 @@ public:
     };
 
     force_ripple(const parameters& p, duration sample_period) : given_(p), sum_("force_ripple", p) {
-        require_positive("force_ripple.sample_period", sample_period);
+        require_positive<Real>("force_ripple.sample_period", sample_period);
         double most = 0;
         for (const auto& each : p.size) most += std::abs(detail::plain(each));
         require(most < 1, "force_ripple.size", most, "must sum up to less than 1");

@@ -77,6 +77,8 @@ public:
           dac_step_(in_real<Real>(p.dac_step)), encoder_step_(in_real<Real>(p.encoder_step)),
           h_(quantity<si::time, Real>::from_value(Real(period.value() / static_cast<double>(p.substeps)))),
           load_(p.load, period / static_cast<double>(p.substeps)) {
+        require_coefficients<Real>("linear_motor.mass", p.mass,
+                                   p.mass.value() * number(double(p.substeps) / period.value()));
         const number periods = p.delay.value() / number(period.value());
         whole_ = static_cast<std::size_t>(detail::plain(periods));
         fraction_ = Real(periods - number(static_cast<double>(whole_)));
@@ -136,16 +138,16 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("linear_motor.period", period);
-        require_positive("linear_motor.mass", p.mass);
-        require_positive("linear_motor.force_constant", p.force_constant);
-        require_not_negative("linear_motor.delay", p.delay);
+        require_positive<Real>("linear_motor.period", period);
+        require_positive<Real>("linear_motor.mass", p.mass);
+        require_positive<Real>("linear_motor.force_constant", p.force_constant);
+        require_not_negative<Real>("linear_motor.delay", p.delay);
         require(detail::plain(p.delay) / period.value() <= static_cast<double>(Capacity - 1),
                 "linear_motor.delay", p.delay,
                 "must not be beyond the capacity (" + detail::shortest(double(Capacity - 1)) + " periods)");
-        require_not_negative("linear_motor.limit", p.limit);
-        require_not_negative("linear_motor.dac_step", p.dac_step);
-        require_not_negative("linear_motor.encoder_step", p.encoder_step);
+        require_not_negative<Real>("linear_motor.limit", p.limit);
+        require_not_negative<Real>("linear_motor.dac_step", p.dac_step);
+        require_not_negative<Real>("linear_motor.encoder_step", p.encoder_step);
         require(p.substeps >= 1 && p.substeps <= 1000, "linear_motor.substeps", static_cast<double>(p.substeps),
                 "must lie between 1 and 1000");
         return p;

@@ -28,10 +28,10 @@ public:
     periodic_sum(const char* block, const periodic<Signal, Harmonics, Number>& p)
         : period_(in_real<Real>(p.period)) {
         using std::cos, std::sin;
-        require_positive({block, ".period"}, p.period);
+        require_positive<Real>({block, ".period"}, p.period);
         for (std::size_t i = 0; i < Harmonics; ++i) {
-            require_finite({block, ".size"}, p.size[i]);
-            require_finite({block, ".phase"}, p.phase[i]);
+            require_finite<Real>({block, ".size"}, p.size[i]);
+            require_finite<Real>({block, ".phase"}, p.phase[i]);
             series_.sine[i] = in_real<Real>(p.size[i] * Number(cos(p.phase[i])));
             series_.cosine[i] = in_real<Real>(p.size[i] * Number(sin(p.phase[i])));
         }

@@ -272,10 +272,10 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, Real h) {
-        require_positive("servo_axis.step", h);
-        require_positive("servo_axis.mass", p.mass);
-        require_finite("servo_axis.force_constant", p.force_constant);
-        require_not_negative("servo_axis.dead_zone", p.dead_zone);
+        require_positive<Real>("servo_axis.step", h);
+        require_positive<Real>("servo_axis.mass", p.mass);
+        require_finite<Real>("servo_axis.force_constant", p.force_constant);
+        require_not_negative<Real>("servo_axis.dead_zone", p.dead_zone);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             require(lane(p.limit, i) > 0, "servo_axis.limit", lane(p.limit, i), "must be above 0");
             require(detail::plain(lane(p.second.mass, i)) < lane(p.mass, i), "servo_axis.second.mass",
@@ -283,17 +283,17 @@ private:
                     "must lie below the mass, of which it is a part (" + detail::shortest(lane(p.mass, i)) +
                         ")");
         }
-        require_finite("servo_axis.constant", p.constant);
-        require_finite("servo_axis.spring", p.spring);
-        require_finite("servo_axis.gravity", p.gravity);
-        require_finite("servo_axis.gravity_phase", p.gravity_phase);
-        require_not_negative("servo_axis.load_friction", p.load_friction);
-        require_finite("servo_axis.coupling", p.coupling);
+        require_finite<Real>("servo_axis.constant", p.constant);
+        require_finite<Real>("servo_axis.spring", p.spring);
+        require_finite<Real>("servo_axis.gravity", p.gravity);
+        require_finite<Real>("servo_axis.gravity_phase", p.gravity_phase);
+        require_not_negative<Real>("servo_axis.load_friction", p.load_friction);
+        require_finite<Real>("servo_axis.coupling", p.coupling);
         const auto repeats = [](const char* name, const repeating& r) {
-            require_positive({name, ".period"}, r.period);
+            require_positive<Real>({name, ".period"}, r.period);
             for (std::size_t i = 0; i < harmonics; ++i) {
-                require_finite({name, ".cosine"}, r.cosine[i]);
-                require_finite({name, ".sine"}, r.sine[i]);
+                require_finite<Real>({name, ".cosine"}, r.cosine[i]);
+                require_finite<Real>({name, ".sine"}, r.sine[i]);
             }
         };
         repeats("servo_axis.ripple", p.ripple);
@@ -301,11 +301,11 @@ private:
         repeats("servo_axis.process", p.process);
         repeats("servo_axis.along", p.along);
         repeats("servo_axis.cyclic", p.cyclic);
-        require_finite("servo_axis.process_mean", p.process_mean);
-        require_finite("servo_axis.process_start", p.process_start);
-        require_finite("servo_axis.drift", p.drift);
-        require_positive("servo_axis.drift_time", p.drift_time);
-        require_not_negative("servo_axis.play", p.play);
+        require_finite<Real>("servo_axis.process_mean", p.process_mean);
+        require_finite<Real>("servo_axis.process_start", p.process_start);
+        require_finite<Real>("servo_axis.drift", p.drift);
+        require_positive<Real>("servo_axis.drift_time", p.drift_time);
+        require_not_negative<Real>("servo_axis.play", p.play);
         (void)amplifier_lag<Real>({p.lag}, h);
         (void)sprung_mass<Real>(p.second, h);
         (void)contact(p.friction, p.mass, h);

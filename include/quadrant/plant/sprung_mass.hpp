@@ -59,8 +59,8 @@ public:
 
 private:
     static const parameters& checked(const parameters& p) {
-        require_not_negative("sprung_mass.mass", p.mass);
-        require_positive("sprung_mass.centre", p.centre);
+        require_not_negative<Real>("sprung_mass.mass", p.mass);
+        require_positive<Real>("sprung_mass.centre", p.centre);
         for (std::size_t i = 0; i < lane_count<Real>; ++i) {
             const double zeta = detail::plain(lane(p.damping, i));
             require(zeta >= 0 && zeta < 1, "sprung_mass.damping", zeta,

@@ -76,6 +76,9 @@ public:
         const double w = 2 * std::numbers::pi * p.bandwidth.value();
         gain_ = Real(number(w) * p.resistance.value() * p.time_constant.value());
         integral_ = Real(number(w * period.value() / double(p.steps)) * p.resistance.value());
+        require_coefficients<Real>("three_phase_drive.time_constant", p.time_constant,
+                                   number(w) * p.resistance.value() * p.time_constant.value());
+        require_coefficients<Real>("three_phase_drive.gain_error", p.gain_error, p.gain_error);
         offset_ = Real(p.commutation_offset);
         sensor_gain_ = Real(number(1) + p.gain_error);
         sensor_offset_ = Real(p.current_offset.value());
@@ -129,13 +132,13 @@ private:
     };
 
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("three_phase_drive.period", period);
-        require_positive("three_phase_drive.force_constant", p.force_constant);
-        require_positive("three_phase_drive.resistance", p.resistance);
-        require_positive("three_phase_drive.time_constant", p.time_constant);
-        require_positive("three_phase_drive.pole_pair", p.pole_pair);
-        require_positive("three_phase_drive.bus", p.bus);
-        require_positive("three_phase_drive.current_limit", p.current_limit);
+        require_positive<Real>("three_phase_drive.period", period);
+        require_positive<Real>("three_phase_drive.force_constant", p.force_constant);
+        require_positive<Real>("three_phase_drive.resistance", p.resistance);
+        require_positive<Real>("three_phase_drive.time_constant", p.time_constant);
+        require_positive<Real>("three_phase_drive.pole_pair", p.pole_pair);
+        require_positive<Real>("three_phase_drive.bus", p.bus);
+        require_positive<Real>("three_phase_drive.current_limit", p.current_limit);
         require(p.steps >= 1 && p.steps <= 1000, "three_phase_drive.steps", double(p.steps),
                 "must lie between 1 and 1000");
         const double most = double(p.steps) / period.value() / 12;
@@ -143,10 +146,10 @@ private:
                 p.bandwidth,
                 "must be above 0 and at most 1/12 of the current loop's rate (" +
                     detail::shortest(detail::in_unit(most, " Hz")) + ")");
-        require_finite("three_phase_drive.commutation_offset", p.commutation_offset);
+        require_finite<Real>("three_phase_drive.commutation_offset", p.commutation_offset);
         require(detail::is_finite(detail::plain(p.gain_error)) && detail::plain(p.gain_error) > -1,
                 "three_phase_drive.gain_error", p.gain_error, "must be finite and above -1");
-        require_finite("three_phase_drive.current_offset", p.current_offset);
+        require_finite<Real>("three_phase_drive.current_offset", p.current_offset);
         return p;
     }
     static Real within(Real x, Real most) noexcept { return x > most ? most : x < -most ? -most : x; }

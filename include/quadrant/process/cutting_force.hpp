@@ -95,16 +95,16 @@ public:
 
 private:
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("cutting_force.period", period);
+        require_positive<Real>("cutting_force.period", period);
         const double highest = 0.5 / (period.value() * static_cast<double>(Harmonics));
         require(p.fundamental.value() > 0 && p.fundamental.value() < highest, "cutting_force.fundamental",
                 p.fundamental,
                 "must lie between 0 and half the sampling rate by the number of harmonics (" +
                     detail::shortest(detail::in_unit(highest, " Hz")) + ")");
-        require_finite("cutting_force.scale", p.scale);
+        require_finite<Real>("cutting_force.scale", p.scale);
         for (std::size_t i = 0; i < Harmonics; ++i) {
-            require_finite("cutting_force.harmonics.real", p.harmonics.real[i] * p.scale);
-            require_finite("cutting_force.harmonics.imaginary", p.harmonics.imaginary[i] * p.scale);
+            require_finite<Real>("cutting_force.harmonics.real", p.harmonics.real[i] * p.scale);
+            require_finite<Real>("cutting_force.harmonics.imaginary", p.harmonics.imaginary[i] * p.scale);
         }
         return p;
     }

@@ -167,23 +167,23 @@ private:
         return thinnest;
     }
     static const parameters& checked(const parameters& p, duration period) {
-        require_positive("milling_force.period", period);
+        require_positive<Real>("milling_force.period", period);
         const double highest = 0.5 / (period.value() * static_cast<double>(Edges));
         require(p.spindle.value() > 0 && p.spindle.value() < highest, "milling_force.spindle", p.spindle,
                 "must lie between 0 and half the sampling rate by the number of edges (" +
                     detail::shortest(detail::in_unit(highest, " Hz")) + ")");
-        require_positive("milling_force.diameter", p.diameter);
-        require_positive("milling_force.feed_per_tooth", p.feed_per_tooth);
-        require_positive("milling_force.axial_depth", p.axial_depth);
-        require_positive("milling_force.radial_depth", p.radial_depth);
+        require_positive<Real>("milling_force.diameter", p.diameter);
+        require_positive<Real>("milling_force.feed_per_tooth", p.feed_per_tooth);
+        require_positive<Real>("milling_force.axial_depth", p.axial_depth);
+        require_positive<Real>("milling_force.radial_depth", p.radial_depth);
         require(p.radial_depth <= p.diameter, "milling_force.radial_depth", p.radial_depth,
                 "must not be beyond the diameter (" + detail::shortest(p.diameter) + ")");
-        require_positive("milling_force.tangential", p.tangential);
-        require_not_negative("milling_force.radial", p.radial);
-        require_not_negative("milling_force.edge_tangential", p.edge_tangential);
-        require_not_negative("milling_force.edge_radial", p.edge_radial);
-        require_not_negative("milling_force.runout", p.runout);
-        require_finite("milling_force.runout_angle", p.runout_angle);
+        require_positive<Real>("milling_force.tangential", p.tangential);
+        require_not_negative<Real>("milling_force.radial", p.radial);
+        require_not_negative<Real>("milling_force.edge_tangential", p.edge_tangential);
+        require_not_negative<Real>("milling_force.edge_radial", p.edge_radial);
+        require_not_negative<Real>("milling_force.runout", p.runout);
+        require_finite<Real>("milling_force.runout_angle", p.runout_angle);
         require(p.substeps >= 1 && p.substeps <= 1000, "milling_force.substeps",
                 static_cast<double>(p.substeps), "must lie between 1 and 1000");
         return p;

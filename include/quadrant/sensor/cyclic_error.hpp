@@ -31,7 +31,7 @@ public:
     struct state {};
 
     cyclic_error(const parameters& p, duration sample_period) : given_(p), sum_("cyclic_error", p) {
-        require_positive("cyclic_error.sample_period", sample_period);
+        require_positive<Real>("cyclic_error.sample_period", sample_period);
         const auto runs_forward = [&](std::size_t which) {
             double steepest = 0;
             for (std::size_t i = 0; i < Harmonics; ++i)

@@ -39,14 +39,14 @@ public:
 
     white_noise(const parameters& p, duration period)
         : given_(p), deviation_(in_real<Real>(p.deviation)), period_(period) {
-        require_positive("white_noise.period", period);
-        require_not_negative("white_noise.deviation", p.deviation);
+        require_positive<Real>("white_noise.period", period);
+        require_not_negative<Real>("white_noise.deviation", p.deviation);
     }
 
     value operator()() noexcept {
         const std::uint64_t k = state_.k++;
         if (!(deviation_ > value())) return value();
-        const std::uint64_t at = mixed(given_.seed) + 2 * k;
+        const std::uint64_t at = start_ + 2 * k;
         const double u = uniform(at), v = uniform(at + 1);
         return deviation_ * Real(std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v));
     }
@@ -66,9 +66,12 @@ private:
         return n ^ (n >> 31);
     }
     /// 2^-53 ... 1: its logarithm is finite.
-    static double uniform(std::uint64_t n) noexcept { return double((mixed(n) >> 11) + 1) * 0x1p-53; }
+    static double uniform(std::uint64_t n) noexcept {
+        return double(static_cast<std::int64_t>(mixed(n) >> 11) + 1) * 0x1p-53; // signed: one instruction
+    }
 
     parameters given_;
+    std::uint64_t start_ = mixed(given_.seed);
     value deviation_;
     duration period_;
     state state_;

@@ -67,10 +67,10 @@ public:
     };
 
     stream_limiter(const parameters& p, duration period) : given_(p) {
-        require_positive("stream_limiter.period", period);
+        require_positive<Real>("stream_limiter.period", period);
         const char* const rule = "must be above 0 (infinite: no bound)";
         require(quadrant::detail::plain(p.velocity) > 0, "stream_limiter.velocity", p.velocity, rule);
-        require_positive("stream_limiter.acceleration", p.acceleration);
+        require_positive<Real>("stream_limiter.acceleration", p.acceleration);
         require(quadrant::detail::plain(p.jerk) > 0, "stream_limiter.jerk", p.jerk, rule);
         const double T = period.value(), a = quadrant::detail::plain(p.acceleration),
                      j = quadrant::detail::plain(p.jerk);

@@ -62,6 +62,7 @@ figure svg text { font-size: 17px; }
 figure svg .ring { fill: none; stroke: var(--line); stroke-width: 1; }
 figure svg .nominal { stroke: var(--muted); stroke-width: 1.4; }
 figure svg .run { fill: none; stroke-width: 1.6; stroke-linejoin: round; }
+figure svg text { paint-order: stroke; stroke: var(--card); stroke-width: 5px; stroke-linejoin: round; } /* readable across a run */
 figure svg .plus { stroke: var(--after); }
 figure svg .minus { stroke: var(--before); stroke-dasharray: 7 3; }
 .key b { color: var(--after); } .key i { color: var(--before); font-weight: 700; font-style: normal; }

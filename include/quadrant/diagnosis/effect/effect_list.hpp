@@ -20,6 +20,12 @@ inline const effect* effect_named(std::string_view name) {
     return nullptr;
 }
 
+/// As people call an effect; the name itself where the list does not have it.
+inline std::string_view label_of_effect(std::string_view name) {
+    const effect* e = effect_named(name);
+    return e && !e->label.empty() ? e->label : name;
+}
+
 /// The names of all effects, for messages.
 inline std::vector<std::string_view> names_of_effects() {
     std::vector<std::string_view> out;

@@ -7,11 +7,10 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// What the forces of two motors on one beam say of its ends. Of a rigid beam that its guides let turn, each end
-/// needs its own friction and its share of the mass, and the motors' turn
-///   w = (1 - share) u1 - share u2
-/// holds what the described share does not: share of the mass, friction by end, and the force with which the two
-/// push against each other. Only what is more than a law of friction is wrong by, and sure, is told.
+/// What the forces of two motors on one beam say of its ends. Of a rigid beam that its guides let turn, each
+/// end needs its own friction and its share of the mass, and the motors' turn w = (1 - share) u1 - share u2
+/// holds what the described share does not: share of the mass, friction by end, and the force with which the
+/// two push against each other. Only what is more than a law of friction is wrong by, and sure, is told.
 inline std::vector<std::string> told_by_turn(const axis_description& axis, const axis_log& log, double period) {
     std::vector<std::string> out;
     if (!log.turn || log.turn->command.empty()) return out;

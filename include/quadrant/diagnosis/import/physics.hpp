@@ -18,6 +18,7 @@ struct unit_check {
         0;             ///< A of command = A a + B v + C sign v + D + E x (and sin x, cos x of an angle)
     double spread = 0; ///< standard deviation of A, from stretches of five blocks
     double share = 0;  ///< of the command's variance that the acceleration alone explains beside the rest
+    double share_of_left = 0; ///< the same, of the variance that the rest leaves; A over it: the most A can be
     /// What moving costs on average, B |v| + C [unit of the command]: friction takes it, so it is not negative;
     /// its standard deviation, and the share of the command's variance that speed and direction explain.
     double friction = 0, friction_spread = 0, friction_share = 0;
@@ -82,6 +83,7 @@ inline void solve_units(unit_check& out, const std::vector<unit_sums>& stretches
     const double variance = all.square - mean * all.right[3];
     out.command_per_acceleration = with[0] / out.peak_acceleration;
     out.share = variance > 0 ? (left_without - left) / variance : 0;
+    out.share_of_left = left_without > 0 ? (left_without - left) / left_without : 0;
     double sum = 0; // jackknife over the stretches
     for (const auto& s : stretches) {
         unit_sums rest = all;

@@ -20,8 +20,8 @@ inline std::vector<double> both(double of_first, const std::vector<double>& x, d
     return out;
 }
 
-/// The motion of the beam: its centre of gravity under both forces. Behind drives with loops of their own, whose
-/// commands are velocities or positions, under the mean of those.
+/// The motion of the beam: its centre of gravity under both forces. Behind drives with loops of their own,
+/// whose commands are velocities or positions, under the mean of those.
 inline axis_log moved_beam(const axis_description& axis, const axis_log& first, const axis_log& second) {
     const gantry_description& g = *axis.gantry_pair;
     const double a = g.share, b = 1 - g.share;
@@ -81,8 +81,8 @@ inline axis_log two_ends(const axis_description& axis, const axis_log& first, co
 
 } // namespace detail
 
-/// Puts the axes of each described gantry (axes.<a>.gantry_pair) in the place of its two ends, which the log has as
-/// axes of their own: bad_input where one is missing, or where the two are of different kinds or units.
+/// Puts the axes of each described gantry (axes.<a>.gantry_pair) in the place of its two ends, which the log
+/// has as axes of their own: bad_input where one is missing, or where the two are of different kinds or units.
 inline void join_gantry_pairs(const machine_description& machine, machine_log& log) {
     const auto end = [&](const axis_description& axis, const std::string& name) -> const axis_log& {
         const auto found =

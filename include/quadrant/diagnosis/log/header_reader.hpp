@@ -94,6 +94,9 @@ private:
             refuse_(line_.find('\0'),
                     "holds zero bytes: it is UTF-16 without a byte order mark, or no text; save it as "
                     "UTF-8");
+        if (line_.starts_with('{')) refuse_(0, "is JSON and no log: is it the machine file?");
+        if (line_.find('\r') != line_.npos)
+            refuse_(line_.find('\r'), "lines end with carriage returns alone: save it with line feeds");
         if (const auto other = line_.find_first_of(";\t"); other != line_.npos && line_.find(',') == line_.npos)
             refuse_(other,
                     "cells must be separated by commas: bring the file in with quadrant-gap import (with --map "

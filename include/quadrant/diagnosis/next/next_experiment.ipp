@@ -84,20 +84,30 @@ QUADRANT_DIAGNOSIS_DECL std::vector<planned_motion> motions_for(const std::vecto
     return motions;
 }
 
+/// By how much the log itself prefers the first of the names to the nearest of the others; 0: not at all.
+inline double separated_by_log(const std::vector<confusable>& names) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const confusable& n : names)
+        if (&n != &names.front()) least = std::min(least, names.front().model.total - n.model.total);
+    return std::max(0.0, least);
+}
+
+/// "a, b and c".
+inline std::string listed(const std::vector<std::string>& names) {
+    std::string out;
+    for (const std::string& name : names)
+        (out += out.empty() ? "" : &name == &names.back() ? " and " : ", ") += label_of_effect(name);
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
                                                         const std::vector<confusable>& names) {
     experiment out{.motion = "", .separates = {}, .axis = c.axis.name};
-    double log = std::numeric_limits<double>::infinity();
-    bool known = true;
-    std::string all;
-    for (const confusable& n : names) {
-        out.separates.emplace_back(n.name->name);
-        all += (all.empty() ? "" : &n == &names.back() ? " and " : ", ") + out.separates.back();
-        if (&n == &names.front()) continue;
-        log = std::min(log, names.front().model.total - n.model.total);
-        known = known && names.front().equivalent(n);
-    }
-    out.gain_of_log = std::max(0.0, log);
+    for (const confusable& n : names) out.separates.emplace_back(n.name->name);
+    out.gain_of_log = separated_by_log(names);
+    const bool known = std::all_of(names.begin(), names.end(), [&](const confusable& n) {
+        return &n == &names.front() || names.front().equivalent(n);
+    });
     const double period = c.record.period;
     const auto motions =
         motions_for(names, standard_motions(shown_by(motion_of(c.log), period, c.record.scale.corner_Hz),
@@ -133,11 +143,11 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
         take(best.one_way_motion);
         out.finding =
             worded("it decides only if %s is true, by a log-score of %.0f in simulation, the best of ",
-                   out.separates[best.one_way_truth].c_str(), best.one_way_gain) +
+                   listed({out.separates[best.one_way_truth]}).c_str(), best.one_way_gain) +
             inside + "; else they stay one group" +
             (known ? ", for they are one model under two names but for that" : "");
     } else {
-        out.motion = "none: no motion of this axis tells " + all + " apart";
+        out.motion = "none: no motion of this axis tells " + listed(out.separates) + " apart";
         out.finding =
             inside + worded(" were simulated, and the best separates them by a log-score of %.1f", best.gain) +
             (known ? ": a known equivalence, one model under two names; either corrects the simulation"
@@ -167,7 +177,7 @@ QUADRANT_DIAGNOSIS_DECL void propose(diagnosis_result& out, const axis_case& c,
                 out.next = simulated_experiment(c, readings_of(r, c.record));
     } else if (suspect && out.next.motion.empty()) {
         out.next = {.motion = suspect->exciting_motion, .separates = {}, .axis = c.axis.name};
-        out.next.finding = "to see whether " + suspect->effect +
+        out.next.finding = "to see whether " + listed({suspect->effect}) +
                            " is there; not simulated, for what else it may be has no model";
     }
 }

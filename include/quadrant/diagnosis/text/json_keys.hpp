@@ -23,7 +23,7 @@ inline void refuse_unknown_keys(const json_node& node, key_names numbers, key_na
 
 inline void need_schema(const json_node& top, std::string_view name) {
     if (const auto given = top.object().need("schema"); given.text() != name)
-        given.refuse(fmt::format("must be \"{}\"", name));
+        given.refuse(fmt::format("must be \"{}\"; this file is {}", name, in_quotes(given.text())));
 }
 
 /// Each of the axes that a machine file or a map must name: use(name, node).

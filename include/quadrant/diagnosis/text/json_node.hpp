@@ -90,10 +90,11 @@ template <class Names> std::string suggestion(std::string_view given, const Name
     constexpr std::size_t longest = 60, near = 2; // no name is longer: not worth the search
     if (given.empty() || given.size() > longest) return {};
     std::string_view best;
-    std::size_t least = std::max(near, given.size() / 3) + 1;
+    // Of four characters or fewer half would be another word.
+    std::size_t least = (given.size() <= 2 * near ? near - 1 : std::max(near, given.size() / 3)) + 1;
     for (std::string_view name : names) {
         const bool same_start = name.starts_with(given) || given.starts_with(name);
-        const std::size_t n = same_start ? near : edits(given, name);
+        const std::size_t n = same_start ? std::min(near, least - 1) : edits(given, name);
         if (n < least) {
             least = n;
             best = name;

@@ -35,6 +35,8 @@ public:
         constexpr int number_overflow = 406;
         if (fault.id == number_overflow)
             throw bad_input(file_, open_.empty() ? "must be an object" : path() + ": must be a finite number");
+        if (open_.empty() && root_.is_null() && text_.find('{') == text_.npos)
+            throw bad_input(file_, "is no JSON: it holds no {; is it another of the files, a log?");
         const std::string_view before = text_.substr(0, read == 0 ? 0 : read - 1);
         const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
         const std::size_t column = characters(before.substr(before.find_last_of('\n') + 1)) + 1;

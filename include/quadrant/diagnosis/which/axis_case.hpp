@@ -4,6 +4,7 @@
 #include "../log/log.hpp"
 #include "../log/sensor_box.hpp"
 #include "../where/controller_mismatch.hpp"
+#include "own_noise.hpp"
 #include "pieces.hpp"
 #include "restart.hpp"
 #include "search.hpp"

@@ -20,8 +20,8 @@ struct turning_inertia {
 
 namespace detail {
 
-/// What such an inertia needs along a motion is, by the angle's cosine and sine, M(q2) a + dM/dq2 v2 v; beside a
-/// constant inertia, which the best of all constants has taken off already.
+/// What such an inertia needs along a motion is, by the angle's cosine and sine, M(q2) a + dM/dq2 v2 v; beside
+/// a constant inertia, which the best of all constants has taken off already.
 inline Eigen::MatrixXd turning_columns(const axis_record& r, const std::vector<double>& angle) {
     const auto smooth = [&](const std::vector<double>& x) { return zero_phase(x, r.bandwidth_Hz, r.period); };
     const auto q = smooth({r.position.begin(), r.position.end()}), v = derivative(q, r.period),
@@ -87,9 +87,9 @@ inline turning_inertia fitted_inertia(const axis_case& c, const Eigen::MatrixXd&
 
 } // namespace detail
 
-/// What such an inertia takes off what a model of a rotary axis leaves open, by the other axis that fits best; none
-/// where that is less than half. `others`: rotary axes of the same log, of which each of this axis' samples is
-/// `rows_in_one`.
+/// What such an inertia takes off what a model of a rotary axis leaves open, by the other axis that fits best;
+/// none where that is less than half. `others`: rotary axes of the same log, of which each of this axis'
+/// samples is `rows_in_one`.
 inline std::optional<turning_inertia> inertia_by_angle(const axis_case& c, const candidate& m,
                                                        std::span<const axis_log* const> others,
                                                        std::size_t rows_in_one) {
