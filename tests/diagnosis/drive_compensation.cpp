@@ -257,45 +257,6 @@ TEST_CASE("compensate: what no input of a drive pays is said, and claims nothing
     for (const compensation& c : a.compensations) CHECK(c.effects.empty());
 }
 TEST_CASE(
-    "compensate: a velocity drive is told the force of its axis beside FF1 and FF2, as forecast to 15 %") {
-    drive_simulator::machine m{.coulomb = 30, .viscous = 60, .gain = 100 * bandwidth, .delay = 1e-3};
-    m.stock_pid = true;
-    const auto before = recorded(takes::volts, m);
-    const auto file = behind_pid(linear(R"("kind": "velocity", "velocity_per_V": 0.02)"), 1000);
-    const auto r = compensate(read_machine(file, "machine.json"),
-                              found({named("coulomb_friction", "coulomb_N", 29, 2)}), of_one(before));
-    const auto& ways = r.axes.at(0).compensations;
-    REQUIRE(ways.size() >= 2);
-    const compensation &alone = ways[0], &pushed = ways[1];
-    CHECK(setting(pushed, "added_coulomb_N") == doctest::Approx(29));
-    CHECK(setting(pushed, "added_mass_kg") == doctest::Approx(100).epsilon(0.01));
-    CHECK(setting(pushed, "added_viscous_N_s_per_m") == doctest::Approx(60));
-    // What the force pays FF2 has no longer to ask for.
-    CHECK(key_of_way(pushed, "FF2") < key_of_way(alone, "FF2"));
-    m.ff1 = key_of_way(pushed, "FF1");
-    m.ff2 = key_of_way(pushed, "FF2");
-    kept(takes::volts, m, before, pushed, 0.1);
-    CHECK(pushed.after.rms_m.value < alone.after.rms_m.value);
-}
-TEST_CASE("compensate: LinuxCNC's pid in front of a velocity drive gets a bias against a constant force, as "
-          "forecast to "
-          "15 %") {
-    drive_simulator::machine m{.viscous = 60, .gain = 100 * bandwidth, .delay = 1e-3};
-    m.stock_pid = true;
-    m.constant = 200;
-    const auto before = recorded(takes::volts, m);
-    const auto file = behind_pid(linear(R"("kind": "velocity", "velocity_per_V": 0.02)"), 1000);
-    const auto r = compensate(read_machine(file, "machine.json"),
-                              found({named("constant_force", "constant_force_N", 195, 10)}), of_one(before));
-    const compensation& way = r.axes.at(0).compensations.at(0);
-    CHECK(key_of_way(way, "bias") == doctest::Approx(-195 / (100 * bandwidth) / 0.02));
-    CHECK(controller_patch(r)["axes"]["q"]["controller"].contains("bias"));
-    m.bias = key_of_way(way, "bias");
-    m.ff1 = key_of_way(way, "FF1");
-    m.ff2 = key_of_way(way, "FF2");
-    kept(takes::volts, m, before, way, 0.2);
-}
-TEST_CASE(
     "compensate: LinuxCNC's pid in front of a force gets FF0 against a spring and a bias against a weight, as "
     "forecast to 15 %") {
     drive_simulator::machine m{.mass = 20, .viscous = 60};
