@@ -413,7 +413,9 @@ TEST_CASE("read_log: an axis that is half linear and half rotary is refused wher
     CHECK(refusal("t_s,x_ref_m,x_pos_m,x_cmd_Nm\n") ==
           "log.csv:1:21: axis x is linear: its command is x_cmd_V, x_cmd_A or x_cmd_N");
     CHECK(refusal("t_s,c_cmd_Nm\n").ends_with("column c_pos_rad is missing"));
-    CHECK(refusal("t_s,c_pos_rad\n").ends_with("(or c_cmd_A, c_cmd_Nm; measured: c_current_A, c_torque_Nm)"));
+    CHECK(refusal("t_s,c_pos_rad\n")
+              .ends_with("(or c_cmd_A, c_cmd_Nm; measured: c_current_A, c_torque_Nm; of a drive that takes "
+                         "positions: c_ref_rad)"));
 }
 
 TEST_CASE("read_log: a log without motion is refused") {

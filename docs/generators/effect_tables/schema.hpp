@@ -65,6 +65,25 @@ inline ordered_json motor_encoder(axis_kind kind) {
         {"properties", properties}};
 }
 
+/// Two axes of the log in one; the same for either kind.
+inline ordered_json gantry_pair() {
+    return {{"description", "Two motors on one beam, each an axis of the log."},
+            {"type", "object"},
+            {"additionalProperties", false},
+            {"required", {"ends"}},
+            {"properties",
+             {{"ends",
+               {{"type", "array"},
+                {"items", {{"type", "string"}, {"pattern", "^[A-Za-z0-9_-]+$"}}},
+                {"minItems", 2},
+                {"maxItems", 2}}},
+              {"share",
+               {{"description", "of the mass at the first end"},
+                {"type", "number"},
+                {"exclusiveMinimum", 0},
+                {"exclusiveMaximum", 1}}}}}};
+}
+
 /// Keys of the box that belong to no effect.
 inline void add_others(std::string_view box, axis_kind kind, ordered_json& properties, ordered_json& together) {
     if (box == "drive") return add_drive(kind, properties);
@@ -132,7 +151,7 @@ inline ordered_json axis(axis_kind kind) {
     for (const std::string_view name : detail::axis_other_keys)
         properties[std::string(name)] = reference(definition_of(name, kind));
     ordered_json chain = ordered_json::array(); // without a plant: a chain of positions
-    for (const char* box : {"plant", "transmission", "encoder", "motor_encoder"})
+    for (const char* box : {"plant", "transmission", "encoder", "motor_encoder", "gantry_pair"})
         chain.push_back({{"required", {box}}});
     return {{"type", "object"},
             {"anyOf", chain},
@@ -151,6 +170,7 @@ inline ordered_json machine_definitions() {
             out[definition_of(name, kind)] = box(name, kind);
         out[definition_of("tolerance", kind)] = tolerance(kind);
         out[definition_of("motor_encoder", kind)] = motor_encoder(kind);
+        out[definition_of("gantry_pair", kind)] = gantry_pair();
     }
     return out;
 }

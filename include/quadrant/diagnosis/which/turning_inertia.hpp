@@ -20,24 +20,28 @@ struct turning_inertia {
 
 namespace detail {
 
-/// What such an inertia needs along a motion is, by the angle's cosine and sine, M(q2) a + dM/dq2 v2 v; beside
-/// a constant inertia, which the best of all constants has taken off already.
+/// What such an inertia needs along a motion beside its mean is, by the angle's cosine and sine,
+/// (M(q2) - mean) a + dM/dq2 v2 v. The mean is the machine's own number: free, it would do what gravity does.
 inline Eigen::MatrixXd turning_columns(const axis_record& r, const std::vector<double>& angle) {
     const auto smooth = [&](const std::vector<double>& x) { return zero_phase(x, r.bandwidth_Hz, r.period); };
     const auto q = smooth({r.position.begin(), r.position.end()}), v = derivative(q, r.period),
                a = derivative(v, r.period), q2 = smooth(angle), v2 = derivative(q2, r.period);
-    std::vector<std::vector<double>> columns(3, std::vector<double>(q.size()));
+    double mean_cosine = 0, mean_sine = 0;
+    for (const double x : q2) {
+        mean_cosine += std::cos(x) / static_cast<double>(q2.size());
+        mean_sine += std::sin(x) / static_cast<double>(q2.size());
+    }
+    std::vector<double> by_cosine(q.size()), by_sine(q.size());
     for (std::size_t k = 0; k < q.size(); ++k) {
-        const double c = std::cos(q2[k]), s = std::sin(q2[k]);
-        columns[0][k] = c * a[k] - s * v2[k] * v[k];
-        columns[1][k] = s * a[k] + c * v2[k] * v[k];
-        columns[2][k] = a[k];
+        const double c = std::cos(q2[k]), s = std::sin(q2[k]), turn = v2[k] * v[k];
+        by_cosine[k] = (c - mean_cosine) * a[k] - s * turn;
+        by_sine[k] = (s - mean_sine) * a[k] + c * turn;
     }
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(q.size()), 3);
-    for (Eigen::Index j = 0; j < 3; ++j) {
-        const auto filtered = smooth(columns[static_cast<std::size_t>(j)]);
-        for (Eigen::Index k = 0; k < out.rows(); ++k) out(k, j) = filtered[static_cast<std::size_t>(k)];
-    }
+    by_cosine = smooth(by_cosine);
+    by_sine = smooth(by_sine);
+    Eigen::MatrixXd out(static_cast<Eigen::Index>(q.size()), 2);
+    for (std::size_t k = 0; k < q.size(); ++k)
+        out.row(static_cast<Eigen::Index>(k)) << by_cosine[k], by_sine[k];
     return out;
 }
 
@@ -45,7 +49,7 @@ inline Eigen::MatrixXd turning_columns(const axis_record& r, const std::vector<d
 inline turning_inertia fitted_inertia(const axis_case& c, const Eigen::MatrixXd& columns,
                                       const std::vector<double>& residual) {
     const axis_record& r = c.record;
-    std::vector<regression_part> sums(folds, {Eigen::MatrixXd::Zero(3, 3), Eigen::VectorXd::Zero(3)});
+    std::vector<regression_part> sums(folds, {Eigen::MatrixXd::Zero(2, 2), Eigen::VectorXd::Zero(2)});
     const auto counts = [&](std::size_t k) {
         return k >= r.score.skip && (r.left_out.empty() || !r.left_out[k]);
     };
@@ -56,8 +60,8 @@ inline turning_inertia fitted_inertia(const axis_case& c, const Eigen::MatrixXd&
         sums[fold_of(r.segment[k])].right += residual[k] * row;
     }
     const auto solution = [&](std::size_t without) {
-        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(3, 3);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(3);
+        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(2, 2);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(2);
         for (std::size_t f = 0; f < folds; ++f) {
             if (f == without) continue;
             left += sums[f].left;
