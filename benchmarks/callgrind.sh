@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # usage: [COMPILERS=g++] callgrind.sh [BOUND]     instructions per servo period of the typed loops beside the hand-written ones
-# Builds axis_loop_count and xy_loop_count with every compiler that is there, counts instructions with valgrind behind the
-# start-up (without valgrind's header: for two numbers of samples, whose difference is free of it), prints tables: one axis,
-# both axes with the memory's FIR filters, both without; one axis and both axes parked for 32 000 periods. Then both axes for
-# x86-64-v3 (products and sums may be fused), beside an expert's loop. Exit code 1 when typed needs more than BOUND (1.05)
-# times what hand_written needs in any table, or typed_lanes in motion more than EXPERT_BOUND times what the expert's loop
-# needs; 77 when there is no valgrind. EXPERT_BOUND: see docs/benchmarks.md. At rest it is not asked: an expert's loop does nothing there against
+# Builds axis_loop_count and xy_loop_count with every compiler that is there, counts instructions with valgrind for two
+# numbers of samples (their difference is free of the start-up), prints tables: one axis, both axes with the memory's
+# FIR filters, both without; one axis and both axes parked for 32 000 periods. Then both axes for x86-64-v3 (products and
+# sums may be fused), beside an expert's loop. Exit code 1 when typed needs more than BOUND (1.05) times what hand_written
+# needs in any table, or typed_lanes in motion more than EXPERT_BOUND times what the expert's loop needs; 77 when there is no
+# valgrind. EXPERT_BOUND: see docs/benchmarks.md. At rest it is not asked: an expert's loop does nothing there against
 # subnormal numbers. Last the sub-steps of a plant (sub_steps.sh), whose bound is its own.
 set -eu
 bound=${1:-1.05} expert_bound=1.10
@@ -15,37 +15,30 @@ build=${QUADRANT_BUILD:-$root/build}
 mkdir -p "$build"
 command -v valgrind >/dev/null || { echo "no valgrind: skipped"; exit 77; }
 
-instructions() { # OPTION... PROGRAM WHICH N
+instructions() { # PROGRAM WHICH N
     valgrind --tool=callgrind --callgrind-out-file=/dev/null "$@" 2>&1 >/dev/null |
         sed -n 's/.*Collected : *\([0-9]*\).*/\1/p'
 }
 per_sample() { # PROGRAM WHICH [MOTION]
-    first=1000 few=0
+    first=1000
     [ "${3-}" != standing ] || case $1 in *axis_loop*) first=52000 ;; *) first=32000 ;; esac # after its rest
-    many=$(instructions --instr-atstart=no "$1" "$2" $((first + 10000)) ${3:-moving} $first)
-    if [ "$many" = 0 ]; then # compiled without valgrind's header
-        few=$(instructions "$1" "$2" $first ${3-})
-        many=$(instructions "$1" "$2" $((first + 10000)) ${3-})
-    fi
-    awk "BEGIN { printf \"%.1f\", ($many - $few) / 10000 }"
+    few=$(instructions "$1" "$2" $first ${3-})
+    many=$(instructions "$1" "$2" $((first + 10000)) ${3-})
+    awk "BEGIN { d = 0$many - 0$few; if (d > 0) printf \"%.1f\", d / 10000; exit !(d > 0) }" ||
+        { echo "$1 $2 ${3-}: valgrind counted nothing: it may not know an instruction of it" >&2; exit 1; }
 }
-for compiler in ${COMPILERS:-g++ clang++}; do
-    command -v $compiler >/dev/null || continue
-    here=$build/count-$compiler
-    cmake -S "$root" -B "$here" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE=Release \
-        -DQUADRANT_BUILD_TESTS=OFF -DQUADRANT_BUILD_EXAMPLES=OFF >"$here.log" 2>&1 &&
-        cmake --build "$here" --target axis_loop_count xy_loop_count >>"$here.log" 2>&1 || { cat "$here.log"; exit 1; }
-    for program in axis_loop_count xy_loop_count; do
-        "$here/benchmarks/$program" same || { echo "$compiler: the loops do not agree bit for bit"; exit 1; }
-    done
-done
 
 worst=0
 table() { # TARGET THIRD SUFFIX [MOTION]
     printf '%-20s %-10s %10s %14s %24s %8s\n' "${1%_count}$3${4:+ $4}" compiler typed hand_written "$2" ratio
     for compiler in ${COMPILERS:-g++ clang++}; do
         command -v $compiler >/dev/null || continue
-        program=$build/count-$compiler/benchmarks/$1
+        here=$build/count-$compiler
+        cmake -S "$root" -B "$here" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE=Release \
+            -DQUADRANT_BUILD_TESTS=OFF -DQUADRANT_BUILD_EXAMPLES=OFF >"$here.log" 2>&1 &&
+            cmake --build "$here" --target "$1" >>"$here.log" 2>&1 || { cat "$here.log"; exit 1; }
+        program=$here/benchmarks/$1
+        "$program" same || { echo "$compiler: the loops do not agree bit for bit"; exit 1; }
         typed=$(per_sample "$program" "typed$3" $4)
         hand=$(per_sample "$program" "hand_written$3" $4)
         third=$(per_sample "$program" "$2$3" $4)

@@ -111,11 +111,10 @@ template <std::size_t Learning, std::size_t Smoothing> struct as_graph {
     }
 };
 
-/// One pass, from one sample to another; the sum stands for a consumer of the commands.
-template <class Loop>
-[[gnu::noinline]] double run(Loop& loop, const std::vector<sample>& in, std::size_t n, std::size_t from = 0) {
+/// One pass; the sum stands for a consumer of the commands.
+template <class Loop> [[gnu::noinline]] double run(Loop& loop, const std::vector<sample>& in, std::size_t n) {
     double sum = 0;
-    for (std::size_t k = from; k < n; ++k) {
+    for (std::size_t k = 0; k < n; ++k) {
         const commands u = loop.step(in[k]);
         sum += u.x + u.y;
     }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSL-1.0
 // usage:
-//        xy_loop_count typed|typed_lanes|hand_written|virtual_graph|expert[_without_fir] N
-//                      [moving|standing|reversing [FROM]]
-//                                runs N samples, at most 18 850, standing 50 850 (callgrind.sh counts, those behind
-//                                FROM); on a circle without a third word
+//        xy_loop_count typed|typed_lanes|hand_written|virtual_graph|expert[_without_fir] N [standing|reversing]
+//                                runs N samples, at most 18 850, standing 50 850 (callgrind.sh counts); on a circle
+//                                without a third word
 //        xy_loop_count same             fails unless the loops agree: bit for bit, or behind the DAC those that round otherwise
 //        xy_loop_count same_commands    the latter alone: for a build in which the compiler may fuse products and sums
-#include "counted_from.hpp"
 #include "xy_loop.hpp"
 
 #include <algorithm>
@@ -15,14 +13,11 @@
 
 namespace {
 xy_loop::motion in_motion = xy_loop::motion::moving;
-std::size_t from = 0;
 
 template <class Loop> int count(std::size_t n) {
     const auto in = xy_loop::inputs(in_motion);
     Loop loop;
-    std::printf("%.17g\n", counted_from(from, std::min(n, in.size()), [&](std::size_t k, std::size_t end) {
-                    return xy_loop::run(loop, in, end, k);
-                }));
+    std::printf("%.17g\n", xy_loop::run(loop, in, std::min(n, in.size())));
     return 0;
 }
 } // namespace
@@ -37,7 +32,6 @@ int main(int argc, char** argv) {
         in_motion = motion::standing;
     else if (moves == "reversing")
         in_motion = motion::reversing;
-    if (argc > 4) from = std::strtoul(argv[4], nullptr, 10);
     const std::size_t n = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 0;
     if (which == "typed") return count<typed<90, 61>>(n);
     if (which == "hand_written") return count<by_hand<90, 61>>(n);
@@ -53,6 +47,6 @@ int main(int argc, char** argv) {
     if (which == "virtual_graph_without_fir") return count<as_graph<1, 1>>(n);
     std::fprintf(stderr,
                  "usage: xy_loop_count typed|typed_lanes|hand_written|virtual_graph|expert[_without_fir] N "
-                 "[moving|standing|reversing [FROM]], same or same_commands\n");
+                 "[standing|reversing], same or same_commands\n");
     return 2;
 }

@@ -93,10 +93,11 @@ public:
         for (std::size_t i = 0; i <= order; ++i) {
             from_measured_[i] = gain_of<Command, Measured, Real>::from_value(Real(inverse[i] / under[0]));
             from_command_[i] = Real(over[i] / under[0]);
-            require_coefficients<Real>("disturbance_observer.plant.denominator", p.plant.denominator[0],
-                                       inverse[i] / under[0], over[i] / under[0], under[i] / under[0]);
             if (i > 0) feedback_[i - 1] = Real(under[i] / under[0]);
         }
+        for (std::size_t i = 0; i <= order; ++i)
+            require_coefficients<Real>("disturbance_observer.plant.denominator", p.plant.denominator[0],
+                                       inverse[i] / under[0], over[i] / under[0], under[i] / under[0]);
         for (std::size_t i = 0; i < order; ++i)
             from_applied_[i] = feedback_[i] * from_command_[0] - from_command_[i + 1];
         solved_ = Real(1) / (Real(1) - from_command_[0]);
