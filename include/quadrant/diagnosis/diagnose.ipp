@@ -243,9 +243,8 @@ inline void tell_turning_inertia(diagnosis_result& out, const axis_case& c, std:
     if (instead) doubt_stand_ins(causes, c, others, form);
     out.notes.push_back(fmt::format(
         "axis {}: its inertia depends on the angle of axis {}: {:.3g} kg m^2 more or less, most at {:.2g} rad. "
-        "That "
-        "takes {:.0f} % off what {}, and a machine file cannot describe it: the inertia in it is a mean. Move "
-        "axis {} alone, with {} held, for its other numbers.",
+        "That takes {:.0f} % off what {}, and a machine file cannot describe it: the inertia in it is a mean. "
+        "Move axis {} alone, with {} held, for its other numbers.",
         c.axis.name, found->other, found->swing(), std::atan2(found->sine, found->cosine), 100 * found->share,
         instead ? "the machine as calibrated leaves" : "the causes leave", c.axis.name, found->other));
 }

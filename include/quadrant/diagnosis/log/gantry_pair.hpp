@@ -11,13 +11,19 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// part x + (1 - part) y in each row, or of a sum; empty where one of them is.
-inline std::vector<double> both(double of_first, const std::vector<double>& x, double of_second,
-                                const std::vector<double>& y) {
+/// of_first x + of_second y in each row; empty where one of the two columns is not there.
+inline std::vector<double> weighted(double of_first, const std::vector<double>& x, double of_second,
+                                    const std::vector<double>& y) {
     if (x.size() != y.size()) return {};
     std::vector<double> out(x.size());
     for (std::size_t k = 0; k < x.size(); ++k) out[k] = of_first * x[k] + of_second * y[k];
     return out;
+}
+
+/// Marks in `rows` what is marked in `others`; either may be empty, with nothing marked.
+template <class Marks> void mark_too(Marks& rows, const Marks& others) {
+    if (rows.size() < others.size()) rows.resize(others.size(), 0);
+    for (std::size_t k = 0; k < others.size(); ++k) rows[k] |= others[k];
 }
 
 /// The motion of the beam: its centre of gravity under both forces. Behind drives with loops of their own,
@@ -30,30 +36,26 @@ inline axis_log moved_beam(const axis_description& axis, const axis_log& first, 
     out.name = axis.name;
     out.still = first.still && second.still;
     out.has_reference = first.has_reference && second.has_reference;
-    out.position = both(a, first.position, b, second.position);
-    out.reference = out.has_reference ? both(a, first.reference, b, second.reference) : out.position;
+    out.position = weighted(a, first.position, b, second.position);
+    out.reference = out.has_reference ? weighted(a, first.reference, b, second.reference) : out.position;
     out.command =
-        driven ? both(a, first.command, b, second.command) : both(1, first.command, 1, second.command);
-    out.reference_velocity = both(a, first.reference_velocity, b, second.reference_velocity);
-    out.reference_acceleration = both(a, first.reference_acceleration, b, second.reference_acceleration);
-    out.velocity = both(a, first.velocity, b, second.velocity);
-    out.effort = both(1, first.effort, 1, second.effort);
-    out.duty = both(a, first.duty, b, second.duty);
+        driven ? weighted(a, first.command, b, second.command) : weighted(1, first.command, 1, second.command);
+    out.reference_velocity = weighted(a, first.reference_velocity, b, second.reference_velocity);
+    out.reference_acceleration = weighted(a, first.reference_acceleration, b, second.reference_acceleration);
+    out.velocity = weighted(a, first.velocity, b, second.velocity);
+    out.effort = weighted(1, first.effort, 1, second.effort);
+    out.duty = weighted(a, first.duty, b, second.duty);
     out.motor =
-        first.motor_unit == second.motor_unit ? both(a, first.motor, b, second.motor) : std::vector<double>{};
+        first.motor_unit == second.motor_unit ? weighted(a, first.motor, b, second.motor)
+                                              : std::vector<double>{};
     for (auto member : {&axis_log::reference_step, &axis_log::position_step, &axis_log::command_step,
                         &axis_log::duty_step, &axis_log::effort_step, &axis_log::motor_step})
         out.*member = std::max(first.*member, second.*member);
-    for (auto member : {&axis_log::left_out, &axis_log::drive_off}) {
-        auto& rows = out.*member;
-        const auto& others = second.*member;
-        if (rows.size() < others.size()) rows.resize(others.size(), 0);
-        for (std::size_t k = 0; k < others.size(); ++k) rows[k] |= others[k];
-    }
+    for (auto member : {&axis_log::left_out, &axis_log::drive_off}) mark_too(out.*member, second.*member);
     out.as_sampled = first.as_sampled && second.as_sampled;
     const bool forces = !driven && !first.command_unit.empty();
     out.turn = std::make_shared<const beam_turn>(beam_turn{
-        g.first, g.second, a, forces ? both(b, first.command, -a, second.command) : std::vector<double>{}});
+        g.first, g.second, a, forces ? weighted(b, first.command, -a, second.command) : std::vector<double>{}});
     return out;
 }
 
@@ -71,8 +73,8 @@ inline axis_log two_ends(const axis_description& axis, const axis_log& first, co
     out.motor = first.position;
     out.motor_unit = "m"; // in units of the other end
     out.motor_step = first.position_step;
-    out.left_out = first.left_out.empty() ? second.left_out : first.left_out;
-    for (std::size_t k = 0; k < second.left_out.size(); ++k) out.left_out[k] |= second.left_out[k];
+    out.left_out = first.left_out;
+    mark_too(out.left_out, second.left_out);
     out.as_sampled = first.as_sampled && second.as_sampled;
     out.turn =
         std::make_shared<const beam_turn>(beam_turn{first.name, second.name, axis.gantry_pair->share, {}});
