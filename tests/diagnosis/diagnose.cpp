@@ -159,8 +159,8 @@ TEST_CASE("diagnose: names that the time did not allow count against what was fo
     const auto d = diagnose(
         file, log, nullptr,
         [&](const std::string& said) {
-            if (said.find("coulomb_friction cogging ") != std::string::npos ||
-                said.find("cogging coulomb_friction ") != std::string::npos)
+            if (said.find("Coulomb friction, cogging") != std::string::npos ||
+                said.find("cogging, Coulomb friction") != std::string::npos)
                 its_now = in_time.until;
         },
         in_time);

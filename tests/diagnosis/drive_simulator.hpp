@@ -18,9 +18,12 @@ struct machine {
     double velocity_per_V = 0.02, gain = 0, integral = 0;           ///< velocity loop
     double position_gain = 0, duty_gain = 0, supply = 12, kt = 0.1; ///< position loop; position servo
     double minimum_duty = 0, rate_limit = 1e9, delay = 0, count = 1e-6;
+    double force_limit = 1e9;           ///< of the velocity loop [N]
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
     bool enabled_column = false;
+    double force_of_current = 0;        ///< [N/A]: the drive's current is logged, too; 0: it is not
+    bool current_is_mean = false;       ///< over the row; else as the row begins
     bool stock_pid =
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
@@ -64,7 +67,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         << (kind == takes::volts   ? ",q_cmd_V"
             : kind == takes::force ? ",q_cmd_N"
                                    : "")
-        << (tap ? ",q_duty" : "") << (m.enabled_column ? ",q_enabled" : "") << "\n";
+        << (tap ? ",q_duty" : "") << (m.force_of_current > 0 ? ",q_current_A" : "") << (m.enabled_column ? ",q_enabled" : "") << "\n";
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;
@@ -83,6 +86,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                                                  : reference[k] + (m.shift.empty() ? 0 : m.shift[k]));
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
         if (kind == takes::volts || kind == takes::force) out << ',' << command.back();
+        double mean_force = 0, first_force = 0;
         for (int i = 0; i < steps; ++i) {
             const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
             const double tick = std::floor(at / (1 + m.clock_slip)); // of the drive's clock
@@ -104,19 +108,26 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                                          ? m.velocity_per_V * command[row]
                                          : m.position_gain * (before + part * (command[row] - before) - x);
                 const auto newest = static_cast<std::size_t>(std::max(0.0, at)); // a force is held over a row
-                force = m.gain * (asked - v) + integral + (m.added.empty() ? 0 : m.added[newest]);
-                integral += h * m.integral * (asked - v);
+                const auto within = [&](double f) { return std::clamp(f, -m.force_limit, m.force_limit); };
+                force = within(m.gain * (asked - v) + integral + (m.added.empty() ? 0 : m.added[newest]));
+                integral = within(integral + h * m.integral * (asked - v));
             }
             if (off) {
                 force = integral = 0;
                 followed = x;
             }
+            mean_force += force / steps;
+            if (i == 0) first_force = force;
             v += h * (force - m.viscous * v - m.gravity * std::sin(x) + m.constant - m.spring * x) / m.mass;
             const double stop = h * m.coulomb / m.mass;
             v -= std::clamp(v, -stop, stop);
             x += h * v;
         }
         const double t = static_cast<double>(k) * period;
+        if (m.force_of_current > 0) { // with noise of a hundredth of the friction
+            const double force = m.current_is_mean ? mean_force : first_force;
+            out << ',' << (force + 0.01 * m.coulomb * noise(random) / (0.3 * m.count)) / m.force_of_current;
+        }
         if (m.enabled_column) out << ',' << (t >= m.off_from && t < m.off_until ? 0 : 1);
         out << "\n";
     }

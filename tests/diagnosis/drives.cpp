@@ -10,10 +10,12 @@
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/forecast.hpp>
 #include <quadrant/diagnosis/match.hpp>
+#include <quadrant/diagnosis/model/as_reading.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 #include <quadrant/diagnosis/write_machine.hpp>
+#include <random>
 
 using namespace quadrant::diagnosis;
 using drive_simulator::takes;
@@ -104,6 +106,72 @@ TEST_CASE("velocity drive, PI: the friction that its integral hides is found wit
     const cause* friction = only_claim(d, "coulomb_friction");
     REQUIRE(friction);
     CHECK(value_of(*friction, "coulomb_N") == doctest::Approx(30).epsilon(0.1));
+}
+TEST_CASE("velocity drive with a measured current: every number of the file is wrong by most of its tolerance, and "
+          "nobody is blamed, whichever way the current is read") {
+    auto m = pi_drive;
+    m.force_of_current = 20;
+    m.mass = 103;
+    m.delay = 1.08e-3;
+    m.gain *= 1.02;
+    m.integral *= 0.97;
+    for (const bool mean : {false, true}) {
+        m.current_is_mean = mean;
+        const auto d =
+            diagnosed(linear(coulomb + R"(, "force_constant_N_per_A": 20)", of_pi), recorded(takes::volts, m));
+        CHECK(blames_nobody(d));
+        const auto found = [&](const std::string& key) {
+            for (const auto& p : d.axes[0].calibrated)
+                if (p.key == key) return p.values[0].value;
+            return 0.0;
+        };
+        CHECK(found("mass_kg") / found("force_constant_N_per_V") ==
+              doctest::Approx(m.mass / m.force_of_current).epsilon(0.005));
+        CHECK(found("drive.velocity_gain_N_s_per_m") == doctest::Approx(m.gain).epsilon(0.01));
+        CHECK(found("drive.command_delay_s") == doctest::Approx(m.delay).epsilon(0.02));
+    }
+}
+TEST_CASE("velocity drive with a measured current: its delay and a limit inside it are found" *
+          doctest::test_suite("all")) {
+    auto late = pi_drive, limited = pi_drive;
+    late.force_of_current = limited.force_of_current = 20;
+    late.current_is_mean = limited.current_is_mean = true;
+    late.delay = 2e-3;
+    limited.force_limit = 60;
+    const std::string file = linear(coulomb + R"(, "force_constant_N_per_A": 20)", of_pi);
+    const auto of_late = diagnosed(file, recorded(takes::volts, late));
+    const cause* delay = only_claim(of_late, "command_delay");
+    REQUIRE(delay);
+    CHECK(value_of(*delay, "drive.command_delay_s") == doctest::Approx(late.delay).epsilon(0.02));
+    const auto of_limited = diagnosed(file, recorded(takes::volts, limited));
+    const cause* limit = only_claim(of_limited, "drive_limit");
+    REQUIRE(limit);
+    CHECK(value_of(*limit, "drive.force_limit_N") == doctest::Approx(limited.force_limit).epsilon(0.03));
+}
+TEST_CASE("as_reading: from the force that a wrong reading makes of a drive's law comes that reading") {
+    const double period = 1e-3;
+    drive_model d;
+    d.velocity_gain = 300;
+    d.velocity_integral = 9000;
+    d.position_gain = 40;
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise;
+    for (const drive_kind kind : {drive_kind::velocity, drive_kind::position}) {
+        d.kind = kind;
+        std::vector<double> wrong(2000), force;
+        double before = 0, sum = 0;
+        for (double& y : wrong) {
+            y = noise(random);
+            // What the velocity loop takes for its error.
+            const double e = (y - before) / period + (kind == drive_kind::position ? d.position_gain * y : 0);
+            sum += e * period;
+            force.push_back(d.velocity_gain * e + d.velocity_integral * sum);
+            before = y;
+        }
+        const auto found = as_reading(d, force, period, 1);
+        for (std::size_t k = 0; k < wrong.size(); ++k)
+            REQUIRE(found[k] == doctest::Approx(wrong[k]).epsilon(1e-6).scale(1));
+    }
 }
 TEST_CASE("velocity drive: another gain of the drive is the drive's" * doctest::test_suite("all")) {
     auto m = p_drive;

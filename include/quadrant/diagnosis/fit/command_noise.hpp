@@ -2,6 +2,7 @@
 #pragma once
 #include "../../analysis/frf.hpp"
 #include "../../base/version.hpp"
+#include "../model/as_reading.hpp"
 #include "drive_noise.hpp"
 #include "scoring.hpp"
 
@@ -26,6 +27,10 @@ QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x);
 /// observer around a free mass: rms [m].
 QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, double mass, double period,
                                                 double pole);
+
+/// The same of a force that was measured behind this drive, in a channel of what it says of the reading.
+QUADRANT_DIAGNOSIS_DECL double tap_noise_in(const channel& c, double force, const drive_model& d, double period,
+                                            double pole);
 
 /// Share of the power of such noise that a measurement may have added: no more than the innovations hold in any
 /// channel, and no more than they vary by inside the means of the fastest two where reading noise of rms

@@ -42,6 +42,15 @@ QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, 
     return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
 }
 
+QUADRANT_DIAGNOSIS_DECL double tap_noise_in(const channel& c, double force, const drive_model& d, double period,
+                                            double pole) {
+    const auto forgotten = static_cast<std::size_t>(30 / (1 - pole));
+    std::vector<double> impulse(2 * (c.mean + forgotten), 0.0);
+    impulse[c.mean] = force;
+    const auto mean = detail::running_means(as_reading(d, std::move(impulse), period, pole), c.mean);
+    return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
+}
+
 QUADRANT_DIAGNOSIS_DECL double share_added_by_measurement(const std::vector<double>& innovation,
                                                           std::span<const channel> channels, double sigma) {
     double share = 1;

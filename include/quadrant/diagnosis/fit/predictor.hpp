@@ -2,6 +2,7 @@
 #pragma once
 #include "../../base/version.hpp"
 #include "../log/signals.hpp"
+#include "../model/as_reading.hpp"
 #include "../model/driven_motion.hpp"
 #include "../model/sample_loss.hpp"
 #include "pass.hpp"
@@ -90,6 +91,10 @@ struct predictor {
     /// Rows of the innovations: those of the position, and behind them, where something was measured behind the
     /// drive, what the drive gives otherwise.
     std::size_t rows() const { return position.size() * (drive && drive->tapped() ? 2 : 1); }
+
+    /// What this drive gives otherwise than was measured behind it, at the rows, as what it says of the reading
+    /// of the position [m].
+    std::vector<double> beside_tap(const drive_model& d, std::vector<double> beside) const;
 
     /// Both poles of the observer.
     double pole() const { return std::exp(-2 * std::numbers::pi * corner_Hz * period); }

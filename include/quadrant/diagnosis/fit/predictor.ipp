@@ -284,6 +284,13 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> predictor::loss_response(const plant
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL std::vector<double> predictor::beside_tap(const drive_model& d,
+                                                                  std::vector<double> beside) const {
+    if (d.kind != drive_kind::position_servo) return as_reading(d, std::move(beside), period, pole());
+    for (double& duty : beside) duty *= drive->to_position;
+    return beside;
+}
+
 QUADRANT_DIAGNOSIS_DECL void predictor::drive_each(std::span<const plant_model> plants,
                                                    std::array<std::vector<double>, abreast>& own,
                                                    std::array<const double*, abreast>& command_of,
@@ -295,8 +302,8 @@ QUADRANT_DIAGNOSIS_DECL void predictor::drive_each(std::span<const plant_model> 
         if (same == i) {
             auto replay = drive->run(plants[i].drive);
             own[i] = std::move(replay.command);
-            for (std::size_t k = 0; k < replay.beside.size(); ++k)
-                innovation[i][position.size() + k] = drive->to_position * replay.beside[k];
+            const auto beside = beside_tap(plants[i].drive, std::move(replay.beside));
+            std::copy(beside.begin(), beside.end(), innovation[i].begin() + n);
         } else if (drive->tapped()) {
             std::copy(innovation[same].begin() + n, innovation[same].end(), innovation[i].begin() + n);
         }

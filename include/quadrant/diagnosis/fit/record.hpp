@@ -27,9 +27,9 @@ struct axis_record {
     std::vector<double> reaction{};
     double command_noise =
         0; ///< white noise of a measured command, as it stands in the residual force: rms [N]
-    /// Where something was measured behind the drive: when within a row it and the position were read here, as
-    /// the described drive has it best, see driven_motion::with_timing() [s].
-    double reading_age = 0, tap_lateness = 0;
+    /// Where something was measured behind the drive: when it and the position were read here, as the described
+    /// drive has it best, see driven_motion::timing().
+    reading_times read{};
     predictor observer;
     scoring score{};
 
@@ -40,6 +40,10 @@ struct axis_record {
     /// logged
     /// commands these did not prove better: on records whose rest has no name they lost names that are known.
     bool replayed() const { return observer.drive != nullptr; }
+    /// Whether the force that the velocity loop of such a drive gives was measured.
+    bool taps_force(const drive_model& d) const {
+        return observer.drive && observer.drive->tapped() && !d.reads_in_turn();
+    }
     /// Whether the drive's loops are closed on the model, so that its path is judged.
     bool closed() const { return observer.closed.has_value(); }
 };

@@ -248,7 +248,7 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
         path.segment_of_block.push_back(r.segment[first + path.block / 2]);
     std::vector<channel> out{path};
     for (const channel& c : s.channels) // and what was measured behind the drive
-        if (!c.first_of_block.empty() && c.first_of_block.front() >= rows) out.push_back(c);
+        if (c.of_tap) out.push_back(c);
     s.channels = std::move(out);
 }
 
@@ -261,6 +261,26 @@ QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const pla
     }
 }
 
+namespace detail {
+
+QUADRANT_DIAGNOSIS_DECL void add_command_noise(axis_record& r, const plant_model& described, double force) {
+    r.command_noise = r.observer.drive ? 0 : force * white_noise_below(r.bandwidth_Hz, r.period);
+    for (channel& c : r.score.channels)
+        c.command_noise =
+            c.of_tap ? tap_noise_in(c, force, described.drive, r.period, r.observer.pole())
+                     : command_noise_in(c, force, described.mass, r.period, r.observer.pole());
+    predictor corrected = r.observer;
+    corrected.led = nullptr;
+    std::vector<double> e;
+    corrected.run(described, e);
+    const double share =
+        std::sqrt(share_added_by_measurement(e, r.score.channels, position_noise(e, r.score, r.resolution)));
+    r.command_noise *= share;
+    for (channel& c : r.score.channels) c.command_noise *= share;
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how,
                                                 const plant_model* nearest) {
     const plant_model described(a, r.scale.give());
@@ -268,9 +288,8 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
     r.observer.substeps = substeps_of(described, r.period);
     if (how == held_by::loop) r.observer.closed = r.velocity[0];
     if (r.observer.drive && r.observer.drive->tapped()) {
-        const drive_model timed = r.observer.drive->with_timing(described.drive);
-        r.reading_age = timed.reading_age;
-        r.tap_lateness = timed.tap_lateness;
+        r.read = r.observer.drive->timing(described.drive);
+        r.reaction = reaction_to_reading(described, *r.observer.drive);
     }
     if (r.observer.drive && !r.observer.drive->tapped()) {
         r.reaction = reaction_to_reading(described, *r.observer.drive);
@@ -284,20 +303,10 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
             c.floor = (c.mean == 1 ? 0.4 : 0.2) * r.resolution * c.rounding;
         }
     }
-    if (a.actuator.command_is == command_origin::measured && !r.observer.drive) {
-        const double force = described.force_constant * white_noise_in(r.command);
-        r.command_noise = force * white_noise_below(r.bandwidth_Hz, r.period);
-        for (channel& c : r.score.channels)
-            c.command_noise = command_noise_in(c, force, described.mass, r.period, r.observer.pole());
-        predictor corrected = r.observer;
-        corrected.led = nullptr;
-        std::vector<double> e;
-        corrected.run(described, e);
-        const double share = std::sqrt(
-            share_added_by_measurement(e, r.score.channels, position_noise(e, r.score, r.resolution)));
-        r.command_noise *= share;
-        for (channel& c : r.score.channels) c.command_noise *= share;
-    }
+    if (r.taps_force(described.drive))
+        detail::add_command_noise(r, described, white_noise_in(r.observer.drive->measured));
+    else if (a.actuator.command_is == command_origin::measured && !r.observer.drive)
+        detail::add_command_noise(r, described, described.force_constant * white_noise_in(r.command));
     if (how == held_by::loop) judge_path(r, described, nearest ? *nearest : described);
     if (how == held_by::motion && nearest) judge_beside_what_is_left(r, *nearest);
     return r;

@@ -30,6 +30,7 @@ struct channel {
     double rounding =
         1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
     double command_noise = 0; ///< rms of the means for the noise of a measured command [m]
+    bool of_tap = false;      ///< of what was measured behind a drive, in the rows behind those of the position
     /// Share of each block's rows in which the axis creeps: by less than two counts a mean, so that rounding
     /// is a tone that the channel sees. Faster, rounding is noise. Empty: in all of them.
     std::vector<double> creeping{};
@@ -152,6 +153,7 @@ inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t r
     const std::size_t own = channels.size();
     for (std::size_t i = 0; i < own; ++i) {
         channel c = channels[i];
+        c.of_tap = true;
         for (std::size_t& first : c.first_of_block) first += rows;
         c.floor /= c.rounding;
         c.rounding = 1;

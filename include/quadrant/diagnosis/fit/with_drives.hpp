@@ -61,7 +61,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     motion->find_velocity();
     const driven_motion::replay replay = motion->run(model);
     out.command = replay.command;
-    if (motion->tapped()) {
+    if (motion->tapped() && d.kind == drive_kind::position_servo) {
         double most = 0;
         for (double u : motion->measured) most = std::max(most, std::abs(u));
         motion->to_position =

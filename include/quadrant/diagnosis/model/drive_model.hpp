@@ -6,6 +6,21 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+/// How what is measured behind a drive belongs to its row: read as the row begins, before or after the drive
+/// takes a set-point that arrives just then, or the mean over the row, as drives filter what they report.
+enum class tap_reading { before_set_point, after_set_point, row_mean };
+
+/// When the registers of a drive were read for a row of the log, which no file can know.
+struct reading_times {
+    double age = 0; ///< of the position beside what the drive received and what was measured behind it [s]
+    /// How long before what is measured behind the drive was read the drive took the set-point of its row,
+    /// beside its delay: registers are read before or after the goal is written [s].
+    double tap_lateness = 0;
+    tap_reading tap = tap_reading::before_set_point; ///< of a drive with a velocity loop
+
+    bool operator==(const reading_times&) const = default;
+};
+
 /// The drive of a plant model: the numbers that a fit may move, neutral where nothing is described. SI, in the
 /// words of a linear axis.
 struct drive_model {
@@ -28,14 +43,7 @@ struct drive_model {
     double supply = 1;                                                           ///< [V]
     double start_force = 0; ///< of the velocity loop's integral at the first row, which no file can know [N]
 
-    /// How old a reading of the position is beside what the drive received and what was measured behind it,
-    /// which other
-    /// registers hold: no file can know it [s].
-    double reading_age = 0;
-    /// How long before what is measured behind the drive was read the drive took the set-point of its row,
-    /// beside its delay: registers are read before or after the goal is written, which no file can know either
-    /// [s].
-    double tap_lateness = 0;
+    reading_times read{};
 
     drive_model() = default;
     explicit drive_model(const drive_description& d)
@@ -53,6 +61,8 @@ struct drive_model {
 
     bool operator==(const drive_model&) const = default;
     bool closes() const { return kind != drive_kind::current; }
+    /// Whether its registers are read one after another; other drives take all readings of a row at once.
+    bool reads_in_turn() const { return kind == drive_kind::position_servo; }
     /// Whether the velocity loop remembers a force that no row shows.
     bool has_integral() const {
         return (kind == drive_kind::velocity || kind == drive_kind::position) && velocity_integral > 0;

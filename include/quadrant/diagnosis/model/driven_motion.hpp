@@ -20,7 +20,7 @@ public:
     /// `values`: one a row, `period` seconds apart.
     set_point_clock(const drive_model& d, std::span<const double> values, double period)
         : values_(values), line_(d.between), loss_(std::clamp(d.loss, 0.0, 1.0)),
-          delay_((d.delay + d.reading_age) / period),
+          delay_((d.delay + d.read.age) / period),
           every_((d.set_point_period > 0 ? d.set_point_period / period : 1) *
                  (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
           state_(line_state::at(values[0])) {}
@@ -87,7 +87,7 @@ public:
     /// `set_point`: one a row, the same in every call.
     std::shared_ptr<const followed_set_points> of(const drive_model& d, std::size_t steps,
                                                   std::span<const double> set_point, double period) const {
-        const timing asked{d.between, d.set_point_period, d.delay + d.reading_age, d.loss, d.clock_slip, steps};
+        const timing asked{d.between, d.set_point_period, d.delay + d.read.age, d.loss, d.clock_slip, steps};
         {
             const std::lock_guard lock(mutex_);
             for (const auto& [of, points] : kept_)
@@ -161,7 +161,7 @@ struct driven_motion {
     std::vector<start> begins{};
     set_point_memory memory{}; ///< of set_point: not asked before that is whole
     double to_position =
-        0; ///< scales what the drive gives otherwise than measured to the noise of the reading [m]
+        0; ///< of a position servo: scales duty given otherwise than measured to the noise of the reading [m]
 
     /// The velocity of the position: central differences of the sixth order, to half a per cent at a seventh of
     /// the sample rate. No
@@ -208,32 +208,33 @@ struct driven_motion {
         const auto fine = in_parts(d);
         replay out{row_means(fine), {}};
         if (tapped()) {
-            out.beside = beside(seen_by_tap(d, fine), d.reading_age / period);
+            out.beside = beside(d, seen_by_tap(d, fine));
             const auto last = static_cast<double>(measured.size() - 1);
+            const double middle = d.read.tap == tap_reading::row_mean ? 0 : 0.5;
             for (std::size_t k = 0; k < out.command.size(); ++k) {
                 if (is_off(k)) continue;
-                const double at = static_cast<double>(k) + 0.5 - d.reading_age / period;
+                const double at = static_cast<double>(k) + middle - d.read.age / period;
                 out.command[k] += between(out.beside, std::clamp(at, 0.0, last));
             }
         }
         out.command = to_actuator(d, std::move(out.command));
         return out;
     }
-    /// The drive with the best of seven moments each for the readings of position and tap within a row. A
-    /// set-point that arrives between
-    /// two moments makes a step, which no slope sees: a fit has to begin on the right side of it.
-    drive_model with_timing(drive_model d) const {
-        drive_model best = d;
+    /// When the readings of this record were taken, where registers are read one after another: the best of
+    /// seven moments each for those of position and tap within a row. A set-point that arrives between two
+    /// moments makes a step, which no slope sees: a fit has to begin on the right side of it.
+    reading_times timing(drive_model d) const {
+        reading_times best = d.read;
+        if (!d.reads_in_turn()) return best;
         double least = drive_model::none;
-        for (int i = 0; i < 49; ++i) {
-            const int age = i / 7 - 3, lateness = i % 7 - 3;
-            d.reading_age = age * period / 4;
-            d.tap_lateness = lateness * period / 4;
-            double sum = 0;
-            for (double e : run(d).beside) sum += e * e;
-            if (sum < least) best = d;
-            least = std::min(least, sum);
-        }
+        for (int age = -3; age <= 3; ++age)
+            for (int lateness = -3; lateness <= 3; ++lateness) {
+                d.read = {age * period / 4, lateness * period / 4};
+                double sum = 0;
+                for (double e : run(d).beside) sum += e * e;
+                if (sum < least) best = d.read;
+                least = std::min(least, sum);
+            }
         return best;
     }
     /// What this drive gives less what was measured, as the force that it would have made on the axis [N];
@@ -253,8 +254,8 @@ private:
     }
     /// What the law gives at the moments of the tap: with the set-point that the drive had then.
     std::vector<double> seen_by_tap(drive_model d, const std::vector<double>& fine) const {
-        if (d.tap_lateness == 0) return fine;
-        d.delay -= d.tap_lateness;
+        if (d.read.tap_lateness == 0) return fine;
+        d.delay -= d.read.tap_lateness;
         return in_parts(d);
     }
     static double between(const std::vector<double>& x, double at) {
@@ -266,14 +267,44 @@ private:
         for (std::size_t i = 0; i < fine.size(); ++i) out[i / parts] += fine[i] / parts;
         return out;
     }
-    /// At the moments of the tap's readings, `age` rows after those of the position.
-    std::vector<double> beside(const std::vector<double>& fine, double age) const {
+    /// At the moments of the tap's readings, which follow those of the position.
+    std::vector<double> beside(const drive_model& d, const std::vector<double>& fine) const {
         const auto last = static_cast<double>(fine.size() - 1);
+        const auto at = [&](double part) { return between(fine, std::clamp(part, 0.0, last)); };
+        const auto steps = steps_at_tap(d);
         std::vector<double> out(measured.size(), 0.0);
-        for (std::size_t k = 0; k < out.size(); ++k)
-            if (!is_off(k))
-                out[k] = measured[k] -
-                         between(fine, std::clamp((static_cast<double>(k) + age) * parts - 0.5, 0.0, last));
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            if (is_off(k)) continue;
+            const double reading = (static_cast<double>(k) + d.read.age / period) * parts - 0.5;
+            double law = 0;
+            if (d.read.tap == tap_reading::row_mean)
+                for (std::size_t i = 0; i < parts; ++i) law += at(reading + 0.5 + static_cast<double>(i)) / parts;
+            else
+                law = at(reading);
+            if (!steps.empty()) law = std::clamp(law + steps[k], -d.force_limit, d.force_limit);
+            out[k] = measured[k] - law;
+        }
+        return out;
+    }
+    /// What a drive with a velocity loop gives more at the readings of its tap than on average around them,
+    /// because its set-points arrive in steps [N]; empty: nothing.
+    std::vector<double> steps_at_tap(const drive_model& d) const {
+        if (d.kind == drive_kind::position_servo || d.read.tap == tap_reading::row_mean) return {};
+        constexpr double moment = 1e-6; // of a row
+        const double before = d.read.tap == tap_reading::before_set_point ? moment : 0,
+                     scale = in_volts ? d.velocity_per_V : 1;
+        const auto points = follows(d, parts);
+        set_point_clock clock(d, set_point, period);
+        std::vector<double> out(measured.size());
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);
+            const auto now = clock.between(row - before, row - before + moment);
+            const double step = now.value - between(points->value, part),
+                         turn = now.velocity / period - between(points->velocity, part);
+            out[k] = d.velocity_gain * (d.kind == drive_kind::velocity
+                                            ? scale * step
+                                            : d.position_gain * step + d.velocity_feedforward * turn);
+        }
         return out;
     }
     /// use(row, entry, set-point, its velocity [a second], position, velocity).
@@ -316,8 +347,12 @@ private:
     }
     std::vector<double> force(const drive_model& d) const {
         std::vector<double> out(position.size() * parts, 0.0);
-        const position_loop<> law(d.position_loop_numbers(), period / parts, already_checked());
-        const velocity_loop<> inner(d.position_loop_numbers().velocity, period / parts, already_checked());
+        auto numbers = d.position_loop_numbers();
+        // The loop adds an error to its integral before it gives it: of a part's, half is too much on average.
+        numbers.velocity.gain =
+            std::max(0.0, numbers.velocity.gain - numbers.velocity.integral * period / parts / 2);
+        const position_loop<> law(numbers, period / parts, already_checked());
+        const velocity_loop<> inner(numbers.velocity, period / parts, already_checked());
         const double scale = in_volts ? d.velocity_per_V : 1;
         auto s = velocity_loop<>::state::at(velocity[0], d.start_force);
         each_part(d, [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {

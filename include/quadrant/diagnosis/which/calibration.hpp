@@ -6,22 +6,27 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-/// The force that the velocity loop inside a drive holds at the first row: no file can know it.
-inline parameter start_of_drive(const record_scales& scale) {
+/// The force that the velocity loop inside a drive holds at the first row: no file can know it. `most`: of the
+/// record [N].
+inline parameter start_of_drive(double most) {
     return {.key = "start_force",
             .of = [](plant_model& p) -> double& { return p.drive.start_force; },
             .start = 0,
-            .low = -scale.command,
-            .high = scale.command,
-            .step = 1e-3 * scale.command,
+            .low = -most,
+            .high = most,
+            .step = 1e-3 * most,
             .expected = 0,
-            .spread = scale.command};
+            .spread = most};
 }
 
-/// When the position and what was measured behind the drive were read within a row: registers are read one
-/// after the other, before or after the drive takes the row's set-point. Each moment may be off by up to a row.
-/// They begin where the drive that is given has them.
-QUADRANT_DIAGNOSIS_DECL std::array<parameter, 2> timing_of_readings(const drive_model& d, double period);
+/// When the position and what was measured behind the drive were read within a row, each up to a row off, where
+/// registers are read one after the other, before or after the drive takes the row's set-point. They begin
+/// where the drive that is given has them. None of a drive that takes all readings at once: a moment of its own
+/// would be told from no delay of the set-points.
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> timing_of_readings(const drive_model& d, double period);
+/// Both of this record: what a search frees beside the machine's own numbers.
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> numbers_of_record(const plant_model& described,
+                                                                 const axis_record& record);
 /// Whether a fitted number belongs to the record, not to the machine.
 inline bool is_of_record(const parameter& p) {
     return p.key == "start_force" || p.key == "reading_age" || p.key == "tap_lateness";

@@ -3,7 +3,8 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-QUADRANT_DIAGNOSIS_DECL std::array<parameter, 2> timing_of_readings(const drive_model& d, double period) {
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> timing_of_readings(const drive_model& d, double period) {
+    if (!d.reads_in_turn()) return {};
     const auto within_a_row = [&](const char* key, double& (*of)(plant_model&), double start) {
         return parameter{.key = key,
                          .of = of,
@@ -16,9 +17,20 @@ QUADRANT_DIAGNOSIS_DECL std::array<parameter, 2> timing_of_readings(const drive_
     };
     return {
         within_a_row(
-            "reading_age", [](plant_model& p) -> double& { return p.drive.reading_age; }, d.reading_age),
+            "reading_age", [](plant_model& p) -> double& { return p.drive.read.age; }, d.read.age),
         within_a_row(
-            "tap_lateness", [](plant_model& p) -> double& { return p.drive.tap_lateness; }, d.tap_lateness)};
+            "tap_lateness", [](plant_model& p) -> double& { return p.drive.read.tap_lateness; },
+            d.read.tap_lateness)};
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> numbers_of_record(const plant_model& described,
+                                                                 const axis_record& record) {
+    std::vector<parameter> out;
+    if (described.drive.has_integral())
+        out.push_back(start_of_drive(described.force_constant * record.scale.command));
+    if (record.observer.drive && record.observer.drive->tapped())
+        for (parameter& p : timing_of_readings(described.drive, record.period)) out.push_back(std::move(p));
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give) {

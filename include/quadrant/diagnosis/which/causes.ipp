@@ -445,6 +445,15 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
                        [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
+/// Whether what was found of an effect says no more than that the machine follows another law than the file's:
+/// the described number is in the interval of its value, which is as wide as other laws of it read otherwise.
+inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
+    if (!found.described || !(e.by_another_law > 1)) return false;
+    const estimate& value = found.parameters.front().values.front();
+    const double described = e.read(as_given).front().values.front();
+    return value.low <= described && described <= value.high;
+}
+
 /// Whether the record leaves the frequency or the period of a cause open: its interval is as wide to either
 /// side as the value, so that none of a shorter period is distinguished from it.
 inline bool is_undetermined(const std::vector<parameter_estimate>& values) {
@@ -515,7 +524,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
         if ((of_laws && like_friction) || c.is_error_of_its_law(e) || undetermined ||
-            detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e))
+            detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
+            detail::is_as_described(named, e, as_given))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }

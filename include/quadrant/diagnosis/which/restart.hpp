@@ -15,13 +15,16 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
         plant.drive.start_force = -plant.static_force(record.position[0]); // what a drive at rest holds
         // What drifts says nothing of where it began.
         if (record.observer.drift_pole == 1)
-            plant = fitter(record.observer, record.score).fit(plant, {start_of_drive(record.scale)}, 4).plant;
+            plant = fitter(record.observer, record.score)
+                        .fit(plant, {start_of_drive(plant.force_constant * record.scale.command)}, 4)
+                        .plant;
     }
     if (record.observer.drive && record.observer.drive->tapped()) {
-        plant.drive.reading_age = record.reading_age;
-        plant.drive.tap_lateness = record.tap_lateness;
+        const tap_reading tap = plant.drive.read.tap; // of the drive, not of a record
+        plant.drive.read = record.read;
+        plant.drive.read.tap = tap;
         const auto timing = timing_of_readings(plant.drive, record.period);
-        plant = fitter(record.observer, record.score).fit(plant, {timing.begin(), timing.end()}, 4).plant;
+        if (!timing.empty()) plant = fitter(record.observer, record.score).fit(plant, timing, 4).plant;
     }
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);

@@ -4,28 +4,51 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+namespace detail {
+
+/// The way in which the tap is read with which the described machine, calibrated, gives least otherwise: by the
+/// median over the rows, in which an effect that acts in a part of them has no say.
+inline tap_reading best_tap(const fitter& fit, const driven_motion& drive, plant_model described,
+                            const std::vector<parameter>& own) {
+    constexpr int steps = 6; // of a fit: the ways differ by more than its last digits
+    tap_reading best = described.drive.read.tap;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto way :
+         {tap_reading::before_set_point, tap_reading::after_set_point, tap_reading::row_mean}) {
+        described.drive.read.tap = way;
+        auto size = drive.run(fit.fit(described, own, steps).plant.drive).beside;
+        for (double& e : size) e = std::abs(e);
+        const double left = quantile(std::move(size), 0.5);
+        if (left < least) best = way;
+        least = std::min(least, left);
+    }
+    return best;
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL search::search(const axis_record& record, const axis_description& axis,
                                        exclusions excluded, rules r, progress tell)
     : record_(record), axis_(axis), excluded_(std::move(excluded)), rules_(r), tell_(std::move(tell)) {
     given_.fit.plant = plant_model(axis, record.scale.give());
-    given_.fit.plant.drive.reading_age = record.reading_age;
-    given_.fit.plant.drive.tap_lateness = record.tap_lateness;
+    given_.fit.plant.drive.read = record.read;
     given_.fit.parameters = {};
     given_.fit.x = Eigen::VectorXd(0);
     const fitter fit(record.observer, record.score);
-    fit.evaluate(given_.fit);
-    given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
     candidate start;
-    start.fit.plant = given_.fit.plant;
     start.fit.parameters = calibration(axis, record.scale.give());
     // In the unit of a score that counts in full. Described numbers lie nearer the middle of their tolerance
     // than its ends: a triangle, of half the variance.
     if (record.closed())
         for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(2 * score_temperature);
-    if (start.fit.plant.drive.has_integral()) start.fit.parameters.push_back(start_of_drive(record.scale));
-    if (record.observer.drive && record.observer.drive->tapped())
-        for (parameter& p : timing_of_readings(start.fit.plant.drive, record.period))
-            start.fit.parameters.push_back(std::move(p));
+    for (parameter& p : numbers_of_record(given_.fit.plant, record))
+        start.fit.parameters.push_back(std::move(p));
+    if (record.taps_force(given_.fit.plant.drive))
+        given_.fit.plant.drive.read.tap =
+            detail::best_tap(fit, *record.observer.drive, given_.fit.plant, start.fit.parameters);
+    start.fit.plant = given_.fit.plant;
+    fit.evaluate(given_.fit);
+    given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
     start.fit.x.resize(static_cast<Eigen::Index>(start.fit.parameters.size()));
     for (std::size_t i = 0; i < start.fit.parameters.size(); ++i)
         start.fit.x[static_cast<Eigen::Index>(i)] =
