@@ -15,8 +15,8 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// The bytes of the elements of a dataset: in its header, in one piece or in chunks, which may have gone through
-/// filters.
+/// The bytes of the elements of a dataset: in its header, in one piece or in chunks, which may have gone
+/// through filters.
 class hdf5_elements {
 public:
     explicit hdf5_elements(const hdf5_bytes& file) : file_(file) {}
