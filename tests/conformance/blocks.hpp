@@ -552,6 +552,18 @@ concept linear = requires(const Block& b) {
     b.response(1_Hz);
 };
 
+/// A number that the compiler cannot know: with -ffast-math it may work out one operation with a NaN or an
+/// overflow that it sees as anything at all, and then it would be the test that has no number to give.
+template <class Real> Real unknown(Real x) {
+    volatile Real hidden = x;
+    return hidden;
+}
+/// One sample, always by the same piece of code: with -ffast-math two of them may round differently, and
+/// outputs that are compared bit for bit would differ for no fault of the block.
+template <class Block, class... X> [[gnu::noinline]] auto one_sample(Block& block, X... x) {
+    return block(x...);
+}
+
 /// Repeatable input between -amplitude and amplitude in steps of 1/1024: exact in float, and never at a switch
 /// of a block.
 class noise {

@@ -15,7 +15,7 @@ namespace {
 template <class Real, class Source> std::vector<Real> outputs(Source& source, int samples = 200) {
     std::vector<Real> y;
     for (int k = 0; k < samples; ++k) {
-        const auto out = source();
+        const auto out = one_sample(source);
         if constexpr (requires { out.y; }) {
             y.push_back(Real(out.x.value()));
             y.push_back(Real(out.y.value()));

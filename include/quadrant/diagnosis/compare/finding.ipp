@@ -35,7 +35,7 @@ inline bool shrinks(const fit_of_log& more, const fit_of_log& less, const rules&
 }
 
 /// How probable a name can be with which `all` leaves less than `without`: what no name explains in the other
-/// log may be what this name stands for here; and no law of what both have is right to more than a few per cent.
+/// log may be what this name stands for here; and no law that both have is right to more than a few per cent.
 inline double at_most_probable(const direction& d, const fit_of_log& reference, const fit_of_log& without,
                                const fit_of_log& all) {
     const double explained = taken_off(without, all);
