@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // What holds of every source: a block without an input, stepped by time alone.
-#include "blocks.hpp"
+#include "sources.hpp"
 
 #include <doctest/doctest.h>
 

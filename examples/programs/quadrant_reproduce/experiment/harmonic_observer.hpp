@@ -5,6 +5,7 @@
 #include "harmonics.hpp"
 
 #include <Eigen/Dense>
+#include <fmt/format.h>
 
 namespace quadrant_reproduce {
 
