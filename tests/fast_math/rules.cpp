@@ -9,6 +9,7 @@
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
+#include <quadrant/observer/maxwell_slip_observer.hpp>
 #include <quadrant/plant/flexible_modes.hpp>
 
 #include <doctest/doctest.h>
@@ -61,6 +62,17 @@ TEST_CASE("-ffast-math: every rule refuses a NaN, and an infinity where it has t
     CHECK(refuses([&] { require_positive("a.b", infinity); }));
     CHECK(refuses([&] { butterworth<s::force>({infinity * 1_Hz}, T); }));
     require_positive("a.b", 3.0);
+    const auto learning_up_to = [&](double highest) { // times the believed level of the friction
+        using observer = maxwell_slip_observer<1>;
+        observer::parameters p;
+        p.friction = {{122_N, 177_N, 22_mmps, 850_N / 1_mps}, {1.0}, {}, {6.1e6 * 1_N / 1_m}, 4000_N / 1_s};
+        p.settles_in = 300_ms;
+        p.highest = highest;
+        observer(p, T);
+    };
+    CHECK_FALSE(refuses([&] { learning_up_to(2); }));
+    CHECK(refuses([&] { learning_up_to(no_number); }));
+    CHECK(refuses([&] { learning_up_to(infinity); }));
 }
 TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative that is not finite is caught") {
     using D = dual<2>;

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block; taken apart, g++ makes two instructions more of its step (sh benchmarks/callgrind.sh).
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../base/lanes/lane_by_lane.hpp"
 #include "../base/standstill.hpp"
+#include "cubic_weights.hpp"
 #include "cycle_change.hpp"
 #include "fir.hpp"
-#include "repetitive_lanes.hpp"
-#include "repetitive_reader.hpp"
 
 #include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <numbers>
+#include <type_traits>
 
 namespace quadrant::inline v0 {
+
+namespace detail {
+template <std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps>
+concept repeats = Order >= 1 && LearningTaps >= 1 && SmoothingTaps % 2 == 1;
+} // namespace detail
 
 /// Repetitive memory loop: learns, cycle after cycle, what to add to the position error so that an error that
 /// returns with the same cycle (a circle, a turning cutter) dies out.
@@ -62,9 +69,14 @@ public:
             number(1)}; ///< w[1] first; their sum 1 lets nothing of the cycle through
         std::array<number, LearningTaps> learning{number(1)}; ///< L, the tap `ahead` samples ahead first
         std::size_t ahead = 0;                                ///< below LearningTaps
-        std::array<number, SmoothingTaps> smoothing =
-            detail::only_the_middle<number, SmoothingTaps>(); ///< Q, symmetric
-        duration fade{};                                      ///< of a change of cycle; 0: one cycle
+        std::array<number, SmoothingTaps> smoothing = only_the_middle(); ///< Q, symmetric
+        duration fade{};                                                 ///< of a change of cycle; 0: one cycle
+
+        static constexpr std::array<number, SmoothingTaps> only_the_middle() {
+            std::array<number, SmoothingTaps> q{};
+            q[SmoothingTaps / 2] = number(1);
+            return q;
+        }
     };
     /// The cycles that were learnt, and the samples that are inside the filters.
     struct state {
@@ -81,7 +93,7 @@ public:
         require_not_negative<Real>("repetitive.fade", p.fade);
         require(p.ahead < LearningTaps, "repetitive.ahead", double(p.ahead),
                 "must be below the taps of learning (" + detail::shortest(double(LearningTaps)) + ")");
-        const double least = double(shortest(p.ahead)), cycles = detail::plain(p.cycle) / period.value();
+        const double least = double(p.ahead + half + 2), cycles = detail::plain(p.cycle) / period.value();
         require(detail::cycle_change<number>::fits(cycles, least, double(Capacity)), "repetitive.cycle",
                 p.cycle,
                 "must lie between " + detail::shortest(least * period) +
@@ -137,7 +149,7 @@ public:
     /// Of what repeats, from the next step on; see above.
     void cycle(quantity<si::time, number> d) noexcept {
         if (none(finite(d))) return out_.raise();
-        if (cycle_.ask(d.value() / number(period_.value()), double(shortest(given_.ahead)), double(Capacity),
+        if (cycle_.ask(d.value() / number(period_.value()), double(given_.ahead + half + 2), double(Capacity),
                        state_.fading > 0))
             start();
     }
@@ -169,8 +181,7 @@ public:
         return l * memory * q / (1.0 - memory * q);
     }
     bool integrates() const noexcept { ///< has a pole at z = 1
-        return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <=
-               detail::rounding_of_a_sum<Real>(SmoothingTaps);
+        return std::abs(detail::plain(smoothing_.sum()) * detail::plain(sum(weights_)) - 1) <= whole_tolerance;
     }
     bool fading() const noexcept { return state_.fading > 0; }
     bool limited() const noexcept { return cycle_.limited(); } ///< the last cycle(d) lay outside the range
@@ -179,13 +190,36 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
-    using memory_reader = detail::memory_reader<Real, Order>;
+    template <signal_tag S, std::size_t C, std::size_t O, std::size_t L, std::size_t Q, class R>
+    requires detail::repeats<O, L, Q>
+    friend class repetitive; // the one in lanes takes its cycle apart the same way
+
+    static constexpr double whole_tolerance = ///< of the sum of a Q and weights that let nothing through
+        16 * double(SmoothingTaps) * (sizeof(Real) < sizeof(double) ? 6e-8 : 1.1e-16);
     static constexpr std::size_t size_p = Order * Capacity + 2;
 
-    /// The least cycle in periods: look-ahead of learning and smoothing, and two.
-    static constexpr std::size_t shortest(std::size_t ahead) noexcept { return ahead + half + 2; }
+    /// Which samples of p make r, and how much of each.
+    struct memory_reader {
+        std::array<std::size_t, Order> oldest{}; ///< of the four: how far before the coming p
+        std::array<std::array<Real, 4>, Order> weight{};
+    };
     memory_reader reader(number periods) const noexcept {
-        return memory_reader::at(periods, given_.weights, shortest(given_.ahead), Capacity);
+        return reader_for(periods, given_.weights, given_.ahead);
+    }
+    static memory_reader reader_for(number periods, const std::array<number, Order>& weights,
+                                    std::size_t ahead) noexcept {
+        const number least(double(ahead + half + 2)), most{double(Capacity)};
+        if (detail::plain(periods) < detail::plain(least)) periods = least; // by rounding
+        if (detail::plain(periods) > detail::plain(most)) periods = most;
+        memory_reader out;
+        for (std::size_t i = 0; i < Order; ++i) {
+            const number delay = number(double(i + 1)) * periods;
+            const double whole = std::floor(detail::plain(delay));
+            const auto cubic = detail::cubic_weights(number(delay - number(whole)));
+            out.oldest[i] = std::size_t(whole) - ahead - half + 2;
+            for (std::size_t j = 0; j < 4; ++j) out.weight[i][j] = Real(weights[i] * cubic[j]);
+        }
+        return out;
     }
     value read(const memory_reader& from) const noexcept {
         value all{};
@@ -203,11 +237,26 @@ private:
         old_reader_ = reader_;
         reader_ = reader(cycle_.periods());
     }
+    /// What a memory at rest holds: m = e + r, r, and its output.
+    struct standing {
+        value m{}, r{}, y{};
+    };
+    /// At the input x, or, where any output may stand at one input or `has_output`, at the output y. `gain`:
+    /// sum of L; g: of Q and the weights.
+    static standing at_rest(value x, value y, bool has_output, const Real& gain, const Real& g) noexcept {
+        const bool any_output = std::abs(detail::plain(g) - 1) <= whole_tolerance;
+        if ((has_output || any_output) && detail::plain(gain) != 0 && detail::plain(g) != 0) {
+            const value r = y / gain;
+            return {r / g, r, y};
+        }
+        if (any_output) return {};
+        const value r = g / (Real(1) - g) * x;
+        return {x + r, r, gain * r};
+    }
     void stand(value x, value y, bool has_output) noexcept {
         if (none(finite(x, y))) return out_.raise();
         const Real q = smoothing_.sum();
-        const auto now = detail::memory_at_rest(x, y, has_output, learning_.sum(), q * sum(weights_),
-                                                detail::rounding_of_a_sum<Real>(SmoothingTaps));
+        const standing now = at_rest(x, y, has_output, learning_.sum(), q * sum(weights_));
         const value p = q * now.m;
         if (none(finite(now.m, p, now.r, now.y))) return out_.raise();
         state_.m.x.fill(now.m), state_.p.fill(p), state_.r.x.fill(now.r);
@@ -234,16 +283,69 @@ private:
     held_output<value> out_;
 };
 
+namespace detail {
+/// Parameters of several memories in lanes: as those of one, each for all lanes; `ahead` and `fade` are common
+/// to them.
+template <class One, std::size_t Order, std::size_t LearningTaps, std::size_t SmoothingTaps, class Real>
+struct repetitive_lanes {
+    using single = typename One::number;
+
+    quantity<si::time, Real> cycle;
+    std::array<Real, Order> weights{Real(1)};
+    std::array<Real, LearningTaps> learning{Real(1)};
+    std::size_t ahead = 0;
+    std::array<Real, SmoothingTaps> smoothing = only_the_middle();
+    duration fade{};
+
+    static std::array<Real, SmoothingTaps> only_the_middle() {
+        std::array<Real, SmoothingTaps> q{};
+        q[SmoothingTaps / 2] = Real(1);
+        return q;
+    }
+    /// Those of lane i.
+    typename One::parameters of(std::size_t i) const {
+        const auto taps = [i](const auto& from) {
+            std::array<single, std::tuple_size_v<std::remove_cvref_t<decltype(from)>>> out;
+            for (std::size_t k = 0; k < out.size(); ++k) out[k] = single(lane(from[k], i));
+            return out;
+        };
+        return {in_real<single>(lane(cycle, i)), taps(weights), taps(learning), ahead, taps(smoothing), fade};
+    }
+};
+} // namespace detail
+
 /// In lanes: each lane has its own cycle, weights and filters, and the call loops over the lanes.
 template <signal_tag Signal, std::size_t Capacity, std::size_t Order, std::size_t LearningTaps,
           std::size_t SmoothingTaps, several_lanes Real>
 requires detail::repeats<Order, LearningTaps, SmoothingTaps> &&
     (!steps_together<Real>)class repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, Real>
-    : public detail::repetitive_lane_by_lane<
-          repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>, Order,
-          LearningTaps, SmoothingTaps, Real> {
+    : public lane_by_lane<
+          repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>, Real> {
+    using one = repetitive<Signal, Capacity, Order, LearningTaps, SmoothingTaps, typename Real::single>;
+
+    using single = typename Real::single;
+
 public:
-    using repetitive::repetitive_lane_by_lane::repetitive_lane_by_lane;
+    using parameters = detail::repetitive_lanes<one, Order, LearningTaps, SmoothingTaps, Real>;
+    repetitive(const parameters& p, duration period)
+        : lane_by_lane<one, Real>([&](std::size_t i) { return p.of(i); }, period), given_(p) {}
+    using lane_by_lane<one, Real>::settle;
+    void settle(typename repetitive::argument x, typename repetitive::value y) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i)
+            this->of(i).settle(in_real<single>(lane(x, i)), in_real<single>(lane(y, i)));
+    }
+    /// Of what repeats in each lane, from the next step on.
+    void cycle(quantity<si::time, Real> d) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).cycle(in_real<single>(lane(d, i)));
+    }
+    void retune(const repetitive& next) noexcept {
+        for (std::size_t i = 0; i < lane_count<Real>; ++i) this->of(i).retune(next.of(i));
+        given_ = next.given_;
+    }
+    const parameters& given() const noexcept { return given_; }
+
+private:
+    parameters given_;
 };
 
 } // namespace quadrant::inline v0

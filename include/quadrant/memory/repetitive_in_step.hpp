@@ -83,8 +83,8 @@ public:
     /// Of what repeats in each lane, from the next step on; see `repetitive`.
     void cycle(quantity<si::time, Real> d) noexcept {
         if (!all(d.value().finite_mask())) return out_.raise();
-        if (cycle_.ask(d.value() / Real(period_.value()), double(shortest()), double(Capacity),
-                       state_.fading > 0))
+        if (cycle_.ask(d.value() / Real(period_.value()), double(given_.ahead + one::half + 2),
+                       double(Capacity), state_.fading > 0))
             start();
     }
     void retune(const repetitive& next) noexcept {
@@ -110,8 +110,7 @@ public:
     const state& now() const noexcept { return state_; }
 
 private:
-    static constexpr std::size_t size_p = Order * Capacity + 2;
-    std::size_t shortest() const noexcept { return given_.ahead + one::half + 2; } ///< cycle in periods
+    static constexpr std::size_t size_p = one::size_p;
 
     /// Which samples of p make r in each lane, and how much of each; where all lanes read the same ones, in one
     /// go.
@@ -123,8 +122,7 @@ private:
     memory_reader reader(const Real& periods) const noexcept {
         memory_reader out;
         for (std::size_t i = 0; i < W; ++i) {
-            const auto of_one = detail::memory_reader<double, Order>::at(periods[i], lane(given_.weights, i),
-                                                                         shortest(), Capacity);
+            const auto of_one = one::reader_for(periods[i], lane(given_.weights, i), given_.ahead);
             for (std::size_t k = 0; k < Order; ++k) {
                 out.oldest[k][i] = of_one.oldest[k];
                 out.alike = out.alike && out.oldest[k][i] == out.oldest[k][0];
@@ -174,9 +172,8 @@ private:
         const Real gain = learning_.sum(), q = smoothing_.sum();
         for (std::size_t i = 0; i < W; ++i) {
             using level = typename one::value;
-            const auto of_one =
-                detail::memory_at_rest(level::from_value(x[i]), level::from_value(y[i]), has_output, gain[i],
-                                       q[i] * weights[i], detail::rounding_of_a_sum<double>(SmoothingTaps));
+            const auto of_one = one::at_rest(level::from_value(x[i]), level::from_value(y[i]), has_output,
+                                             gain[i], q[i] * weights[i]);
             to_m.set(i, of_one.m.value());
             to_r.set(i, of_one.r.value());
             to_y.set(i, of_one.y.value());
