@@ -6,6 +6,7 @@
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/filter/butterworth.hpp>
+#include <quadrant/filter/edge_velocity.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
@@ -81,6 +82,8 @@ TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative 
         CHECK(holds(butterworth<s::force>({100_Hz}, T), bad));
         CHECK(holds(lowpass<s::force>({100_Hz}, T), bad));
         CHECK(holds(limiter<s::force>({-1_N, 1_N}, T), bad));
+        CHECK(holds(edge_velocity<s::position, s::velocity>({1_um, 5_ms, 50_ms}, T), bad));
+        CHECK(holds(edge_velocity<s::position, s::velocity, float>({1_um, 5_ms, 50_ms}, T), float(bad)));
         CHECK(holds(flexible_modes<1>({340_kg, {{{47_Hz, 0.1, 0.2}}}}, T), bad));
         CHECK(holds(
             disturbance_observer<s::voltage>({60_Hz, axis_model<s::voltage>{4_mps2 / 1_V, 20.0 / 1_s}}, T),

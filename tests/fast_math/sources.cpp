@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
-// Compiled with -O3 -ffast-math: what holds of every source.
+// With QUADRANT_TESTS=all. Compiled with -O3 -ffast-math: what holds of every source.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
