@@ -1,68 +1,17 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "entry.hpp"
 #include "motion_blocks.hpp"
 
-#include <quadrant/base/literals.hpp>
 #include <quadrant/quadrant.hpp>
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string>
 #include <tuple>
 
 /// Every block of the library, once. A block is not finished until it has its line in `blocks`, which buys it
-/// all
-/// cases of this folder: reset, settle, copies, zero, allocation, NaN, extremes, linearity, number types,
+/// all cases of this folder: reset, settle, copies, zero, allocation, NaN, extremes, linearity, number types,
 /// derivatives, response.
 namespace conformance {
 
-using namespace quadrant;
-using namespace quadrant::literals;
-inline const duration T = 500_us;
-inline constexpr std::size_t most_parameters = 8;
-
-/// Hands out the parameters of a block under test, numbered in the order of the calls. For a dual the number i
-/// is the variable i; else the one that is `bumped` is scaled, for a difference quotient. `fixed` is for what
-/// has no derivative. Of all calls together the one that is `replaced` hands out another number.
-template <class Real> struct values {
-    std::size_t bumped = std::size_t(-1);
-    double factor = 1;
-    std::size_t replaced = std::size_t(-1);
-    double by = 0;
-    std::size_t count = 0, calls = 0;
-    std::array<double, most_parameters> given{};
-
-    template <class Unit> quantity<Unit, parameter_real<Real>> operator()(quantity<Unit> q) {
-        return quantity<Unit, parameter_real<Real>>::from_value((*this)(q.value()));
-    }
-    parameter_real<Real> operator()(double q) {
-        const std::size_t i = count++;
-        given.at(i) = q;
-        q = now(q);
-        if constexpr (std::is_floating_point_v<Real>)
-            return i == bumped ? factor * q : q;
-        else
-            return Real::variable(q, i);
-    }
-    parameter_real<Real> fixed(double q) { return parameter_real<Real>(now(q)); }
-    template <class Unit> quantity<Unit, parameter_real<Real>> fixed(quantity<Unit> q) {
-        return quantity<Unit, parameter_real<Real>>::from_value(fixed(q.value()));
-    }
-
-private:
-    double now(double q) { return calls++ == replaced ? by : q; }
-};
-template <class Make> struct entry {
-    std::string name;
-    double amplitude; ///< of the input, SI; a power of two, so that float, double and dual see the same numbers
-    Make make;
-
-    template <class Real> auto operator()(values<Real> given = {}) const { return make(given); }
-};
-template <class Make> entry(const char*, double, Make) -> entry<Make>;
-
-namespace s = quadrant::signal;
 inline const std::tuple blocks{
     entry{"proportional", 0.125,
           []<class R>(values<R>& p) { return proportional<s::position, s::velocity, R>({p(150.0 / 1_s)}, T); }},
@@ -504,66 +453,9 @@ inline const std::tuple blocks{
           }},
 };
 
-/// What needs no input, once: sources.cpp holds its cases.
-inline const std::tuple sources{
-    entry{"cutting_force", 0,
-          []<class R>(values<R>& p) {
-              return cutting_force<3, R>({.fundamental = 23.294_Hz,
-                                          .scale = p(0.37_N),
-                                          .harmonics = {{p(101), p(-52), p(13)}, {p(23), p.fixed(0), p(31)}},
-                                          .entry = 20_ms},
-                                         T);
-          }},
-    entry{"white_noise", 0,
-          []<class R>(values<R>& p) {
-              return white_noise<s::velocity, R>({p(0.3_mmps), 7}, T);
-          }},
-    entry{"milling_force", 0,
-          []<class R>(values<R>& p) {
-              return milling_force<4, R>({.spindle = 12.51_Hz,
-                                          .diameter = 16_mm,
-                                          .feed_per_tooth = p(0.1_mm),
-                                          .axial_depth = p(4.1_mm),
-                                          .radial_depth = 2_mm,
-                                          .tangential = p(8.1e8 * 1_N / (1_m * 1_m)),
-                                          .radial = p(1.7e8 * 1_N / (1_m * 1_m)),
-                                          .edge_tangential = p(2.8e4 * 1_N / 1_m),
-                                          .edge_radial = p(3.1e4 * 1_N / 1_m),
-                                          .runout = p(17_um),
-                                          .runout_angle = 0.7},
-                                         T);
-          }},
-};
-template <class F> void for_each_source(F&& f) {
-    std::apply([&](const auto&... each) { (f(each), ...); }, sources);
-}
-
 /// Calls f(entry) for every block.
 template <class F> void for_each_block(F&& f) {
     std::apply([&](const auto&... each) { (f(each), ...); }, blocks);
 }
-
-/// How often this program has allocated.
-std::size_t allocated();
-
-template <class Block, class Real> using input_of = quantity_of<typename Block::input, Real>;
-template <class Block>
-concept linear = requires(const Block& b) {
-    b.response(1_Hz);
-};
-
-/// Repeatable input between -amplitude and amplitude in steps of 1/1024: exact in float, and never at a switch
-/// of a block.
-class noise {
-public:
-    explicit noise(std::uint32_t seed = 1) : x_(seed) {}
-    double operator()(double amplitude) {
-        x_ = x_ * 1664525u + 1013904223u;
-        return amplitude * (double(x_ >> 22) * 2 - 1023) / 1024;
-    }
-
-private:
-    std::uint32_t x_;
-};
 
 } // namespace conformance

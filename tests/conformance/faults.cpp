@@ -26,12 +26,6 @@ using namespace conformance;
 std::size_t conformance::allocated() { return allocations; }
 
 namespace {
-/// A number that the compiler cannot know: with -ffast-math it may work out one operation with a NaN or an
-/// overflow that it sees as anything at all, and then it would be the test that has no number to give.
-template <class Real> Real unknown(Real x) {
-    volatile Real hidden = x;
-    return hidden;
-}
 template <class Real>
 const Real bad_numbers[] = {unknown(std::numeric_limits<Real>::quiet_NaN()),
                             unknown(std::numeric_limits<Real>::infinity()),
@@ -42,9 +36,6 @@ void run(Block& block, double amplitude, std::uint32_t seed, int samples = 20) {
     noise input(seed);
     for (int k = 0; k < samples; ++k) block(input_of<Block, Real>::from_value(Real(input(amplitude))));
 }
-
-/// One sample; one piece of code for both, because with -ffast-math two of them may round differently.
-template <class Block, class X> [[gnu::noinline]] auto one_sample(Block& block, X x) { return block(x); }
 
 /// The next outputs are those of the twin, bit for bit.
 template <class Real, class Block> bool same_future(Block a, Block b, double amplitude) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // What holds of every source: a block without an input, stepped by time alone.
-#include "blocks.hpp"
+#include "sources.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@ namespace {
 template <class Real, class Source> std::vector<Real> outputs(Source& source, int samples = 200) {
     std::vector<Real> y;
     for (int k = 0; k < samples; ++k) {
-        const auto out = source();
+        const auto out = one_sample(source);
         if constexpr (requires { out.y; }) {
             y.push_back(Real(out.x.value()));
             y.push_back(Real(out.y.value()));

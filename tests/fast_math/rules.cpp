@@ -6,9 +6,11 @@
 #include <quadrant/control/limiter.hpp>
 #include <quadrant/control/proportional_integral.hpp>
 #include <quadrant/filter/butterworth.hpp>
+#include <quadrant/filter/edge_velocity.hpp>
 #include <quadrant/filter/lowpass.hpp>
 #include <quadrant/filter/notch.hpp>
 #include <quadrant/observer/disturbance_observer.hpp>
+#include <quadrant/observer/maxwell_slip_observer.hpp>
 #include <quadrant/plant/flexible_modes.hpp>
 
 #include <doctest/doctest.h>
@@ -61,6 +63,17 @@ TEST_CASE("-ffast-math: every rule refuses a NaN, and an infinity where it has t
     CHECK(refuses([&] { require_positive("a.b", infinity); }));
     CHECK(refuses([&] { butterworth<s::force>({infinity * 1_Hz}, T); }));
     require_positive("a.b", 3.0);
+    const auto learning_up_to = [&](double highest) { // times the believed level of the friction
+        using observer = maxwell_slip_observer<1>;
+        observer::parameters p;
+        p.friction = {{122_N, 177_N, 22_mmps, 850_N / 1_mps}, {1.0}, {}, {6.1e6 * 1_N / 1_m}, 4000_N / 1_s};
+        p.settles_in = 300_ms;
+        p.highest = highest;
+        observer(p, T);
+    };
+    CHECK_FALSE(refuses([&] { learning_up_to(2); }));
+    CHECK(refuses([&] { learning_up_to(no_number); }));
+    CHECK(refuses([&] { learning_up_to(infinity); }));
 }
 TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative that is not finite is caught") {
     using D = dual<2>;
@@ -69,6 +82,8 @@ TEST_CASE("-ffast-math: a NaN and an infinity change no state, and a derivative 
         CHECK(holds(butterworth<s::force>({100_Hz}, T), bad));
         CHECK(holds(lowpass<s::force>({100_Hz}, T), bad));
         CHECK(holds(limiter<s::force>({-1_N, 1_N}, T), bad));
+        CHECK(holds(edge_velocity<s::position, s::velocity>({1_um, 5_ms, 50_ms}, T), bad));
+        CHECK(holds(edge_velocity<s::position, s::velocity, float>({1_um, 5_ms, 50_ms}, T), float(bad)));
         CHECK(holds(flexible_modes<1>({340_kg, {{{47_Hz, 0.1, 0.2}}}}, T), bad));
         CHECK(holds(
             disturbance_observer<s::voltage>({60_Hz, axis_model<s::voltage>{4_mps2 / 1_V, 20.0 / 1_s}}, T),

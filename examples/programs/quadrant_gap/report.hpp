@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "gap_words.hpp"
 #include "report/axis.hpp"
 #include "report/causes.hpp"
 #include "report/overview.hpp"

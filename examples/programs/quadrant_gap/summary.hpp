@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "words.hpp"
+#include "gap_words.hpp"
 
 /// A diagnosis as text for a terminal of 100 columns.
 namespace quadrant_gap {

@@ -111,32 +111,43 @@ void check_folders(const trial_options& o, outputs& files) {
     if (!std::filesystem::is_directory(o.keep, fault)) throw bad_input(o.keep, "cannot be made a folder");
 }
 
-void run_trial(trial_options o) {
-    quadrant_page::remove_scratch_when_interrupted();
-    outputs files;
-    check_folders(o, files);
-    if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
-    const auto named = std::find(populations.begin(), populations.end(), o.population);
-    const auto of = static_cast<population>(named - populations.begin());
-    const logs how = *logs_named(o.how);
-    if (of != population::current && how != logs::plain)
-        throw bad_input("--logs", "other logs than plain ones are drawn of current drives only");
-    o.no_forecast = o.no_forecast || of != population::current; // of current drives only
-    const auto planned_machines = plan(o.seed, o.machines, of, how);
+/// Which machines of the population are diagnosed.
+std::vector<std::size_t> chosen_machines(const trial_options& o) {
     std::vector<std::size_t> chosen(o.machines);
     for (std::size_t k = 0; k < o.machines; ++k) chosen[k] = k;
     if (!o.only.empty()) chosen = o.only;
     for (const std::size_t k : chosen)
         if (k >= o.machines) throw bad_input("--only", fmt::format("there is no machine {}", k));
-    std::vector<ordered_json> truths(chosen.size());
+    return chosen;
+}
+/// Those, in the order of `chosen`. Other populations than that of current drives have no forecast.
+std::vector<drawn_files> draw_machines(trial_options& o, const std::vector<std::size_t>& chosen) {
+    const auto named = std::find(populations.begin(), populations.end(), o.population);
+    const auto of = static_cast<population>(named - populations.begin());
+    const logs how = *logs_named(o.how);
+    if (of != population::current && how != logs::plain)
+        throw bad_input("--logs", "other logs than plain ones are drawn of current drives only");
+    o.no_forecast = o.no_forecast || of != population::current;
+    const auto planned_machines = plan(o.seed, o.machines, of, how);
     progress drawn("drawn", chosen.size(), o.say);
     std::vector<drawn_files> machines(chosen.size());
     for_each_index(chosen.size(), o.jobs, [&](std::size_t k) {
         machines[k] = is_chain(of) ? files_of(draw_chain(o.seed, chosen[k], planned_machines.at(chosen[k])))
                                    : files_of(draw(o.seed, chosen[k], planned_machines.at(chosen[k])));
-        truths[k] = machines[k].truth;
         drawn();
     });
+    return machines;
+}
+
+void run_trial(trial_options o) {
+    quadrant_page::remove_scratch_when_interrupted();
+    outputs files;
+    check_folders(o, files);
+    if (o.program.empty()) o.program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const std::vector<std::size_t> chosen = chosen_machines(o);
+    std::vector<drawn_files> machines = draw_machines(o, chosen);
+    std::vector<ordered_json> truths;
+    for (const drawn_files& m : machines) truths.push_back(m.truth);
     const std::string truth = ordered_json(truths).dump(1) + "\n", digest = sha256(truth);
     if (!o.say.quiet) {
         std::fprintf(files.words(), "truth of %zu machines, seed %llu, sealed: SHA-256 %s\n", chosen.size(),

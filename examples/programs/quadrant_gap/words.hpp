@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: the vocabulary of all pages and of the terminal, one table after the other;
 // Long: sentence_of_a_linear_axis() has one sentence for each thing that can be said first.
 #pragma once
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "number_words.hpp"
 #include "quadrant/diagnosis/effect/effect_list.hpp"
 #include "quadrant/diagnosis/fit/scoring.hpp"
 #include "quadrant/diagnosis/result/result.hpp"
@@ -19,109 +19,6 @@
 /// A diagnosis in the words of a machine-tool engineer: names, numbers with units, verdict sentences.
 namespace quadrant_gap {
 using namespace quadrant::diagnosis;
-
-// ---- numbers ----
-
-inline std::string fixed(double value, int decimals) {
-    if (!std::isfinite(value)) return "-";
-    const double step = std::pow(10.0, -decimals);
-    return fmt::format("{:.{}f}", std::round(value / step) * step + 0.0,
-                       std::max(decimals, 0)); // + 0.0: no "-0"
-}
-
-/// As many decimals as a gap deserves: 124, 20.7, 2.4, 0.92, 0.0031.
-inline std::string number(double value) {
-    const double size = std::abs(value);
-    if (size == 0 || size >= 100) return fixed(value, 0);
-    return fixed(value, size >= 1 ? 1 : std::min(6, 1 - static_cast<int>(std::floor(std::log10(size)))));
-}
-
-struct scale {
-    double factor;
-    std::string_view unit;
-};
-
-/// The unit in which a value of this size is read: 2.5e-6 m is 2.5 um.
-inline scale scale_of(std::string_view unit, double size) {
-    struct step {
-        std::string_view unit;
-        double from;
-        scale shown;
-    };
-    static constexpr step steps[] = {
-        {"m", 1, {1, "m"}},
-        {"m", 1e-3, {1e3, "mm"}},
-        {"m", 1e-7, {1e6, "µm"}},
-        {"m", 1e-12, {1e9, "nm"}},
-        {"m/s", 1, {1, "m/s"}},
-        {"m/s", 1e-3, {1e3, "mm/s"}},
-        {"m/s", 1e-9, {1e6, "µm/s"}},
-        {"s", 1, {1, "s"}},
-        {"s", 1e-4, {1e3, "ms"}},
-        {"s", 1e-9, {1e6, "µs"}},
-        {"N", 1e4, {1e-3, "kN"}},
-        {"N", 0.05, {1, "N"}},
-        {"N", 1e-6, {1e3, "mN"}},
-        {"V", 0.1, {1, "V"}},
-        {"V", 1e-6, {1e3, "mV"}},
-        {"N/m", 1e6, {1e-6, "N/µm"}},
-        {"rad", 1, {1, "rad"}},
-        {"rad", 1e-3, {1e3, "mrad"}},
-        {"rad", 1e-7, {1e6, "µrad"}},
-        {"rad", 1e-12, {1e9, "nrad"}},
-        {"rad/s", 1, {1, "rad/s"}},
-        {"rad/s", 1e-3, {1e3, "mrad/s"}},
-        {"rad/s", 1e-9, {1e6, "µrad/s"}},
-        {"N m", 1e4, {1e-3, "kN m"}},
-        {"N m", 0.05, {1, "N m"}},
-        {"N m", 1e-6, {1e3, "mN m"}},
-        {"N m/rad", 1e6, {1e-6, "N m/µrad"}},
-        {"phase", 0, {57.29577951308232, "deg"}},
-        {"%", 0, {100, "%"}},
-    };
-    for (const step& s : steps)
-        if (s.unit == unit && std::abs(size) >= s.from) return s.shown;
-    return {1, unit};
-}
-
-inline std::string with_unit(std::string text, std::string_view unit) {
-    return unit.empty() ? text : fmt::format("{} {}", text, unit);
-}
-
-inline std::string quantity(double value, std::string_view unit) {
-    const scale s = scale_of(unit, value);
-    return with_unit(number(value * s.factor), s.unit);
-}
-
-/// "20.7 → 2.4 N", both in the unit of the larger.
-inline std::string change(double before, double after, std::string_view unit) {
-    const scale s = scale_of(unit, std::max(std::abs(before), std::abs(after)));
-    return fmt::format("{} → {} {}", number(before * s.factor), number(after * s.factor), s.unit);
-}
-
-/// "20.3 N (19.9 to 20.7)": the digits are those that the 95 % interval leaves.
-inline std::string interval(const estimate& e, std::string_view unit) {
-    if (!(e.high > e.low)) return quantity(e.value, unit);
-    const scale s = scale_of(unit, std::max({std::abs(e.value), std::abs(e.low), std::abs(e.high)}));
-    const double half_width = (e.high - e.low) * s.factor / 2;
-    const int decimals = std::min(9, -static_cast<int>(std::floor(std::log10(half_width / 1.999))));
-    return fmt::format("{} ({} to {})", with_unit(fixed(e.value * s.factor, decimals), s.unit),
-                       fixed(e.low * s.factor, decimals), fixed(e.high * s.factor, decimals));
-}
-
-inline std::string percent(double share) { return fmt::format("{} %", fixed(100 * share, 0)); }
-
-inline std::string percent(const estimate& e) {
-    if (!(e.high > e.low)) return percent(e.value);
-    return fmt::format("{} ({} to {})", percent(e.value), fixed(100 * e.low, 0), fixed(100 * e.high, 0));
-}
-
-/// A probability is never said to be 0 or 1.
-inline std::string probability(double p) {
-    if (p > 0.99) return "> 99 %";
-    if (p < 0.01) return "< 1 %";
-    return percent(p);
-}
 
 // ---- names ----
 
@@ -305,94 +202,5 @@ inline std::string verdict_sentence(const diagnosis_result& d) {
                          [](const axis_result& a, const axis_result& b) { return a.verdict < b.verdict; });
     return worst == d.axes.end() ? "The log has no axis." : sentence(d, *worst);
 }
-
-/// What the causes leave of the gap. In energy: 1 % of it is a tenth of the rms value.
-inline std::string unexplained_share(const diagnosis_result& d) {
-    if (!(d.share_unexplained > 0)) return "Nothing that matters.";
-    return fmt::format("{} of the gap's energy (the square of its rms value) stays unexplained.",
-                       d.share_unexplained < 0.005 ? "Less than 1 %" : percent(d.share_unexplained));
-}
-
-inline std::string experiment_gain(const experiment& e) {
-    if (e.expected_gain <= 0) return "";
-    const double score = e.expected_gain / score_temperature; // as the probabilities are weighed
-    return fmt::format("Expected to separate them by a log-score of {} or more, odds of {} to 1.",
-                       number(e.expected_gain), score > 7 ? "more than 1000" : number(std::exp(score)));
-}
-
-/// What is said below the motion, a sentence a line.
-inline std::vector<std::string> experiment_lines(const experiment& e) {
-    std::vector<std::string> out;
-    if (!e.separates.empty() && !e.motion.starts_with("none"))
-        out.push_back(fmt::format("{} {}{}.", e.expected_gain > 0 ? "It separates" : "It is meant to separate",
-                                  named(e.separates, "and"), e.axis.empty() ? "" : ", axis " + e.axis));
-    if (e.expected_gain > 0) out.push_back(experiment_gain(e));
-    if (!e.finding.empty()) out.push_back(capital(e.finding) + ".");
-    return out;
-}
-
-inline bool closed_loop(const axis_result& a) { return !a.signals.simulated_position_before.empty(); }
-
-struct gap_row {
-    std::string name, before, after, floor;
-};
-
-/// The gap that a cause takes off, before and after: in force, or where two positions were compared, in
-/// position.
-inline std::string gap_of(const cause& c, const axis_voice& voice) {
-    if (c.gap_before_force_rms_N.value == 0 && c.gap_before_position_rms_m.value > 0)
-        return "position gap " +
-               change(c.gap_before_position_rms_m.value, c.gap_after_position_rms_m.value, voice("m"));
-    return voice("force") + " gap " +
-           change(c.gap_before_force_rms_N.value, c.gap_after_force_rms_N.value, voice("N"));
-}
-
-/// In the order in which an engineer asks; a row is in the unit of its first number.
-inline std::vector<gap_row> gap_rows(const axis_result& a) {
-    const gap_numbers &b = a.gap, &c = a.gap_after;
-    const axis_voice voice = voice_of(a);
-    const auto row = [&](std::string_view name, double before, double after, const std::string& unit) {
-        const scale s = scale_of(unit, before);
-        return gap_row{voice(name), fmt::format("{} {}", number(before * s.factor), s.unit),
-                       fmt::format("{} {}", number(after * s.factor), s.unit), ""};
-    };
-    if (a.positions_only) {
-        std::vector<gap_row> of_positions{
-            row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")),
-            row("position, peak", b.position_peak_m, c.position_peak_m, voice("m"))};
-        of_positions[0].floor = quantity(b.noise_floor_position_rms_m, voice("m"));
-        return of_positions;
-    }
-    std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, voice("N"))};
-    rows[0].floor = quantity(b.noise_floor_force_rms_N, voice("N"));
-    if (!closed_loop(a)) return rows;
-    rows.push_back(row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")));
-    rows.push_back(row("position, peak", b.position_peak_m, c.position_peak_m, voice("m")));
-    rows.push_back(row("command, rms", b.command_rms_V, c.command_rms_V, voice.in_command_unit("V")));
-    return rows;
-}
-
-inline std::string gap_basis(const axis_result& a) {
-    if (a.positions_only)
-        return fmt::format("Difference of two positions, judged on {}. Nothing is known of forces.",
-                           a.evaluated_on);
-    return voice_of(a)("Residual force ") +
-           fmt::format(
-               "up to {}{}{}.{}", quantity(a.gap.bandwidth_Hz, "Hz"),
-               a.evaluated_on.empty() ? "" : ", judged on ", a.evaluated_on,
-               closed_loop(a) ? "" : " No closed loop was simulated: there are no position and command gaps.");
-}
-
-inline constexpr std::pair<std::string_view, std::string_view> views[] = {
-    {"block", "by box of the loop"},
-    {"readings", "between the two encoders"},
-    {"velocity", "by velocity"},
-    {"reversal", "at reversals"},
-    {"position", "along the travel"},
-    {"time", "in time"},
-    {"frequency", "by frequency"},
-    {"acceleration", "by acceleration"},
-    {"other_axis", "by the motion of the other axis"},
-};
 
 } // namespace quadrant_gap

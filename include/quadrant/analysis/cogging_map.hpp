@@ -96,6 +96,61 @@ template <signal_tag Out, signal_tag In = signal::position> struct cogging_ident
     }
 };
 
+namespace detail {
+/// The runs as the fit takes them: positions in pitches, numbers without units.
+template <signal_tag Out, signal_tag In>
+std::vector<cogging_record> cogging_records(const std::vector<cogging_run<Out, In>>& runs,
+                                            const cogging_options<In>& options) {
+    require_positive("identify_cogging.pitch", options.pitch);
+    require(options.highest >= 1, "identify_cogging.highest", double(options.highest), "must be 1 or more");
+    for (const unsigned order : options.orders)
+        require(order >= 1 && order <= options.highest, "identify_cogging.orders", double(order),
+                "must lie between 1 and highest (" + quadrant::detail::shortest(double(options.highest)) + ")");
+    for (const unsigned order : options.friction_orders)
+        require(order >= 1 && order <= options.highest, "identify_cogging.friction_orders", double(order),
+                "must lie between 1 and highest (" + quadrant::detail::shortest(double(options.highest)) + ")");
+    std::vector<cogging_record> records;
+    for (const auto& run : runs) {
+        require(run.position.size() == run.command.size() && run.position.size() >= 2,
+                "identify_cogging.position", double(run.position.size()),
+                "must hold 2 samples or more, as many as command (" +
+                    quadrant::detail::shortest(double(run.command.size())) + ")");
+        require(run.velocity.size() == (runs[0].velocity.empty() ? 0 : run.position.size()),
+                "identify_cogging.velocity", double(run.velocity.size()),
+                "must hold as many samples as position (" +
+                    quadrant::detail::shortest(double(run.position.size())) + ") in all runs, or none in all");
+        cogging_record r{{}, {}, run.velocity, run.direction};
+        for (std::size_t i = 0; i < run.position.size(); ++i) {
+            require_finite("identify_cogging.position", run.position[i]);
+            require_finite("identify_cogging.command", run.command[i]);
+            if (!run.velocity.empty()) require_finite("identify_cogging.velocity", run.velocity[i]);
+            r.turns.push_back((run.position[i] / options.pitch).value());
+            r.command.push_back(run.command[i].value());
+        }
+        if (r.direction == 0)
+            r.direction = r.turns.back() > r.turns.front() ? 1 : r.turns.back() < r.turns.front() ? -1 : 0;
+        require(r.direction == 1 || r.direction == -1, "identify_cogging.direction", double(r.direction),
+                "must be +1 or -1, or 0 for a run that ends elsewhere than it began");
+        records.push_back(std::move(r));
+    }
+    return records;
+}
+/// The strongest first; which of them the options keep.
+template <signal_tag Out, signal_tag In>
+void keep_harmonics(std::vector<cogging_harmonic<Out>> all, const cogging_options<In>& options,
+                    cogging_identification<Out, In>& out) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.amplitude.value > b.amplitude.value; });
+    for (const auto& h : all) {
+        const bool listed = std::count(options.orders.begin(), options.orders.end(), h.order) > 0;
+        const bool keep = !options.orders.empty() ? listed
+                          : options.strongest > 0 ? out.harmonics.size() < options.strongest
+                                                  : h.above_noise;
+        (keep ? out.harmonics : out.left_out).push_back(h);
+    }
+}
+} // namespace detail
+
 /// Finds the cogging of an axis from slow runs both ways, by least squares over all harmonics up to `highest`
 /// at once:
 ///   command = offset + coulomb direction + viscous velocity + sum of harmonics of the pitch
@@ -110,39 +165,8 @@ template <signal_tag Out, signal_tag In = signal::position> struct cogging_ident
 template <signal_tag Out, signal_tag In = signal::position>
 cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<Out, In>>& runs,
                                                  const cogging_options<In>& options) {
-    require_positive("identify_cogging.pitch", options.pitch);
-    require(options.highest >= 1, "identify_cogging.highest", double(options.highest), "must be 1 or more");
-    for (const unsigned order : options.orders)
-        require(order >= 1 && order <= options.highest, "identify_cogging.orders", double(order),
-                "must lie between 1 and highest (" + quadrant::detail::shortest(double(options.highest)) + ")");
-    for (const unsigned order : options.friction_orders)
-        require(order >= 1 && order <= options.highest, "identify_cogging.friction_orders", double(order),
-                "must lie between 1 and highest (" + quadrant::detail::shortest(double(options.highest)) + ")");
-    std::vector<detail::cogging_record> records;
-    for (const auto& run : runs) {
-        require(run.position.size() == run.command.size() && run.position.size() >= 2,
-                "identify_cogging.position", double(run.position.size()),
-                "must hold 2 samples or more, as many as command (" +
-                    quadrant::detail::shortest(double(run.command.size())) + ")");
-        require(run.velocity.size() == (runs[0].velocity.empty() ? 0 : run.position.size()),
-                "identify_cogging.velocity", double(run.velocity.size()),
-                "must hold as many samples as position (" +
-                    quadrant::detail::shortest(double(run.position.size())) + ") in all runs, or none in all");
-        detail::cogging_record r{{}, {}, run.velocity, run.direction};
-        for (std::size_t i = 0; i < run.position.size(); ++i) {
-            require_finite("identify_cogging.position", run.position[i]);
-            require_finite("identify_cogging.command", run.command[i]);
-            if (!run.velocity.empty()) require_finite("identify_cogging.velocity", run.velocity[i]);
-            r.turns.push_back((run.position[i] / options.pitch).value());
-            r.command.push_back(run.command[i].value());
-        }
-        if (r.direction == 0)
-            r.direction = r.turns.back() > r.turns.front() ? 1 : r.turns.back() < r.turns.front() ? -1 : 0;
-        require(r.direction == 1 || r.direction == -1, "identify_cogging.direction", double(r.direction),
-                "must be +1 or -1, or 0 for a run that ends elsewhere than it began");
-        records.push_back(std::move(r));
-    }
-    const detail::cogging_fit fit(records, options.highest, options.friction_orders);
+    const detail::cogging_fit fit(detail::cogging_records(runs, options), options.highest,
+                                  options.friction_orders);
 
     using value = quantity_of<Out>;
     const auto around = [&](double x, double error) {
@@ -176,15 +200,7 @@ cogging_identification<Out, In> identify_cogging(const std::vector<cogging_run<O
         const auto [cosine, sine] = fit.friction(i);
         out.friction_waves.push_back({options.friction_orders[i], cosine, sine});
     }
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.amplitude.value > b.amplitude.value; });
-    for (const auto& h : all) {
-        const bool listed = std::count(options.orders.begin(), options.orders.end(), h.order) > 0;
-        const bool keep = !options.orders.empty() ? listed
-                          : options.strongest > 0 ? out.harmonics.size() < options.strongest
-                                                  : h.above_noise;
-        (keep ? out.harmonics : out.left_out).push_back(h);
-    }
+    detail::keep_harmonics(std::move(all), options, out);
     return out;
 }
 

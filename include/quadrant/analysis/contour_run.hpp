@@ -40,6 +40,32 @@ struct contour_options {
     displacement window = displacement::from_value(2e-3); ///< along the path: `sampled_path`
 };
 
+namespace detail {
+/// Places along a path, at most `spacing` apart.
+inline std::vector<plane_position> places_along(const std::vector<path::move>& moves, displacement spacing) {
+    const auto at = [](path::point p) {
+        return plane_position{displacement::from_value(p.x), displacement::from_value(p.y)};
+    };
+    std::vector<plane_position> places{at(moves.front().path.start())};
+    for (const path::move& m : moves) {
+        const double length = m.path.length();
+        const auto pieces = static_cast<std::size_t>(std::ceil(length / spacing.value()));
+        for (std::size_t i = 1; i <= pieces; ++i)
+            places.push_back(at(m.path.position(length * double(i) / double(pieces))));
+    }
+    return places;
+}
+/// The largest error and its rms.
+inline contour_extent extent_of(const std::vector<displacement>& of) {
+    double most = 0, squares = 0;
+    for (const displacement& e : of) {
+        most = std::max(most, std::abs(e.value()));
+        squares += e.value() * e.value() / double(of.size());
+    }
+    return contour_extent{displacement::from_value(most), displacement::from_value(std::sqrt(squares))};
+}
+} // namespace detail
+
 /// Drives a contour and measures: the trajectory of the moves, sample by sample, to `axes`, which gives back
 /// where the table was before that sample's command acts. Until a tenth of a second after the end.
 ///   plane_position axes(const axis_motion<>& x, const axis_motion<>& y)
@@ -50,17 +76,7 @@ contour_figures drive_contour(const std::vector<path::move>& moves, Axes&& axes,
                               duration period) {
     require(!moves.empty(), "drive_contour.moves", 0.0, "must be one or more");
     require_positive("drive_contour.spacing", how.spacing);
-    const auto at = [](path::point p) {
-        return plane_position{displacement::from_value(p.x), displacement::from_value(p.y)};
-    };
-    std::vector<plane_position> places{at(moves.front().path.start())};
-    for (const path::move& m : moves) {
-        const double length = m.path.length();
-        const auto pieces = static_cast<std::size_t>(std::ceil(length / how.spacing.value()));
-        for (std::size_t i = 1; i <= pieces; ++i)
-            places.push_back(at(m.path.position(length * double(i) / double(pieces))));
-    }
-    sampled_path path(std::move(places), how.window);
+    sampled_path path(detail::places_along(moves, how.spacing), how.window);
 
     const auto drive = std::make_unique<trajectory::interpolator<>>(
         trajectory::interpolator<>::parameters{how.limits, how.kind}, period);
@@ -102,16 +118,8 @@ contour_figures drive_contour(const std::vector<path::move>& moves, Axes&& axes,
             --rest;
         }
     }
-    const auto extent = [](const std::vector<displacement>& of) {
-        double most = 0, squares = 0;
-        for (const displacement& e : of) {
-            most = std::max(most, std::abs(e.value()));
-            squares += e.value() * e.value() / double(of.size());
-        }
-        return contour_extent{displacement::from_value(most), displacement::from_value(std::sqrt(squares))};
-    };
-    y.x = extent(y.x_error), y.y = extent(y.y_error), y.contour = extent(y.contour_error);
-    y.estimated = extent(estimated);
+    y.x = detail::extent_of(y.x_error), y.y = detail::extent_of(y.y_error);
+    y.contour = detail::extent_of(y.contour_error), y.estimated = detail::extent_of(estimated);
     return y;
 }
 

@@ -67,6 +67,50 @@ struct lugre_fit {
     bool converged;
 };
 
+namespace detail {
+/// How far two parameters that were fitted to several runs may lie off, by what the single runs would want.
+struct slope_spread {
+    std::array<std::array<double, 2>, 2> inverse{}; ///< of the curvature of the cost
+    std::array<std::array<double, 2>, 2> scatter{}; ///< of what each run pulls
+    std::array<double, 2> pull{}; ///< of all runs; not 0 where a parameter stands at its bound
+    std::size_t runs = 0;
+
+    /// Half the interval of 95 % of parameter j.
+    double reach(std::size_t j) const {
+        double variance = 0;
+        for (std::size_t a = 0; a < 2; ++a)
+            for (std::size_t b = 0; b < 2; ++b) variance += inverse[j][a] * scatter[a][b] * inverse[b][j];
+        const double n = double(runs);
+        return student_95(n - 1) * std::sqrt(variance * n / (n - 1));
+    }
+};
+/// `slope[j][i]` of residual `left[i]` by parameter j; run r ends before sample ends[r].
+inline slope_spread spread_of_runs(const std::array<std::vector<double>, 2>& slope,
+                                   const std::vector<double>& left, const std::vector<std::size_t>& ends) {
+    std::array<std::array<double, 2>, 2> curvature{};
+    slope_spread out;
+    out.runs = ends.size();
+    for (std::size_t r = 0, i = 0; r < ends.size(); ++r) {
+        std::array<double, 2> pull{};
+        for (; i < ends[r]; ++i)
+            for (std::size_t j = 0; j < 2; ++j) {
+                pull[j] += slope[j][i] * left[i];
+                for (std::size_t l = 0; l < 2; ++l) curvature[j][l] += slope[j][i] * slope[l][i];
+            }
+        for (std::size_t j = 0; j < 2; ++j)
+            for (std::size_t l = 0; l < 2; ++l) out.scatter[j][l] += pull[j] * pull[l];
+        for (std::size_t j = 0; j < 2; ++j) out.pull[j] += pull[j];
+    }
+    const double determinant = curvature[0][0] * curvature[1][1] - curvature[0][1] * curvature[0][1];
+    require(determinant > 1e-12 * curvature[0][0] * curvature[1][1], "fit_lugre.runs (determinant)",
+            determinant,
+            "must be above 0: stiffness and damping have to make a difference to the command, each its own");
+    out.inverse = {{{curvature[1][1] / determinant, -curvature[0][1] / determinant},
+                    {-curvature[0][1] / determinant, curvature[0][0] / determinant}}};
+    return out;
+}
+} // namespace detail
+
 /// The dynamic parameters of LuGre friction: those with which a simulation of the loop asks for the recorded
 /// command. `simulate(friction, run)` gives the commands of the loop along what run number `run` was asked to
 /// do, as many as were
@@ -126,39 +170,14 @@ lugre_fit fit_lugre(const std::vector<std::vector<quantity_of<Command>>>& record
         const auto below = residuals(less);
         for (std::size_t i = 0; i < samples; ++i) slope[j][i] = (slope[j][i] - below[i]) / (more[j] - less[j]);
     }
-    std::array<std::array<double, 2>, 2> curvature{}, scatter{};
-    std::array<double, 2> all{}; // not 0 where sigma1 would rather be below 0
-    for (std::size_t r = 0, i = 0; r < runs; ++r) {
-        std::array<double, 2> pull{};
-        for (; i < ends[r]; ++i)
-            for (std::size_t j = 0; j < 2; ++j) {
-                pull[j] += slope[j][i] * left[i];
-                for (std::size_t l = 0; l < 2; ++l) curvature[j][l] += slope[j][i] * slope[l][i];
-            }
-        for (std::size_t j = 0; j < 2; ++j)
-            for (std::size_t l = 0; l < 2; ++l) scatter[j][l] += pull[j] * pull[l];
-        for (std::size_t j = 0; j < 2; ++j) all[j] += pull[j];
-    }
-    const double determinant = curvature[0][0] * curvature[1][1] - curvature[0][1] * curvature[0][1];
-    require(determinant > 1e-12 * curvature[0][0] * curvature[1][1], "fit_lugre.runs (determinant)",
-            determinant,
-            "must be above 0: stiffness and damping have to make a difference to the command, each its own");
-    const std::array<std::array<double, 2>, 2> inverse{
-        {{curvature[1][1] / determinant, -curvature[0][1] / determinant},
-         {-curvature[0][1] / determinant, curvature[0][0] / determinant}}};
-    const auto reach = [&](std::size_t j) {
-        double variance = 0;
-        for (std::size_t a = 0; a < 2; ++a)
-            for (std::size_t b = 0; b < 2; ++b) variance += inverse[j][a] * scatter[a][b] * inverse[b][j];
-        const double n = double(runs);
-        return student_95(n - 1) * std::sqrt(variance * n / (n - 1));
-    };
+    const detail::slope_spread spread = detail::spread_of_runs(slope, left, ends);
     lugre_fit out{{}, {}, with(found.x), std::sqrt(found.cost / double(samples)), {}, found.converged};
     const auto stiffness = out.friction.stiffness;
-    out.stiffness = {stiffness, stiffness * std::exp(-reach(0)), stiffness * std::exp(reach(0))};
+    out.stiffness = {stiffness, stiffness * std::exp(-spread.reach(0)), stiffness * std::exp(spread.reach(0))};
     const auto damping = [&](double x) { return start.damping * std::max(0.0, x); };
-    const double free = found.x[1] - inverse[1][0] * all[0] - inverse[1][1] * all[1];
-    out.damping = {damping(found.x[1]), damping(free - reach(1)), damping(free + reach(1))};
+    const double free =
+        found.x[1] - spread.inverse[1][0] * spread.pull[0] - spread.inverse[1][1] * spread.pull[1];
+    out.damping = {damping(found.x[1]), damping(free - spread.reach(1)), damping(free + spread.reach(1))};
     out.passivity = check_passivity(out.friction);
     return out;
 }

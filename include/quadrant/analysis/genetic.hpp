@@ -1,146 +1,42 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: one search: its operators, its state and how the state is kept.
 #pragma once
 #include "../base/error.hpp"
+#include "genetic_child.hpp"
+#include "genetic_state.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace quadrant::inline v0::analysis {
 
-/// Where a gain may lie; over decades in its logarithm.
-struct gene {
-    double low, high;
-    bool logarithmic = false; ///< then low > 0
-
-    double at(double share) const { ///< share 0 ... 1 of the way from low to high
-        return logarithmic ? low * std::pow(high / low, share) : low + share * (high - low);
-    }
-};
-
-enum class selection {
-    tournament, ///< the best of so many drawn
-    roulette    ///< drawn in proportion to how far its cost lies below the worst
-};
-
-/// How a generation becomes the next one; the same seed gives the same search.
-struct genetic_options {
-    std::size_t population = 40; ///< 4 or more
-    std::size_t elite = 2;       ///< that live on unchanged; below population
-    selection by = selection::tournament;
-    std::size_t tournament = 3; ///< 1 or more
-    double crossover = 0.9;     ///< share of children of two parents; 0 ... 1
-    double blend = 0.5;         ///< how far beyond its parents a child may lie, of their distance; >= 0
-    double mutation = 0.2;      ///< chance of each gene; 0 ... 1
-    double width = 0.1;         ///< standard deviation of a mutation, of the gene's range; > 0
-    std::uint64_t trials = 4;   ///< where the cost is a draw: before one may live on; 1 or more
-    std::uint64_t seed = 1;
-};
-
-/// All that a search knows: run on from it, or from what read_genetic makes of its text.
-struct genetic_state {
-    std::vector<std::vector<double>> population; ///< shares 0 ... 1, least cost first
-    std::vector<double> cost;                    ///< of each, the mean of its trials; infinite: it failed
-    std::vector<std::uint64_t> trials;           ///< of each; one, unless the cost is a draw
-    std::uint64_t generation = 0, simulations = 0, draws = 0;
-
-    double best() const { return cost.front(); }
-    double mean() const { ///< of those that could be simulated
-        double sum = 0, count = 0;
-        for (const double each : cost)
-            if (std::isfinite(each)) sum += each, ++count;
-        return sum / count;
-    }
-};
-
-/// The genes' values of the best.
-inline std::vector<double> best_of(const genetic_state& s, const std::vector<gene>& genes) {
-    std::vector<double> out;
-    for (std::size_t i = 0; i < genes.size(); ++i) out.push_back(genes[i].at(s.population.front()[i]));
-    return out;
-}
-
 namespace detail {
-/// Numbers of one child in one generation: the same whoever computes it, and when.
-class child_random {
-public:
-    child_random(std::uint64_t seed, std::uint64_t generation, std::uint64_t child)
-        : at_(mixed(mixed(mixed(seed) + generation) + child)) {}
-    double uniform() { return double(mixed(at_++) >> 11) * 0x1p-53; } ///< 0 ... 1, without 1
-    double normal() {
-        const double u = 1 - uniform();
-        return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * uniform());
+inline void check_genetic(const std::vector<gene>& genes, const genetic_options& o, const genetic_state& s) {
+    require(!genes.empty(), "tune_genetic.genes", 0.0, "must be one or more");
+    for (const gene& g : genes) {
+        require(std::isfinite(g.low) && std::isfinite(g.high) && g.low < g.high, "gene.low", g.low,
+                "must be finite and below high (" + quadrant::detail::shortest(g.high) + ")");
+        require(!g.logarithmic || g.low > 0, "gene.low", g.low, "must be above 0 for a logarithmic gene");
     }
-    std::size_t below(std::size_t n) { return std::min(n - 1, std::size_t(uniform() * double(n))); }
-
-private:
-    static std::uint64_t mixed(std::uint64_t n) { // splitmix64 [Steele2014]
-        n = (n + 1) * 0x9e3779b97f4a7c15u;
-        n = (n ^ (n >> 30)) * 0xbf58476d1ce4e5b9u;
-        n = (n ^ (n >> 27)) * 0x94d049bb133111ebu;
-        return n ^ (n >> 31);
-    }
-    std::uint64_t at_;
-};
-
-inline const std::vector<double>& parent(const genetic_state& s, const genetic_options& o,
-                                         child_random& random) {
-    const std::size_t n = s.population.size();
-    if (o.by == selection::tournament) { // sorted: the best has the lowest number
-        std::size_t best = random.below(n);
-        for (std::size_t k = 1; k < o.tournament; ++k) best = std::min(best, random.below(n));
-        return s.population[best];
-    }
-    double worst = s.cost.front(), all = 0;
-    for (const double c : s.cost)
-        if (std::isfinite(c)) worst = std::max(worst, c);
-    const auto share = [&](double c) { return std::isfinite(c) ? worst - c : 0; };
-    for (const double c : s.cost) all += share(c);
-    if (!(all > 0)) return s.population[random.below(n)]; // all alike
-    double left = random.uniform() * all;
-    for (std::size_t k = 0; k < n; ++k)
-        if ((left -= share(s.cost[k])) < 0) return s.population[k];
-    return s.population.front();
-}
-
-inline std::vector<double> child(const genetic_state& s, const genetic_options& o, std::size_t genes,
-                                 child_random random) {
-    std::vector<double> out(genes);
-    if (s.population.empty()) {
-        for (double& each : out) each = random.uniform();
-        return out;
-    }
-    const auto& mother = parent(s, o, random);
-    const auto& father = random.uniform() < o.crossover ? parent(s, o, random) : mother;
-    for (std::size_t i = 0; i < genes; ++i) {
-        const double where = (1 + 2 * o.blend) * random.uniform() - o.blend;
-        double x = mother[i] + where * (father[i] - mother[i]);
-        if (random.uniform() < o.mutation) x += o.width * random.normal();
-        out[i] = std::clamp(x, 0.0, 1.0);
-    }
-    return out;
-}
-
-/// Least cost first; of equal costs the earlier.
-inline void sort(genetic_state& s) {
-    std::vector<std::size_t> order(s.cost.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return s.cost[a] < s.cost[b]; });
-    genetic_state sorted = s;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        sorted.population[k] = std::move(s.population[order[k]]);
-        sorted.cost[k] = s.cost[order[k]], sorted.trials[k] = s.trials[order[k]];
-    }
-    s = std::move(sorted);
+    require(o.population >= 4, "genetic_options.population", double(o.population), "must be 4 or more");
+    require(o.elite < o.population, "genetic_options.elite", double(o.elite),
+            "must be below the population (" + quadrant::detail::shortest(double(o.population)) + ")");
+    require(o.tournament >= 1, "genetic_options.tournament", double(o.tournament), "must be 1 or more");
+    require(o.crossover >= 0 && o.crossover <= 1, "genetic_options.crossover", o.crossover,
+            "must lie between 0 and 1");
+    require(o.mutation >= 0 && o.mutation <= 1, "genetic_options.mutation", o.mutation,
+            "must lie between 0 and 1");
+    require_not_negative("genetic_options.blend", o.blend);
+    require_positive("genetic_options.width", o.width);
+    require(o.trials >= 1, "genetic_options.trials", double(o.trials), "must be 1 or more");
+    for (const auto& one : s.population)
+        require(one.size() == genes.size() && s.cost.size() == o.population &&
+                    s.population.size() == o.population && s.trials.size() == o.population,
+                "tune_genetic.state", double(one.size()), "must be of these genes and this population");
 }
 } // namespace detail
 
@@ -168,27 +64,7 @@ struct one_by_one {
 template <class Cost, class Tell, class Each = one_by_one>
 genetic_state tune_genetic(const std::vector<gene>& genes, const Cost& cost, std::uint64_t simulations,
                            const genetic_options& o, Tell&& tell, genetic_state s = {}, const Each& each = {}) {
-    require(!genes.empty(), "tune_genetic.genes", 0.0, "must be one or more");
-    for (const gene& g : genes) {
-        require(std::isfinite(g.low) && std::isfinite(g.high) && g.low < g.high, "gene.low", g.low,
-                "must be finite and below high (" + quadrant::detail::shortest(g.high) + ")");
-        require(!g.logarithmic || g.low > 0, "gene.low", g.low, "must be above 0 for a logarithmic gene");
-    }
-    require(o.population >= 4, "genetic_options.population", double(o.population), "must be 4 or more");
-    require(o.elite < o.population, "genetic_options.elite", double(o.elite),
-            "must be below the population (" + quadrant::detail::shortest(double(o.population)) + ")");
-    require(o.tournament >= 1, "genetic_options.tournament", double(o.tournament), "must be 1 or more");
-    require(o.crossover >= 0 && o.crossover <= 1, "genetic_options.crossover", o.crossover,
-            "must lie between 0 and 1");
-    require(o.mutation >= 0 && o.mutation <= 1, "genetic_options.mutation", o.mutation,
-            "must lie between 0 and 1");
-    require_not_negative("genetic_options.blend", o.blend);
-    require_positive("genetic_options.width", o.width);
-    require(o.trials >= 1, "genetic_options.trials", double(o.trials), "must be 1 or more");
-    for (const auto& one : s.population)
-        require(one.size() == genes.size() && s.cost.size() == o.population &&
-                    s.population.size() == o.population && s.trials.size() == o.population,
-                "tune_genetic.state", double(one.size()), "must be of these genes and this population");
+    detail::check_genetic(genes, o, s);
     constexpr bool is_draw = std::is_invocable_v<const Cost&, const std::vector<double>&, std::uint64_t>;
     const auto tried = [&](const std::vector<double>& shares, std::uint64_t draw) {
         std::vector<double> values;
@@ -233,47 +109,6 @@ genetic_state tune_genetic(const std::vector<gene>& genes, const Cost& cost, std
         s = std::move(next);
         if (!tell(static_cast<const genetic_state&>(s))) return s;
     }
-}
-
-/// To lay a search by: one number after the other, all digits.
-inline std::string written(const genetic_state& s) {
-    std::string out;
-    const auto add = [&](auto number) {
-        char text[32];
-        out.append(text, std::to_chars(text, text + sizeof text, number).ptr).append(1, '\n');
-    };
-    add(s.generation), add(s.simulations), add(s.draws), add(std::uint64_t(s.population.size()));
-    add(std::uint64_t(s.population.empty() ? 0 : s.population.front().size()));
-    for (std::size_t k = 0; k < s.population.size(); ++k) {
-        add(s.cost[k]), add(s.trials[k]);
-        for (const double x : s.population[k]) add(x);
-    }
-    return out;
-}
-/// Throws when the text is none of `written`.
-inline genetic_state read_genetic(const std::string& text) {
-    const char* at = text.data();
-    const char* const end = at + text.size();
-    const auto next = [&](auto& number) {
-        const auto found = std::from_chars(at, end, number);
-        require(found.ec == std::errc() && found.ptr != end && *found.ptr == '\n', "read_genetic.character",
-                double(at - text.data()), "must begin a number on a line of its own");
-        at = found.ptr + 1;
-    };
-    genetic_state s;
-    std::uint64_t people = 0, genes = 0;
-    next(s.generation), next(s.simulations), next(s.draws), next(people), next(genes);
-    require(people <= text.size() && genes <= text.size(), "read_genetic.population", double(people),
-            "must be no more than there are numbers (" + quadrant::detail::shortest(double(text.size())) + ")");
-    for (std::uint64_t k = 0; k < people; ++k) {
-        s.cost.emplace_back(), s.trials.emplace_back();
-        next(s.cost.back()), next(s.trials.back());
-        s.population.emplace_back();
-        for (std::uint64_t i = 0; i < genes; ++i)
-            s.population.back().emplace_back(), next(s.population.back().back());
-    }
-    require(at == end, "read_genetic.character", double(at - text.data()), "must be the end");
-    return s;
 }
 
 } // namespace quadrant::inline v0::analysis

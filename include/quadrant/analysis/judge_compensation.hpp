@@ -110,6 +110,33 @@ inline step_found find_step(std::vector<double> signal, const std::vector<double
         for (const double at : {best.at - fine, best.at + fine}) try_at(at);
     return best;
 }
+/// Steps of friction at the reversals of a log, and of what a compensation gave: half of each step, their
+/// ratio, how much later the compensation came [s].
+struct steps_at_reversals {
+    std::vector<double> sizes, supplies, scales, lates;
+    double left = 0, all = 0; ///< squares that the steps leave, and all
+};
+/// e: the error, `supplied_error` the part of it that the compensation takes off; `after`: samples of a window.
+inline steps_at_reversals find_steps(const std::vector<glitch>& turns, const std::vector<double>& e,
+                                     const std::vector<double>& supplied_error, const std::vector<double>& step,
+                                     std::size_t after, duration period) {
+    const std::size_t before = after / 2;
+    steps_at_reversals out;
+    for (const glitch& turn : turns) {
+        const auto at = std::size_t(std::lround(double(turn.at / period)));
+        if (at < before || at + after >= e.size()) continue;
+        std::vector<double> bare, supply;
+        for (std::size_t i = at - before; i <= at + after; ++i)
+            bare.push_back(e[i] + supplied_error[i]), supply.push_back(supplied_error[i]);
+        const auto needed = find_step(bare, step, before), given = find_step(supply, step, before);
+        out.sizes.push_back(0.5 * turn.direction * needed.size),
+            out.supplies.push_back(0.5 * turn.direction * given.size);
+        out.scales.push_back(needed.size == 0 ? 0 : given.size / needed.size);
+        out.lates.push_back((given.at - needed.at) * period.value());
+        out.left += needed.left, out.all += needed.all;
+    }
+    return out;
+}
 /// Mean of independent values with its interval.
 inline estimated<double> mean_of(const std::vector<double>& x) {
     double mean = 0, squares = 0;
@@ -118,6 +145,29 @@ inline estimated<double> mean_of(const std::vector<double>& x) {
     for (const double each : x) squares += (each - mean) * (each - mean);
     const double reach = student_95(n - 1) * std::sqrt(squares / (n * (n - 1)));
     return {mean, mean - reach, mean + reach};
+}
+/// The words for a scale and a delay with their intervals.
+template <signal_tag Command>
+void name_size_and_time(compensation_verdict<Command>& out, const compensation_options& options) {
+    const double near = options.scale_tolerance, low = out.scale.low, high = out.scale.high;
+    using enum compensation_size;
+    out.size = high < -near                                                 ? wrong_sign
+               : low > -near && high < near                                 ? not_at_all
+               : low > 0 && high < 1 - near                                 ? too_weak
+               : low > 1 + near                                             ? too_strong
+               : low < 1 + near && high > 1 - near && high - low < 4 * near ? right
+                                                                            : compensation_size::cannot_tell;
+    if (out.size == compensation_size::cannot_tell)
+        out.why = "the size differs too much from reversal to reversal";
+    if (out.size < too_weak) return;
+    const double soon = options.time_tolerance.value(), first = out.late.low.value(),
+                 last = out.late.high.value();
+    out.time = last < -soon              ? compensation_time::too_early
+               : first > soon            ? compensation_time::too_late
+               : last - first < 4 * soon ? compensation_time::right
+                                         : compensation_time::cannot_tell;
+    if (out.time == compensation_time::cannot_tell)
+        out.why = "the time differs too much from reversal to reversal";
 }
 } // namespace detail
 
@@ -163,26 +213,11 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
     unit[0] = 0; // a step behind the first sample
     auto step = detail::filtered(unit, response, period.value());
     step.erase(step.begin());
-    const auto after = std::size_t(std::floor(options.window / period + 1e-9)), before = after / 2;
-    std::vector<double> sizes, supplies, scales, lates;
-    double left = 0, all = 0;
-    for (const glitch& turn : turns) {
-        const auto at = std::size_t(std::lround(double(turn.at / period)));
-        if (at < before || at + after >= e.size()) continue;
-        std::vector<double> bare, supply;
-        for (std::size_t i = at - before; i <= at + after; ++i)
-            bare.push_back(e[i] + supplied_error[i]), supply.push_back(supplied_error[i]);
-        const auto needed = detail::find_step(bare, step, before),
-                   given = detail::find_step(supply, step, before);
-        sizes.push_back(0.5 * turn.direction * needed.size),
-            supplies.push_back(0.5 * turn.direction * given.size);
-        scales.push_back(needed.size == 0 ? 0 : given.size / needed.size);
-        lates.push_back((given.at - needed.at) * period.value());
-        left += needed.left, all += needed.all;
-    }
+    const auto after = std::size_t(std::floor(options.window / period + 1e-9));
+    const auto steps = detail::find_steps(turns, e, supplied_error, step, after, period);
     using quantity = quantity_of<Command>;
     compensation_verdict<Command> out{};
-    out.reversals = sizes.size();
+    out.reversals = steps.sizes.size();
     if (out.reversals < 4) {
         out.why = "fewer than 4 reversals with a whole window";
         return out;
@@ -191,12 +226,12 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
         using to = decltype(unit_of);
         return estimated<to>{to::from_value(x.value), to::from_value(x.low), to::from_value(x.high)};
     };
-    const auto size = detail::mean_of(sizes);
+    const auto size = detail::mean_of(steps.sizes);
     out.needed = typed(quantity(), size);
-    out.supplied = typed(quantity(), detail::mean_of(supplies));
-    out.scale = detail::mean_of(scales);
-    out.late = typed(duration(), detail::mean_of(lates));
-    out.explained = all > 0 ? 1 - left / all : 0;
+    out.supplied = typed(quantity(), detail::mean_of(steps.supplies));
+    out.scale = detail::mean_of(steps.scales);
+    out.late = typed(duration(), detail::mean_of(steps.lates));
+    out.explained = steps.all > 0 ? 1 - steps.left / steps.all : 0;
     if (!(size.low > 0)) {
         out.why = "no friction is seen at the reversals";
         return out;
@@ -205,25 +240,7 @@ compensation_verdict<Command> judge_compensation(const std::vector<quantity_of<s
         out.why = "steps of friction do not explain the error at the reversals";
         return out;
     }
-    const double near = options.scale_tolerance, low = out.scale.low, high = out.scale.high;
-    using enum compensation_size;
-    out.size = high < -near                                                 ? wrong_sign
-               : low > -near && high < near                                 ? not_at_all
-               : low > 0 && high < 1 - near                                 ? too_weak
-               : low > 1 + near                                             ? too_strong
-               : low < 1 + near && high > 1 - near && high - low < 4 * near ? right
-                                                                            : compensation_size::cannot_tell;
-    if (out.size == compensation_size::cannot_tell)
-        out.why = "the size differs too much from reversal to reversal";
-    if (out.size < too_weak) return out;
-    const double soon = options.time_tolerance.value(), first = out.late.low.value(),
-                 last = out.late.high.value();
-    out.time = last < -soon              ? compensation_time::too_early
-               : first > soon            ? compensation_time::too_late
-               : last - first < 4 * soon ? compensation_time::right
-                                         : compensation_time::cannot_tell;
-    if (out.time == compensation_time::cannot_tell)
-        out.why = "the time differs too much from reversal to reversal";
+    detail::name_size_and_time(out, options);
     return out;
 }
 

@@ -60,6 +60,65 @@ inline double interpolated(const std::vector<double>& x, const std::vector<doubl
 inline double slipping(double force, double slope, double way) {
     return std::clamp(force - slope * way, 0.0, force);
 }
+/// The branches of slow runs, by amplitude, and the mean of those of one run.
+struct slow_runs {
+    std::vector<slow_branches> cut;
+    double count = HUGE_VAL; ///< of the encoder, the least that it moved
+    std::optional<stribeck<>> level;
+
+    template <signal_tag Command>
+    slow_runs(const std::vector<axis_log<Command>>& runs, duration period,
+              gain_of<signal::force, Command> force_constant, const virgin_options& options) {
+        for (const auto& run : runs) {
+            require(run.position.size() == run.command.size(), "axis_log.position", double(run.position.size()),
+                    "must hold as many samples as command (" +
+                        quadrant::detail::shortest(double(run.command.size())) + ")");
+            const double here = count_of(run.position);
+            cut.push_back(cut_at_reversals(run, period.value(), force_constant.value(), options.mass.value(),
+                                           options.viscous.value(), here));
+            require(cut.back().way.size() >= 3, "find_virgin_curve.branches", double(cut.back().way.size()),
+                    "must be 3 or more after the run in: record another cycle");
+            count = std::min(count, here);
+        }
+        std::sort(cut.begin(), cut.end(),
+                  [](const auto& a, const auto& b) { return a.amplitude < b.amplitude; });
+        if (options.level) level.emplace(*options.level, period);
+    }
+    double mean_of(std::size_t r, const std::vector<std::vector<double>>& values, double way) const {
+        double sum = 0;
+        for (std::size_t b = 0; b < values.size(); ++b)
+            sum += interpolated(cut[r].way[b], values[b], way) / double(values.size());
+        return sum;
+    }
+    /// Of the curve; over a fifth either way, two counts at least.
+    double slope(std::size_t r, double way) const {
+        const double reach = std::max(0.2 * way, 2 * count), start = std::max(0.0, way - reach);
+        return (mean_of(r, cut[r].force, way + reach) - mean_of(r, cut[r].force, start)) /
+               (way + reach - start);
+    }
+    /// By what factor the force is lifted to Fs.
+    double lifted(std::size_t r, double way) const {
+        const double force = mean_of(r, cut[r].force, way);
+        if (!level || !(force > 0)) return 1.0;
+        const double at_rest = level->breakaway().value();
+        const double here =
+            level->slip(quantity_of<signal::velocity>::from_value(mean_of(r, cut[r].speed, way))).value();
+        const double slips = slipping(force, slope(r, way), way);
+        return 1 + slips * (2 * at_rest / (at_rest + here) - 1) / force;
+    }
+    /// Relative, of neighbouring runs, in the last octave that both reach.
+    double disagreement() const {
+        double disagree = 0, compared = 0;
+        for (std::size_t r = 0; r + 1 < cut.size(); ++r)
+            for (double share = 0.45; share < 0.9; share += 0.05, ++compared) {
+                const double way = share * cut[r].amplitude;
+                disagree += mean_of(r, cut[r].force, way) * lifted(r, way) /
+                                (mean_of(r + 1, cut[r + 1].force, way) * lifted(r + 1, way)) -
+                            1;
+            }
+        return compared > 0 ? std::abs(disagree / compared) : disagree;
+    }
+};
 } // namespace detail
 
 /// Virgin curve from runs along a slow sinusoid in a closed loop, 0.1 Hz with 15 um and with 450 um on the
@@ -90,20 +149,9 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
     require(!runs.empty() && 5 * runs.size() <= options.points, "find_virgin_curve.runs", double(runs.size()),
             "must be one or more, and no more than a fifth of virgin_options.points (" +
                 quadrant::detail::shortest(double(options.points)) + ")");
-    std::vector<detail::slow_branches> cut;
-    double count = HUGE_VAL;
-    for (const auto& run : runs) {
-        require(run.position.size() == run.command.size(), "axis_log.position", double(run.position.size()),
-                "must hold as many samples as command (" +
-                    quadrant::detail::shortest(double(run.command.size())) + ")");
-        const double here = detail::count_of(run.position);
-        cut.push_back(detail::cut_at_reversals(run, period.value(), force_constant.value(),
-                                               options.mass.value(), options.viscous.value(), here));
-        require(cut.back().way.size() >= 3, "find_virgin_curve.branches", double(cut.back().way.size()),
-                "must be 3 or more after the run in: record another cycle");
-        count = std::min(count, here);
-    }
-    std::sort(cut.begin(), cut.end(), [](const auto& a, const auto& b) { return a.amplitude < b.amplitude; });
+    const detail::slow_runs run_of(runs, period, force_constant, options);
+    const auto& cut = run_of.cut;
+    const double count = run_of.count;
     virgin_curve out{{}, {}, displacement::from_value(count)};
     // Places: evenly in their logarithm, as many for each run; to 0.9 of its amplitude, where a branch ends.
     std::vector<double> ways;
@@ -117,43 +165,14 @@ virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, durat
         from = std::max(from, to);
     }
     const std::size_t n = ways.size();
-    const auto mean_of = [&](std::size_t r, const std::vector<std::vector<double>>& values, double way) {
-        double sum = 0;
-        for (std::size_t b = 0; b < values.size(); ++b)
-            sum += detail::interpolated(cut[r].way[b], values[b], way) / double(values.size());
-        return sum;
-    };
-    const auto slope = [&](std::size_t r, double way) { // over a fifth either way, two counts at least
-        const double reach = std::max(0.2 * way, 2 * count), start = std::max(0.0, way - reach);
-        return (mean_of(r, cut[r].force, way + reach) - mean_of(r, cut[r].force, start)) /
-               (way + reach - start);
-    };
-    std::optional<stribeck<>> level;
-    if (options.level) level.emplace(*options.level, period);
-    const auto lifted = [&](std::size_t r, double way) { // to Fs, by what factor
-        const double force = mean_of(r, cut[r].force, way);
-        if (!level || !(force > 0)) return 1.0;
-        const double at_rest = level->breakaway().value();
-        const double here =
-            level->slip(quantity_of<signal::velocity>::from_value(mean_of(r, cut[r].speed, way))).value();
-        const double slips = detail::slipping(force, slope(r, way), way);
-        return 1 + slips * (2 * at_rest / (at_rest + here) - 1) / force;
-    };
-    double disagree = 0, compared = 0; // of neighbouring runs, in the last octave that both reach
-    for (std::size_t r = 0; r + 1 < cut.size(); ++r)
-        for (double share = 0.45; share < 0.9; share += 0.05, ++compared) {
-            const double way = share * cut[r].amplitude;
-            disagree += mean_of(r, cut[r].force, way) * lifted(r, way) /
-                            (mean_of(r + 1, cut[r + 1].force, way) * lifted(r + 1, way)) -
-                        1;
-        }
-    if (compared > 0) disagree = std::abs(disagree / compared);
+    const double disagree = run_of.disagreement();
     std::vector<double> factors;
     for (std::size_t i = 0; i < n; ++i) {
         const std::size_t r = source[i];
-        const double factor = factors.emplace_back(lifted(r, ways[i])),
-                     force = factor * mean_of(r, cut[r].force, ways[i]);
-        const double steepest = std::max(slope(r, ways[i]), slope(r, std::max(0.0, ways[i] - 2 * count)));
+        const double factor = factors.emplace_back(run_of.lifted(r, ways[i])),
+                     force = factor * run_of.mean_of(r, cut[r].force, ways[i]);
+        const double steepest =
+            std::max(run_of.slope(r, ways[i]), run_of.slope(r, std::max(0.0, ways[i] - 2 * count)));
         const double place = steepest * count / (2 * std::sqrt(12.0)); // uniform over a count of the whole path
         out.points.push_back({displacement::from_value(ways[i]), quantity_of<signal::force>::from_value(force),
                               std::hypot(place, 0.5 * (1 - 1 / factor) * force, disagree * force), r});

@@ -10,6 +10,7 @@
 #include "fit/with_drives.hpp"
 #include "match.hpp"
 
+#include <array>
 #include <random>
 
 namespace quadrant::inline v0::diagnosis {
@@ -66,7 +67,71 @@ struct drawn_machines {
         fill(inside, drawn, normal);
         fill(at_ends, ends, end);
     }
+    /// Axis i of each: inside, at the ends.
+    std::array<std::vector<const axis_description*>, 2> of_axis(std::size_t i) const {
+        std::array<std::vector<const axis_description*>, 2> out;
+        for (const auto& m : inside) out[0].push_back(&m.axes[i]);
+        for (const auto& m : at_ends) out[1].push_back(&m.axes[i]);
+        return out;
+    }
 };
+
+/// Axis i, of which a log has positions only.
+inline compensated_axis in_positions(const machine_description& machine, const diagnosis_result& d,
+                                     const axis_description& axis, std::size_t i, const axis_log& log,
+                                     const std::string& file, const drawn_machines& drawn, double at_least) {
+    const auto [inside, at_ends] = drawn.of_axis(i);
+    std::vector<std::string> effects;
+    for (const cause& c : d.causes)
+        if (c.axis == axis.name && c.probability >= at_least) effects.push_back(c.effect);
+    compensated_axis out = chain::compensated_positions(machine.axes[i], axis, log, machine.sample_period_s,
+                                                        file, inside, at_ends, effects);
+    for (const std::string& effect : effects)
+        if (!paid(out, effect)) out.others.push_back({effect, std::string(effect_named(effect)->remedy)});
+    return out;
+}
+
+/// What compensates the causes on an axis, and what to do about the others.
+inline void add_compensations(compensated_axis& a, const diagnosis_result& d, const axis_description& axis,
+                              const tracking_forecast& forecast, const axis_log& coupled, double period,
+                              double at_least) {
+    std::vector<std::string> causes;
+    for (const cause& c : d.causes) {
+        if (c.axis != axis.name || c.probability < at_least) continue;
+        if (axis.drive.closes()) {
+            if (paid_by_drive(c.effect))
+                causes.push_back(c.effect);
+            else
+                a.others.push_back({c.effect, std::string(effect_named(c.effect)->remedy)});
+            continue;
+        }
+        const std::string text =
+            advice_on(c.effect, forecast.plant(), axis.encoder.resolution_m, axis.command_unit);
+        if (!text.empty())
+            a.others.push_back({c.effect, text});
+        else if (!c.parameters.empty())
+            causes.push_back(c.effect);
+    }
+    const controller_description controller = axis.controller.value_or(controller_description());
+    if (axis.drive.takes_position()) {
+        a.compensations = for_position_drive(forecast.plant(), axis, period, causes);
+    } else if (axis.drive.closes()) {
+        if (axis.controller)
+            a.compensations =
+                for_velocity_drive(forecast.plant(), axis, period, coupled.drive->in_volts, causes);
+    } else {
+        compensations_of ways(forecast.plant(), controller, period, std::move(causes));
+        a.compensations = ways.take();
+        for (const std::string& effect : ways.without_key())
+            a.others.push_back({effect, fmt::format("a feedforward, for which controller kind {} has no key",
+                                                    controller.kind)});
+    }
+    if (axis.controller)
+        if (auto quiet = with_dead_band(
+                controller, a.compensations,
+                least_dead_band(forecast.resolution(), forecast.noise(), forecast.plant().backlash)))
+            a.compensations.push_back(std::move(*quiet));
+}
 
 } // namespace detail
 
@@ -93,17 +158,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                                          [&](const axis_log& l) { return l.name == axis.name && !l.still; });
         if (logged == log.axes.end()) continue;
         if (axis.positions_only) {
-            std::vector<const axis_description*> inside, at_ends;
-            for (const auto& m : drawn.inside) inside.push_back(&m.axes[i]);
-            for (const auto& m : drawn.at_ends) at_ends.push_back(&m.axes[i]);
-            std::vector<std::string> effects;
-            for (const cause& c : d.causes)
-                if (c.axis == axis.name && c.probability >= at_least) effects.push_back(c.effect);
-            out.axes.push_back(chain::compensated_positions(
-                machine.axes[i], axis, *logged, machine.sample_period_s, log.file, inside, at_ends, effects));
-            for (const std::string& effect : effects)
-                if (!detail::paid(out.axes.back(), effect))
-                    out.axes.back().others.push_back({effect, std::string(effect_named(effect)->remedy)});
+            out.axes.push_back(detail::in_positions(machine, d, axis, i, *logged, log.file, drawn, at_least));
             continue;
         }
         const axis_log coupled = detail::with_neighbour(log, *logged, machine.sample_period_s,
@@ -113,46 +168,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
         a.name = axis.name;
         a.command_unit = axis.command_unit;
         a.kind = axis.kind;
-        std::vector<std::string> causes;
-        for (const cause& c : d.causes) {
-            if (c.axis != axis.name || c.probability < at_least) continue;
-            if (axis.drive.closes()) {
-                if (detail::paid_by_drive(c.effect))
-                    causes.push_back(c.effect);
-                else
-                    a.others.push_back({c.effect, std::string(effect_named(c.effect)->remedy)});
-                continue;
-            }
-            const std::string text =
-                advice_on(c.effect, forecast.plant(), axis.encoder.resolution_m, axis.command_unit);
-            if (!text.empty())
-                a.others.push_back({c.effect, text});
-            else if (!c.parameters.empty())
-                causes.push_back(c.effect);
-        }
-        const controller_description controller = axis.controller.value_or(controller_description());
-        if (axis.drive.takes_position()) {
-            a.compensations =
-                detail::for_position_drive(forecast.plant(), axis, machine.sample_period_s, causes);
-        } else if (axis.drive.closes()) {
-            if (axis.controller)
-                a.compensations = detail::for_velocity_drive(forecast.plant(), axis, machine.sample_period_s,
-                                                             coupled.drive->in_volts, causes);
-        } else {
-            detail::compensations_of ways(forecast.plant(), controller, machine.sample_period_s,
-                                          std::move(causes));
-            a.compensations = ways.take();
-            for (const std::string& effect : ways.without_key())
-                a.others.push_back(
-                    {effect,
-                     fmt::format("a feedforward, for which controller kind {} has no key", controller.kind)});
-        }
-        if (axis.controller)
-            if (auto quiet =
-                    detail::with_dead_band(controller, a.compensations,
-                                           detail::least_dead_band(forecast.resolution(), forecast.noise(),
-                                                                   forecast.plant().backlash)))
-                a.compensations.push_back(std::move(*quiet));
+        detail::add_compensations(a, d, axis, forecast, coupled, machine.sample_period_s, at_least);
         if (!logged->has_reference) {
             out.notes.push_back(fmt::format("axis {}: the log has no reference: nothing is forecast", a.name));
             continue;
@@ -162,9 +178,7 @@ QUADRANT_DIAGNOSIS_DECL compensation_result compensate(const machine_description
                 fmt::format("axis {}: no controller is described: nothing is forecast", a.name));
             continue;
         }
-        std::vector<const axis_description*> inside, at_ends;
-        for (const auto& m : drawn.inside) inside.push_back(&m.axes[i]);
-        for (const auto& m : drawn.at_ends) at_ends.push_back(&m.axes[i]);
+        const auto [inside, at_ends] = drawn.of_axis(i);
         if (inside.empty()) throw bad_input(machine.file, "the intervals of the diagnosis hold no machine");
         forecast.run(a, inside, at_ends);
     }

@@ -70,6 +70,8 @@ public:
     }
 
     value operator()(argument x, time age = time()) noexcept {
+        // First: behind the comparisons a compiler may take x for the last reading (-ffast-math).
+        if (!finite(x, age)) return out_.hold();
         state next = state_;
         if (next.since_edge < most_samples) ++next.since_reference, ++next.since_edge;
         const Real late = limited_to(Real(age * per_period_), Real(0), Real(1));
@@ -79,7 +81,7 @@ public:
             next.v = value(), next.side = 0;
         next.reading = x;
         const value v = limited(next);
-        if (!finite(x, v, next.reference, next.v, age)) return out_.hold();
+        if (!finite(v, next.reference, next.v)) return out_.hold();
         state_ = next;
         return out_.keep(v);
     }

@@ -62,7 +62,7 @@ public:
                                    rate_);
         require(detail::plain(p.lowest) > 0 && detail::plain(p.lowest) <= 1, "maxwell_slip_observer.lowest",
                 p.lowest, "must be above 0 and not above 1");
-        require(std::isfinite(detail::plain(p.highest)) && detail::plain(p.highest) >= 1,
+        require(finite(detail::plain(p.highest)) && detail::plain(p.highest) >= 1,
                 "maxwell_slip_observer.highest", p.highest, "must be finite and not below 1");
     }
 

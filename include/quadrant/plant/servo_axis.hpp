@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSL-1.0
-// Long: one plant: side_by_side() names each of its parameters, and its step each of its forces.
 #pragma once
 #include "../control/dead_band.hpp"
 #include "../friction/slip_contact.hpp"
 #include "amplifier_lag.hpp"
-#include "harmonic_series.hpp"
 #include "joint.hpp"
+#include "servo_parameters.hpp"
 #include "sprung_mass.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 
 namespace quadrant::inline v0 {
 
@@ -40,107 +37,17 @@ namespace quadrant::inline v0 {
 /// One friction law and a whole servo period in a block: `linear_motor`.
 template <class Real = double, class Laws = no_joint_laws> class servo_axis {
 public:
-    static constexpr std::size_t harmonics = 8, springs = 4;
+    using described = servo_parameters<Real, Laws>;
+    static constexpr std::size_t harmonics = described::harmonics, springs = described::springs;
     using number = parameter_real<Real>; ///< of parameters
-    using contact = slip_contact<springs, Real>;
+    using contact = typename described::contact;
     using mask = mask_of<Real>;
+    using repeating = typename described::repeating;
+    using parameters = typename described::parameters;
 
-    /// What repeats over a place or a time: period, and cosine and sine of each harmonic. Its unit is that of
-    /// the joint.
-    struct repeating {
-        number period{1};                               ///< [m] or [s]; > 0
-        std::array<number, harmonics> cosine{}, sine{}; ///< finite
-    };
-    /// Bare SI numbers: a fit moves each of them. Neutral as they stand, but for mass and force constant.
-    struct parameters {
-        number mass{1};           ///< all that moves, the sprung mass too [kg]
-        number force_constant{1}; ///< [N] of a unit of the command
-        number dead_zone{0};      ///< [unit of the command]
-        number limit{std::numeric_limits<double>::infinity()};
-        quantity<si::time, number> lag{};
-        repeating ripple{};                       ///< of the force constant, relative, over position
-        number constant{0};                       ///< [N]
-        number spring{0};                         ///< [N/m], about position 0
-        number gravity{0}, gravity_phase{0};      ///< [N m], [rad], of an axis whose position is an angle
-        number coupling{0};                       ///< of the other axis' acceleration
-        repeating cogging{};                      ///< [N] over position
-        repeating process{};                      ///< [N] over time
-        number process_mean{0}, process_start{0}; ///< [N], [s]
-        typename contact::parameters friction{};
-        repeating along{};              ///< of the friction's level, relative, over position
-        number drift{0}, drift_time{1}; ///< level times 1 + drift (1 - exp(-t/drift_time))
-        number load_friction{0};        ///< growth of the level with the force that the drive transmits; >= 0
-        typename sprung_mass<Real>::parameters second{};
-        number play{0};     ///< between motor and load [m]
-        repeating cyclic{}; ///< of the reading [m] over position
-        Laws laws{};
-    };
-    /// Several axes side by side, one a lane; the last one again in the lanes that are left over.
-    /// `axis_of(i)`: the parameters of axis i < `count`, a servo_axis in double.
+    /// Several axes side by side, one a lane: see servo_parameters.
     template <class AxisOf> static parameters side_by_side(std::size_t count, const AxisOf& axis_of) {
-        using Single = std::remove_cvref_t<decltype(axis_of(0))>;
-        const auto each = [&](const auto& number_of) {
-            number out(0);
-            for (std::size_t i = 0; i < lane_count<Real>; ++i)
-                set_lane(out, i, number_of(axis_of(i < count ? i : count - 1)));
-            return out;
-        };
-        const auto typed = [&]<class Quantity>(Quantity& to, const auto& quantity_of) {
-            to = Quantity::from_value(each([&](const Single& p) { return quantity_of(p).value(); }));
-        };
-        const auto waves = [&](const auto& of) {
-            repeating out;
-            out.period = each([&](const Single& p) { return of(p).period; });
-            for (std::size_t i = 0; i < harmonics; ++i) {
-                out.cosine[i] = each([&](const Single& p) { return of(p).cosine[i]; });
-                out.sine[i] = each([&](const Single& p) { return of(p).sine[i]; });
-            }
-            return out;
-        };
-        parameters out;
-        out.mass = each([](const Single& p) { return p.mass; });
-        out.force_constant = each([](const Single& p) { return p.force_constant; });
-        out.dead_zone = each([](const Single& p) { return p.dead_zone; });
-        out.limit = each([](const Single& p) { return p.limit; });
-        typed(out.lag, [](const Single& p) { return p.lag; });
-        out.ripple = waves([](const Single& p) -> auto& { return p.ripple; });
-        out.constant = each([](const Single& p) { return p.constant; });
-        out.spring = each([](const Single& p) { return p.spring; });
-        out.gravity = each([](const Single& p) { return p.gravity; });
-        out.gravity_phase = each([](const Single& p) { return p.gravity_phase; });
-        out.load_friction = each([](const Single& p) { return p.load_friction; });
-        out.coupling = each([](const Single& p) { return p.coupling; });
-        out.cogging = waves([](const Single& p) -> auto& { return p.cogging; });
-        out.process = waves([](const Single& p) -> auto& { return p.process; });
-        out.process_mean = each([](const Single& p) { return p.process_mean; });
-        out.process_start = each([](const Single& p) { return p.process_start; });
-        out.along = waves([](const Single& p) -> auto& { return p.along; });
-        out.drift = each([](const Single& p) { return p.drift; });
-        out.drift_time = each([](const Single& p) { return p.drift_time; });
-        out.play = each([](const Single& p) { return p.play; });
-        out.cyclic = waves([](const Single& p) -> auto& { return p.cyclic; });
-        typed(out.second.mass, [](const Single& p) { return p.second.mass; });
-        typed(out.second.centre, [](const Single& p) { return p.second.centre; });
-        out.second.damping = each([](const Single& p) { return p.second.damping; });
-        auto& f = out.friction;
-        typed(f.level, [](const Single& p) { return p.friction.level; });
-        typed(f.excess, [](const Single& p) { return p.friction.excess; });
-        typed(f.stribeck_velocity, [](const Single& p) { return p.friction.stribeck_velocity; });
-        f.shape = each([](const Single& p) { return p.friction.shape; });
-        typed(f.viscous, [](const Single& p) { return p.friction.viscous; });
-        f.asymmetry = each([](const Single& p) { return p.friction.asymmetry; });
-        f.excess_asymmetry = each([](const Single& p) { return p.friction.excess_asymmetry; });
-        f.velocity_asymmetry = each([](const Single& p) { return p.friction.velocity_asymmetry; });
-        f.viscous_asymmetry = each([](const Single& p) { return p.friction.viscous_asymmetry; });
-        typed(f.attraction, [](const Single& p) { return p.friction.attraction; });
-        typed(f.damping, [](const Single& p) { return p.friction.damping; });
-        for (std::size_t i = 0; i < springs; ++i) {
-            f.weights[i] = each([&](const Single& p) { return p.friction.weights[i]; });
-            typed(f.stiffness[i], [&](const Single& p) { return p.friction.stiffness[i]; });
-            typed(f.give[i], [&](const Single& p) { return p.friction.give[i]; });
-        }
-        if constexpr (requires { Laws(count, axis_of); }) out.laws = Laws(count, axis_of);
-        return out;
+        return described::side_by_side(count, axis_of);
     }
     /// Motion of motor and load, and what the joints remember.
     struct state {
@@ -190,7 +97,7 @@ public:
         Real other_acceleration{0}; ///< of the other axis [m/s^2]
     };
 
-    servo_axis(const parameters& p, Real h) : servo_axis(checked(p, h), h, already_checked()) {}
+    servo_axis(const parameters& p, Real h) : servo_axis(described::checked(p, h), h, already_checked()) {}
     servo_axis(const parameters& p, Real h, already_checked)
         : h_(h), half_(Real(0.5) * h), mass_(p.mass), force_constant_(p.force_constant),
           dead_zone_(p.dead_zone), limit_(p.limit), constant_(p.constant), spring_(p.spring),
@@ -271,67 +178,6 @@ public:
     Real mass() const noexcept { return mass_; }
 
 private:
-    static const parameters& checked(const parameters& p, Real h) {
-        require_positive<Real>("servo_axis.step", h);
-        require_positive<Real>("servo_axis.mass", p.mass);
-        require_finite<Real>("servo_axis.force_constant", p.force_constant);
-        require_not_negative<Real>("servo_axis.dead_zone", p.dead_zone);
-        for (std::size_t i = 0; i < lane_count<Real>; ++i) {
-            require(lane(p.limit, i) > 0, "servo_axis.limit", lane(p.limit, i), "must be above 0");
-            require(detail::plain(lane(p.second.mass, i)) < lane(p.mass, i), "servo_axis.second.mass",
-                    lane(p.second.mass, i),
-                    "must lie below the mass, of which it is a part (" + detail::shortest(lane(p.mass, i)) +
-                        ")");
-        }
-        require_finite<Real>("servo_axis.constant", p.constant);
-        require_finite<Real>("servo_axis.spring", p.spring);
-        require_finite<Real>("servo_axis.gravity", p.gravity);
-        require_finite<Real>("servo_axis.gravity_phase", p.gravity_phase);
-        require_not_negative<Real>("servo_axis.load_friction", p.load_friction);
-        require_finite<Real>("servo_axis.coupling", p.coupling);
-        const auto repeats = [](const char* name, const repeating& r) {
-            require_positive<Real>({name, ".period"}, r.period);
-            for (std::size_t i = 0; i < harmonics; ++i) {
-                require_finite<Real>({name, ".cosine"}, r.cosine[i]);
-                require_finite<Real>({name, ".sine"}, r.sine[i]);
-            }
-        };
-        repeats("servo_axis.ripple", p.ripple);
-        repeats("servo_axis.cogging", p.cogging);
-        repeats("servo_axis.process", p.process);
-        repeats("servo_axis.along", p.along);
-        repeats("servo_axis.cyclic", p.cyclic);
-        require_finite<Real>("servo_axis.process_mean", p.process_mean);
-        require_finite<Real>("servo_axis.process_start", p.process_start);
-        require_finite<Real>("servo_axis.drift", p.drift);
-        require_positive<Real>("servo_axis.drift_time", p.drift_time);
-        require_not_negative<Real>("servo_axis.play", p.play);
-        (void)amplifier_lag<Real>({p.lag}, h);
-        (void)sprung_mass<Real>(p.second, h);
-        (void)contact(p.friction, p.mass, h);
-        return p;
-    }
-
-    /// A sum over harmonics with its period, up to the last harmonic that has a size in some lane.
-    class sum {
-    public:
-        explicit sum(const repeating& r) : inverse_period_(Real(1) / Real(r.period)) {
-            for (std::size_t i = 0; i < harmonics; ++i) {
-                series_.cosine[i] = Real(r.cosine[i]);
-                series_.sine[i] = Real(r.sine[i]);
-            }
-            while (series_.count > 0 && all(equal(series_.cosine[series_.count - 1], Real(0))) &&
-                   all(equal(series_.sine[series_.count - 1], Real(0))))
-                --series_.count;
-        }
-        bool present() const noexcept { return series_.count > 0; }
-        Real operator()(Real z) const noexcept { return series_(z * inverse_period_); }
-
-    private:
-        Real inverse_period_;
-        detail::harmonic_series<harmonics, Real, Real> series_;
-    };
-
     /// `point`: makes the joint_point, where a law asks for it.
     Real motor(state& s, Real command, Real x, const auto& point) const noexcept {
         if (has_shaper_) {
@@ -383,7 +229,7 @@ private:
     Real h_, half_, mass_, force_constant_, dead_zone_, limit_, constant_, spring_, gravity_, gravity_phase_,
         load_friction_, coupling_, process_mean_, process_start_, drift_, inverse_drift_, half_play_;
     amplifier_lag<Real> lag_;
-    sum ripple_, cogging_, process_, along_, cyclic_;
+    typename described::sum ripple_, cogging_, process_, along_, cyclic_;
     sprung_mass<Real> second_;
     Laws laws_;
     Real inertia_;

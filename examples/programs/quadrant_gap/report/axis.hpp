@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../gap_words.hpp"
 #include "chart.hpp"
 
 #include "quadrant/diagnosis/log/signals.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Long: loop() draws one picture from left to right.
 #pragma once
-#include "../words.hpp"
+#include "../gap_words.hpp"
 #include "html.hpp"
 
 /// One axis at a glance: the servo loop with the boxes at fault, and the gaps.

@@ -120,6 +120,78 @@ inline double set_point(const axis_truth& a, const std::vector<double>& referenc
     return std::clamp(volts, -10.0, 10.0);
 }
 
+/// One axis that runs, in its parts.
+class running_axis {
+public:
+    running_axis(const axis_truth& a, std::size_t i, std::size_t samples, double period, std::uint64_t seed)
+        : truth_(a), control_(a.controller, period), drive_(a.actuator, period, dice(seed, 2 * i)),
+          body_(a, static_cast<double>(samples) * period), scale_(a.encoder, dice(seed, 2 * i + 1)),
+          laws_(a.laws), inner_(a.drive, period, dice(seed, 100 + i)) {
+        if (const auto& m = a.mechanics; a.turns)
+            control_.hold(-m.weight() * std::sin(m.gravity_phase) / a.actuator.force_constant);
+    }
+    double acceleration() const { return body_.acceleration(); }
+
+    /// A row of the log; false where the axis has left its travel.
+    bool begin_row(const std::vector<double>& reference, std::size_t k, double period, axis_record& out) {
+        constexpr double farthest = 5;
+        const double y = scale_(body_.seen() + displaced_);
+        const drive_truth& d = truth_.drive;
+        const double u = d.closes() ? set_point(truth_, reference, k, y, period) : control_(reference[k], y);
+        if (d.closes())
+            inner_.set_point(u);
+        else
+            drive_.command(u);
+        out.position.push_back(y);
+        out.command.push_back(u);
+        out.acting.push_back(0);
+        if (d.closes()) out.force.push_back(0);
+        if (std::abs(y) < farthest) return true;
+        out.position.back() = std::nan("");
+        return false;
+    }
+    /// Fine step f of `fine` in a row, at time t. other: acceleration of the other axis.
+    void step(double t, double h, std::size_t f, std::size_t fine, double other, axis_record& out) {
+        using quadrant::diagnosis::joint;
+        if (truth_.drive.closes()) return step_driven(t, h, f, fine, other, out);
+        double acting = drive_.acting(t, h);
+        out.acting.back() += acting / static_cast<double>(fine);
+        const auto law = [&](joint where) { return laws_(where, body_, acting, t, h); };
+        acting += law(joint::command);
+        const double motor =
+            drive_.force(acting, body_.position()) * (1 + law(joint::motor_gain)) + law(joint::force);
+        const double more_friction = law(joint::friction);
+        displaced_ = law(joint::transmission) + law(joint::reading);
+        body_.step(motor, t, h, other, more_friction);
+    }
+
+private:
+    /// Behind a drive with loops of its own.
+    void step_driven(double t, double h, std::size_t f, std::size_t fine, double other, axis_record& out) {
+        using quadrant::diagnosis::joint;
+        // The law of the file format knows no clock of the drive: its force over a step is that of the middle
+        // of the step.
+        const double v = body_.velocity() + h / 2 * body_.acceleration();
+        double push = inner_.force(t, h, body_.position() + h / 2 * body_.velocity(), v);
+        if (truth_.drive.supply > 0) {
+            if (f == 0) out.duty.push_back(inner_.duty());
+            push = drive_.force(truth_.drive.supply * push, body_.position());
+        }
+        out.force.back() += push / static_cast<double>(fine);
+        const auto law = [&](joint where) { return laws_(where, body_, push, t, h); };
+        body_.step(push * (1 + law(joint::motor_gain)) + law(joint::force), t, h, other, law(joint::friction));
+    }
+
+    const axis_truth& truth_;
+    cascade control_;
+    actuator drive_;
+    mechanics body_;
+    encoder scale_;
+    laws_of_effects laws_;
+    inner_loops inner_;
+    double displaced_ = 0; ///< of the reading, by laws of the transmission and of the reading
+};
+
 } // namespace detail
 
 /// The axes of a machine under their references, at least 20 fine steps a period and none above 25 us. A run
@@ -127,81 +199,23 @@ inline double set_point(const axis_truth& a, const std::vector<double>& referenc
 inline std::vector<axis_record> run(const std::vector<axis_truth>& axes,
                                     const std::vector<std::vector<double>>& references, double period,
                                     std::uint64_t seed) {
-    using quadrant::diagnosis::joint;
-    constexpr double coarsest = 2.5e-5, farthest = 5;
+    constexpr double coarsest = 2.5e-5;
     const auto fine = static_cast<std::size_t>(std::max(20.0, std::ceil(period / coarsest)));
     const double h = period / static_cast<double>(fine);
     const std::size_t samples = references.front().size();
-    struct one {
-        cascade control;
-        actuator drive;
-        mechanics body;
-        encoder scale;
-        laws_of_effects laws;
-        inner_loops inner;
-        double displaced = 0; ///< of the reading, by laws of the transmission and of the reading
-    };
-    std::deque<one> all;
+    std::deque<detail::running_axis> all;
     std::vector<axis_record> out(axes.size());
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        all.push_back({cascade(axes[i].controller, period),
-                       actuator(axes[i].actuator, period, dice(seed, 2 * i)),
-                       mechanics(axes[i], static_cast<double>(samples) * period),
-                       encoder(axes[i].encoder, dice(seed, 2 * i + 1)), laws_of_effects(axes[i].laws),
-                       inner_loops(axes[i].drive, period, dice(seed, 100 + i))});
-        if (const auto& m = axes[i].mechanics; axes[i].turns)
-            all.back().control.hold(-m.weight() * std::sin(m.gravity_phase) / axes[i].actuator.force_constant);
+        all.emplace_back(axes[i], i, samples, period, seed);
         out[i].reference = references[i];
     }
     for (std::size_t k = 0; k < samples; ++k) {
-        for (std::size_t i = 0; i < axes.size(); ++i) {
-            const double y = all[i].scale(all[i].body.seen() + all[i].displaced);
-            const drive_truth& d = axes[i].drive;
-            const double u = d.closes() ? detail::set_point(axes[i], references[i], k, y, period)
-                                        : all[i].control(references[i][k], y);
-            if (d.closes())
-                all[i].inner.set_point(u);
-            else
-                all[i].drive.command(u);
-            out[i].position.push_back(y);
-            out[i].command.push_back(u);
-            out[i].acting.push_back(0);
-            if (d.closes()) out[i].force.push_back(0);
-            if (!(std::abs(y) < farthest)) {
-                out[i].position.back() = std::nan("");
-                return out;
-            }
-        }
+        for (std::size_t i = 0; i < axes.size(); ++i)
+            if (!all[i].begin_row(references[i], k, period, out[i])) return out;
         for (std::size_t f = 0; f < fine; ++f) {
             const double t = (static_cast<double>(k * fine + f)) * h;
-            for (std::size_t i = 0; i < axes.size(); ++i) {
-                const double other = axes.size() > 1 ? all[1 - i].body.acceleration() : 0;
-                one& a = all[i];
-                if (axes[i].drive.closes()) {
-                    // The law of the file format knows no clock of the drive: its force over a step is that of
-                    // the middle of the step.
-                    const double v = a.body.velocity() + h / 2 * a.body.acceleration();
-                    double push = a.inner.force(t, h, a.body.position() + h / 2 * a.body.velocity(), v);
-                    if (axes[i].drive.supply > 0) {
-                        if (f == 0) out[i].duty.push_back(a.inner.duty());
-                        push = a.drive.force(axes[i].drive.supply * push, a.body.position());
-                    }
-                    out[i].force.back() += push / static_cast<double>(fine);
-                    const auto law = [&](joint where) { return a.laws(where, a.body, push, t, h); };
-                    a.body.step(push * (1 + law(joint::motor_gain)) + law(joint::force), t, h, other,
-                                law(joint::friction));
-                    continue;
-                }
-                double acting = a.drive.acting(t, h);
-                out[i].acting.back() += acting / static_cast<double>(fine);
-                const auto law = [&](joint where) { return a.laws(where, a.body, acting, t, h); };
-                acting += law(joint::command);
-                const double motor =
-                    a.drive.force(acting, a.body.position()) * (1 + law(joint::motor_gain)) + law(joint::force);
-                const double more_friction = law(joint::friction);
-                a.displaced = law(joint::transmission) + law(joint::reading);
-                a.body.step(motor, t, h, other, more_friction);
-            }
+            for (std::size_t i = 0; i < axes.size(); ++i)
+                all[i].step(t, h, f, fine, axes.size() > 1 ? all[1 - i].acceleration() : 0, out[i]);
         }
     }
     return out;

@@ -4,8 +4,30 @@
 #include "../row.hpp"
 
 #include <quadrant/analysis/circular_test.hpp>
+#include <quadrant/block/axis_motion.hpp>
+
+#include <array>
+#include <cmath>
 
 namespace quadrant_reproduce {
+
+/// What the axes are asked for at time t: a circle of this radius about (-radius, 0), from (0, 0), where both
+/// axes stand; at the angular velocity w from `started` on.
+inline std::array<quadrant::axis_motion<>, 2> along_a_circle(double t, double radius, double w,
+                                                             double started) {
+    using namespace quadrant::literals;
+    // The angle gains speed as sin^2 does, so that its acceleration starts and ends at zero.
+    const double c = thesis::pi_ / started;
+    const bool starts = t < started;
+    const double angle = starts ? w * (t / 2 - std::sin(c * t) / (2 * c)) : w * (t - started / 2),
+                 rate = starts ? w * (1 - std::cos(c * t)) / 2 : w,
+                 gain = starts ? w * c * std::sin(c * t) / 2 : 0;
+    const double cs = std::cos(angle), sn = std::sin(angle);
+    return {
+        {{radius * (cs - 1) * 1_m, -radius * sn * rate * 1_mps,
+          radius * (-cs * rate * rate - sn * gain) * 1_mps2},
+         {radius * sn * 1_m, radius * cs * rate * 1_mps, radius * (-sn * rate * rate + cs * gain) * 1_mps2}}};
+}
 
 /// Both axes along a circle of 30 mm at 100 mm/s: half a turn to get going, one and a half turns at speed; the
 /// middle turn is judged. Radii are those of the axes, not of their encoders.
@@ -16,24 +38,13 @@ outcome circle_case(const std::string& id, const std::string& name) {
     const double radius = 0.03, w = 0.1 / radius, T = thesis::period.value(), started = thesis::pi_ / w;
     const thesis::reading how{.substeps = 50};
     thesis::friction_axis<Compensation, Observer> x(thesis::x, how), y(thesis::y, how);
-    using motion = typename decltype(x)::motion;
     analysis::circular_path path{{}, {}, thesis::period};
     bool diverged = false;
     double squares_x = 0, squares_y = 0, counted = 0; // of the whole turn that is judged
     const auto samples = static_cast<int>((started + 1.25 * 2 * thesis::pi_ / w) / T);
     for (int k = 0; k < samples && !diverged; ++k) {
-        // The angle gains speed as sin^2 does, so that its acceleration starts and ends at zero.
-        const double t = k * T, c = thesis::pi_ / started;
-        const bool starts = t < started;
-        const double angle = starts ? w * (t / 2 - std::sin(c * t) / (2 * c)) : w * (t - started / 2),
-                     rate = starts ? w * (1 - std::cos(c * t)) / 2 : w,
-                     gain = starts ? w * c * std::sin(c * t) / 2 : 0;
-        const double cs = std::cos(angle), sn = std::sin(angle);
-        // From (0, 0), where both axes stand; the centre is at (-radius, 0).
-        const motion to_x{radius * (cs - 1) * 1_m, -radius * sn * rate * 1_mps,
-                          radius * (-cs * rate * rate - sn * gain) * 1_mps2};
-        const motion to_y{radius * sn * 1_m, radius * cs * rate * 1_mps,
-                          radius * (-sn * rate * rate + cs * gain) * 1_mps2};
+        const double t = k * T;
+        const auto [to_x, to_y] = along_a_circle(t, radius, w, started);
         path.x.push_back(x.position() * 1_m);
         path.y.push_back(y.position() * 1_m);
         diverged =

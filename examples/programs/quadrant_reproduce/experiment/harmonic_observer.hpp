@@ -5,6 +5,7 @@
 #include "harmonics.hpp"
 
 #include <Eigen/Dense>
+#include <fmt/format.h>
 
 namespace quadrant_reproduce {
 
@@ -122,47 +123,54 @@ line switched_on(const thesis::push& p, const typename thesis::by_harmonics<Coun
     return out;
 }
 
-/// Figs. D.6 and D.7 (a frequency that the observer does not know), D.9 (at rest), D.10 and D.11 (tracking),
-/// D.13 (switching on).
-inline outcome harmonic_runs(const std::string& id) {
-    using quadrant::analysis::hertz;
-    outcome out;
+/// Of the error at a frequency, over the second half of a run.
+inline double amplitude(const thesis::push_result& r, double f) {
+    std::complex<double> sum = 0;
+    const std::size_t from = r.error.size() / 2;
+    for (std::size_t k = from; k < r.error.size(); ++k)
+        sum += r.error[k] * std::polar(2.0 / double(r.error.size() - from), -2 * thesis::pi_ * f * r.time[k]);
+    return std::abs(sum);
+}
+/// Rms errors while tracking, without and with an observer of one and of three harmonics.
+inline std::vector<row> tracking_rows(const std::string& id) {
+    std::vector<row> rows;
     for (const int h : {1, 3}) {
         const thesis::push p{.harmonics = h, .tracking = true};
         const auto off = thesis::pushed<thesis::nothing_observed>(p);
         const auto on =
             h == 1 ? thesis::pushed<thesis::by_harmonics<1>>(p) : thesis::pushed<thesis::by_harmonics<3>>(p);
         const std::string n = std::to_string(h);
-        out.rows.push_back({id,
-                            "rms_off_" + n,
-                            "um",
-                            rms_of(off),
-                            {},
-                            {},
-                            {},
-                            "tracking 30 mm at 100 mm/s, friction by GMS feedforward; force scale 1.38"});
-        out.rows.push_back({id,
-                            "rms_on_" + n,
-                            "um",
-                            rms_of(on),
-                            {},
-                            {},
-                            {},
-                            "the thesis has the inverse-model observer beside it"});
+        rows.push_back({id,
+                        "rms_off_" + n,
+                        "um",
+                        rms_of(off),
+                        {},
+                        {},
+                        {},
+                        "tracking 30 mm at 100 mm/s, friction by GMS feedforward; force scale 1.38"});
+        rows.push_back({id,
+                        "rms_on_" + n,
+                        "um",
+                        rms_of(on),
+                        {},
+                        {},
+                        {},
+                        "the thesis has the inverse-model observer beside it"});
     }
+    return rows;
+}
+
+/// Figs. D.6 and D.7 (a frequency that the observer does not know), D.9 (at rest), D.10 and D.11 (tracking),
+/// D.13 (switching on).
+inline outcome harmonic_runs(const std::string& id) {
+    using quadrant::analysis::hertz;
+    outcome out;
+    out.rows = tracking_rows(id);
     thesis::by_harmonics<2>::parameters wrong;
     wrong.at = {hertz(23.3), hertz(46.6)};
     const thesis::push mismatch{.sines = {{23.3, 65}, {40, 65}}};
     const auto off = thesis::pushed<thesis::nothing_observed>(mismatch),
                on = thesis::pushed<thesis::by_harmonics<2>>(mismatch, wrong);
-    const auto amplitude = [](const thesis::push_result& r, double f) {
-        std::complex<double> sum = 0;
-        const std::size_t from = r.error.size() / 2;
-        for (std::size_t k = from; k < r.error.size(); ++k)
-            sum +=
-                r.error[k] * std::polar(2.0 / double(r.error.size() - from), -2 * thesis::pi_ * f * r.time[k]);
-        return std::abs(sum);
-    };
     for (const double f : {23.3, 40.0}) {
         const std::string n = fmt::format("{:.0f}", std::floor(f));
         out.rows.push_back({id,

@@ -75,29 +75,46 @@ inline outcome accelerometer_case(const std::string& id) {
     return out;
 }
 
+/// A drive with another inertia, and Stribeck friction 10 % above the mean of both directions.
+using stribeck_screw = quadrant::ball_screw_drive<
+    quadrant::stribeck<quadrant::signal::angular_velocity, quadrant::signal::torque>>;
+using other_boxes = quadrant::feed_drive_boxes<stribeck_screw>;
+inline other_boxes::parameters other_drive(const vcnc::axis& a, double inertia, std::uint64_t seed) {
+    using namespace quadrant::literals;
+    const auto p = vcnc::drive(a);
+    other_boxes::parameters out{
+        .amplifier = p.amplifier,
+        .drive = {.inertia = inertia * p.drive.inertia,
+                  .viscous = p.drive.viscous,
+                  .torque_constant = p.drive.torque_constant,
+                  .pitch = p.drive.pitch,
+                  .friction = {0.55 * (a.forward.coulomb + a.backward.coulomb) * 1_Nm,
+                               0.55 * (a.forward.static_level + a.backward.static_level) * 1_Nm,
+                               a.forward.fall * 1_radps,
+                               {}}}};
+    out.encoder_step = p.encoder_step;
+    out.tachometer_noise = p.tachometer_noise;
+    out.seed = seed;
+    return out;
+}
+/// The largest contour error along the diamond [um].
+template <class Law>
+double largest_off_the_diamond(double inertia, typename Law::parameters (*law_of)(const vcnc::axis&)) {
+    vcnc::servo<Law, other_boxes> x(other_drive(vcnc::x_axis, inertia, 2), law_of(vcnc::x_axis)),
+        y(other_drive(vcnc::y_axis, inertia, 3), law_of(vcnc::y_axis));
+    x.settle(vcnc::diamond::at(0).x.position), y.settle(vcnc::diamond::at(0).y.position);
+    double most = 0;
+    for (int k = 0; k < vcnc::diamond::samples() + 100; ++k) {
+        most = std::max(most, 1e6 * vcnc::diamond::off_the_path(x.place(), y.place()));
+        const auto r = vcnc::diamond::at(k);
+        x.step(r.x), y.step(r.y);
+    }
+    return most;
+}
+
 /// The diamond on a machine with another inertia and friction by another law: Stribeck, the same both ways.
 inline outcome other_machine_case(const std::string& id) {
     using namespace quadrant;
-    using namespace quadrant::literals;
-    using screw = ball_screw_drive<stribeck<signal::angular_velocity, signal::torque>>;
-    using boxes = feed_drive_boxes<screw>;
-    const auto machine = [](const vcnc::axis& a, double inertia, std::uint64_t seed) {
-        const auto p = vcnc::drive(a);
-        boxes::parameters out{
-            .amplifier = p.amplifier,
-            .drive = {.inertia = inertia * p.drive.inertia,
-                      .viscous = p.drive.viscous,
-                      .torque_constant = p.drive.torque_constant,
-                      .pitch = p.drive.pitch,
-                      .friction = {0.55 * (a.forward.coulomb + a.backward.coulomb) * 1_Nm,
-                                   0.55 * (a.forward.static_level + a.backward.static_level) * 1_Nm,
-                                   a.forward.fall * 1_radps,
-                                   {}}}};
-        out.encoder_step = p.encoder_step;
-        out.tachometer_noise = p.tachometer_noise;
-        out.seed = seed;
-        return out;
-    };
     outcome out;
     panel drawn{
         .x_label = "inertia, machine over controller", .y_label = "largest contour error [um]", .lines = {}};
@@ -105,15 +122,7 @@ inline outcome other_machine_case(const std::string& id) {
                                       Law*) {
         line curve{.name = name == std::string_view("pid") ? "PID" : "sliding mode", .x = {}, .y = {}};
         for (const double inertia : {0.5, 0.75, 1.0, 1.25, 1.5}) {
-            vcnc::servo<Law, boxes> x(machine(vcnc::x_axis, inertia, 2), law_of(vcnc::x_axis)),
-                y(machine(vcnc::y_axis, inertia, 3), law_of(vcnc::y_axis));
-            x.settle(vcnc::diamond::at(0).x.position), y.settle(vcnc::diamond::at(0).y.position);
-            double most = 0;
-            for (int k = 0; k < vcnc::diamond::samples() + 100; ++k) {
-                most = std::max(most, 1e6 * vcnc::diamond::off_the_path(x.place(), y.place()));
-                const auto r = vcnc::diamond::at(k);
-                x.step(r.x), y.step(r.y);
-            }
+            const double most = largest_off_the_diamond<Law>(inertia, law_of);
             const bool lost = !(most < 1000);
             curve.x.push_back(inertia),
                 curve.y.push_back(lost ? std::numeric_limits<double>::quiet_NaN() : most);

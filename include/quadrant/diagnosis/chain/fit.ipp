@@ -9,11 +9,38 @@ QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd solved_normal(Eigen::MatrixXd a, const E
     return a.ldlt().solve(b);
 }
 
+/// What fits to the other folds leave of each: rms and score.
+inline void score_by_folds(fitted& out, const equations& q, const std::vector<normal_equations>& piece,
+                           const normal_equations& all, const Eigen::VectorXd& unit, double noise) {
+    const auto n = static_cast<std::size_t>(q.difference.size());
+    std::array<Eigen::VectorXd, folds_of> without;
+    for (std::size_t f = 0; f < folds_of; ++f) {
+        normal_equations others = all;
+        for (std::size_t p = f; p < pieces; p += folds_of) {
+            others.a -= piece[p].a;
+            others.b -= piece[p].b;
+        }
+        without[f] = solved_normal(others.a, others.b, unit);
+    }
+    const std::size_t blocks = std::clamp<std::size_t>(n / rows_of_block, 1, most_blocks);
+    std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);
+    double total = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        const double e = q.difference[row] - q.columns.row(row).dot(without[i * pieces / n % folds_of]);
+        sum[i * blocks / n] += e * e;
+        count[i * blocks / n] += 1;
+        total += e * e;
+    }
+    out.held_out = std::sqrt(total / static_cast<double>(n));
+    for (std::size_t b = 0; b < blocks; ++b)
+        out.score -= samples_of_block / 2 * std::log(sum[b] / count[b] + noise * noise);
+}
+
 QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& m) {
     const equations q = r.of_model(m);
     const auto n = static_cast<std::size_t>(q.difference.size());
     const auto width = q.columns.cols();
-    const auto piece_of = [&](std::size_t i) { return i * pieces / n; };
     std::vector<normal_equations> piece(pieces,
                                         {Eigen::MatrixXd::Zero(width, width), Eigen::VectorXd::Zero(width)});
     for (std::size_t p = 0; p < pieces; ++p) {
@@ -49,29 +76,7 @@ QUADRANT_DIAGNOSIS_DECL fitted fit_columns(const readings& r, const link_model& 
     inverse = inverse.ldlt().solve(Eigen::MatrixXd::Identity(width, width)).eval();
     out.covariance =
         inverse * scatter * inverse * (static_cast<double>(pieces) / (static_cast<double>(pieces) - 1));
-
-    std::array<Eigen::VectorXd, folds_of> without;
-    for (std::size_t f = 0; f < folds_of; ++f) {
-        normal_equations others = all;
-        for (std::size_t p = f; p < pieces; p += folds_of) {
-            others.a -= piece[p].a;
-            others.b -= piece[p].b;
-        }
-        without[f] = solved_normal(others.a, others.b, unit);
-    }
-    const std::size_t blocks = std::clamp<std::size_t>(n / rows_of_block, 1, most_blocks);
-    std::vector<double> sum(blocks, 0.0), count(blocks, 0.0);
-    double total = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        const double e = q.difference[row] - q.columns.row(row).dot(without[piece_of(i) % folds_of]);
-        sum[i * blocks / n] += e * e;
-        count[i * blocks / n] += 1;
-        total += e * e;
-    }
-    out.held_out = std::sqrt(total / static_cast<double>(n));
-    for (std::size_t b = 0; b < blocks; ++b)
-        out.score -= samples_of_block / 2 * std::log(sum[b] / count[b] + r.noise() * r.noise());
+    score_by_folds(out, q, piece, all, unit, r.noise());
     return out;
 }
 

@@ -124,6 +124,75 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
     return d;
 }
 
+/// What the findings of a link come to, beside what is in the outcome.
+struct told_findings {
+    bool all_claimed = true;   ///< every cause
+    bool without_name = false; ///< something was found that has no name, or an excluded one
+    double unnamed = 0;        ///< its share of the difference
+};
+
+/// Share of the difference that a finding takes off; `whole`: its mean square.
+inline double share_of(const finding& f, double whole) {
+    return std::clamp((f.before * f.before - f.after * f.after) / whole, 0.0, 1.0);
+}
+
+/// The findings as causes, calibrated numbers, notes and places.
+inline told_findings tell_findings(outcome& out, const readings& r, const described_link& d, const answer& a,
+                                   const axis_description& axis, const std::vector<term>& left_out,
+                                   double whole) {
+    told_findings told;
+    for (const finding& f : a.findings) {
+        if (std::find(left_out.begin(), left_out.end(), f.what) != left_out.end()) {
+            told.without_name = true;
+            told.unnamed += share_of(f, whole);
+            if (f.what == term::motor_friction && f.probability >= 0.5)
+                out.unnamed_motor_coulomb = term_values(d, a.best, axis).of(f.what)[0].values[0].value;
+            out.notes.push_back(
+                fmt::format("axis {}: {}, which the machine file excludes, explains what lies between "
+                            "{} and {} best: check excluded_effects.",
+                            axis.name, effect_named(name_of(f.what))->label, d.from, d.to));
+            continue;
+        }
+        if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
+            told.without_name |= f.what == term::drift;
+            out.notes.push_back(note_without_name(d, a, axis, f.what));
+            continue;
+        }
+        cause c = cause_of(d, a, axis, f);
+        if (!c.parameters.empty() && inside_tolerance(axis, c.parameters[0])) {
+            std::erase_if(out.calibrated,
+                          [&](const parameter_estimate& p) { return p.key == c.parameters[0].key; });
+            out.calibrated.push_back(c.parameters[0]);
+            continue;
+        }
+        const effect* e = effect_named(c.effect);
+        const double share = share_of(f, whole);
+        out.places.push_back({"block",
+                              std::string(e->box),
+                              std::string(e->label) + " takes this share off",
+                              {share, share, share},
+                              "causes"});
+        if (f.what == term::play) {
+            const auto more = places_of_reversals(r, a.best, share);
+            out.places.insert(out.places.end(), more.begin(), more.end());
+        }
+        told.all_claimed &= claimed(c);
+        out.causes.push_back(std::move(c));
+    }
+    return told;
+}
+
+/// What a link's outcome comes to in one word.
+inline verdict verdict_of(const outcome& out, bool at_floor, bool all_claimed) {
+    const bool claims = std::any_of(out.causes.begin(), out.causes.end(), claimed);
+    return at_floor ? out.causes.empty()
+                          ? (out.calibrated.empty() ? verdict::no_gap : verdict::within_tolerance)
+                      : all_claimed ? verdict::explained
+                                    : verdict::partly_explained
+           : claims ? verdict::partly_explained
+                    : verdict::unexplained;
+}
+
 QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described, const axis_description& axis,
                                               const std::vector<std::string>& excluded, const rules& limits) {
     std::vector<term> left_out;
@@ -142,59 +211,18 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
     out.gap_after = {.position_rms_m = a.best.held_out, .position_peak_m = a.best.left.cwiseAbs().maxCoeff()};
     out.gap.noise_floor_position_rms_m = out.gap_after.noise_floor_position_rms_m = r.noise();
     const double whole = std::max(a.given.held_out * a.given.held_out, 1e-300);
-    const auto share_of = [&](const finding& f) {
-        return std::clamp((f.before * f.before - f.after * f.after) / whole, 0.0, 1.0);
-    };
-    bool all_claimed = true, without_name = false;
-    double unnamed = 0;
-    for (const finding& f : a.findings) {
-        if (std::find(left_out.begin(), left_out.end(), f.what) != left_out.end()) {
-            without_name = true;
-            unnamed += share_of(f);
-            if (f.what == term::motor_friction && f.probability >= 0.5)
-                out.unnamed_motor_coulomb = term_values(d, a.best, axis).of(f.what)[0].values[0].value;
-            out.notes.push_back(
-                fmt::format("axis {}: {}, which the machine file excludes, explains what lies between "
-                            "{} and {} best: check excluded_effects.",
-                            axis.name, effect_named(name_of(f.what))->label, d.from, d.to));
-            continue;
-        }
-        if (f.what == term::drift || (f.what == term::delay && !d.readings.asked)) {
-            without_name |= f.what == term::drift;
-            out.notes.push_back(note_without_name(d, a, axis, f.what));
-            continue;
-        }
-        cause c = cause_of(d, a, axis, f);
-        if (!c.parameters.empty() && inside_tolerance(axis, c.parameters[0])) {
-            std::erase_if(out.calibrated,
-                          [&](const parameter_estimate& p) { return p.key == c.parameters[0].key; });
-            out.calibrated.push_back(c.parameters[0]);
-            continue;
-        }
-        const effect* e = effect_named(c.effect);
-        const double share = share_of(f);
-        out.places.push_back({"block",
-                              std::string(e->box),
-                              std::string(e->label) + " takes this share off",
-                              {share, share, share},
-                              "causes"});
-        if (f.what == term::play) {
-            const auto more = places_of_reversals(r, a.best, share);
-            out.places.insert(out.places.end(), more.begin(), more.end());
-        }
-        all_claimed &= claimed(c);
-        out.causes.push_back(std::move(c));
-    }
+    const told_findings told = tell_findings(out, r, d, a, axis, left_out, whole);
     // What the force is known to moves the wind-up by as much.
     const double doubt = std::hypot(d.readings.force_doubt, best_law) *
                          term_values(d, a.best, axis).compliance() *
                          (d.readings.force.empty() ? 0 : rms(d.readings.force));
     const double floor = r.noise() * r.noise(), after = a.best.held_out * a.best.held_out;
     const bool at_floor =
-        !without_name &&
+        !told.without_name &&
         (a.at_floor || after - floor < law_error * law_error * (whole - floor) + doubt * doubt);
+    double unnamed = told.unnamed;
     for (const finding& f : a.findings)
-        if (f.what == term::drift) unnamed += share_of(f);
+        if (f.what == term::drift) unnamed += share_of(f, whole);
     out.share_left = at_floor ? 0 : std::clamp(unnamed + (after - floor) / whole, 0.0, 1.0);
     const double rest = std::clamp(unnamed + after / whole, 0.0, 1.0);
     out.places.push_back({"block",
@@ -203,13 +231,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
                                    : fmt::format("between {} and {}: no cause tells which", d.from, d.to),
                           {rest, rest, rest},
                           "replay"});
-    const bool claims = std::any_of(out.causes.begin(), out.causes.end(), claimed);
-    out.verdict = at_floor ? out.causes.empty()
-                                 ? (out.calibrated.empty() ? verdict::no_gap : verdict::within_tolerance)
-                             : all_claimed ? verdict::explained
-                                           : verdict::partly_explained
-                  : claims ? verdict::partly_explained
-                           : verdict::unexplained;
+    out.verdict = verdict_of(out, at_floor, told.all_claimed);
     out.structure = fmt::format("axis {}: {:.3g} um rms between {} and {} (floor {:.3g} um)", axis.name,
                                 1e6 * a.best.held_out, d.from, d.to, 1e6 * r.noise());
     give_signals(out, r, a.best);

@@ -72,6 +72,35 @@ inline std::pair<double, double> left_with(const position_compensation& c, const
     return {std::sqrt(square), peak};
 }
 
+/// The first row that counts: until the axis has gone a tenth of its travel, nobody knows at which side of a
+/// play it stands.
+inline std::size_t first_that_counts(const position_link& l) {
+    std::size_t from = 0;
+    for (double low = l.first[0], high = low; from < l.rows() && high - low < 0.1 * l.travel(); ++from) {
+        low = std::min(low, l.first[from]);
+        high = std::max(high, l.first[from]);
+    }
+    return from;
+}
+
+/// What a control is given for a compensation.
+inline std::vector<key_value> settings_of(const position_compensation& c, const axis_description& corrected,
+                                          const position_link& l) {
+    std::vector<key_value> out;
+    const auto [low, high] = std::minmax_element(l.first.begin(), l.first.end());
+    if (c.step) out.push_back({"backlash_step_m", {*corrected.transmission.backlash_m}});
+    if (c.scale) out.push_back({"travel_per_turn_m", {*corrected.transmission.travel_per_turn_m}});
+    if (c.table) {
+        const table_along t = position_compensation::table_of(corrected, *low, *high);
+        key_value at{"table_at_m", {}};
+        for (std::size_t k = 0; k < t.add.size(); ++k)
+            at.values.push_back(t.from + static_cast<double>(k) * t.step);
+        out.push_back(std::move(at));
+        out.push_back({"table_add_m", t.add});
+    }
+    return out;
+}
+
 QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     const axis_description& axis, const axis_description& corrected, const axis_log& log, double period,
     const std::string& file, const std::vector<const axis_description*>& inside,
@@ -82,12 +111,7 @@ QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     const double count = std::max(axis.encoder.resolution_m, observed_count(log.position, log.position_step));
     const position_link l = log.motor.empty() ? asked_to(axis, log, period, log.position, count, true).readings
                                               : motor_to_scale(axis, log, period, file).readings;
-    // Until the axis has gone a tenth of its travel, nobody knows at which side of a play it stands.
-    std::size_t from = 0;
-    for (double low = l.first[0], high = low; from < l.rows() && high - low < 0.1 * l.travel(); ++from) {
-        low = std::min(low, l.first[from]);
-        high = std::max(high, l.first[from]);
-    }
+    const std::size_t from = first_that_counts(l);
     const auto known = [](double x) { return estimate{x, x, x}; };
     out.forecast = out.positions_only = true;
     out.noise_m = l.noise();
@@ -100,18 +124,7 @@ QUADRANT_DIAGNOSIS_DECL compensated_axis compensated_positions(
     };
     const auto add = [&](std::string name, std::vector<std::string> against, position_compensation c) {
         compensation out_of{.name = std::move(name), .effects = std::move(against)};
-        const auto [low, high] = std::minmax_element(l.first.begin(), l.first.end());
-        if (c.step) out_of.settings.push_back({"backlash_step_m", {*corrected.transmission.backlash_m}});
-        if (c.scale)
-            out_of.settings.push_back({"travel_per_turn_m", {*corrected.transmission.travel_per_turn_m}});
-        if (c.table) {
-            const table_along t = position_compensation::table_of(corrected, *low, *high);
-            key_value at{"table_at_m", {}};
-            for (std::size_t k = 0; k < t.add.size(); ++k)
-                at.values.push_back(t.from + static_cast<double>(k) * t.step);
-            out_of.settings.push_back(std::move(at));
-            out_of.settings.push_back({"table_add_m", t.add});
-        }
+        out_of.settings = settings_of(c, corrected, l);
         const auto [rms_found, peak_found] = left_with(c, axis, corrected, l, from);
         estimate rms{rms_found, rms_found, rms_found}, peak{peak_found, peak_found, peak_found};
         for (const axis_description* a : inside) {

@@ -132,6 +132,56 @@ QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, 
     return possible(out) ? out : from;
 }
 
+inline fitted begun_with_lag(const readings& r, const fitted& from, term t) {
+    link_model m = from.model;
+    const auto other = t == term::delay ? term::first_order : term::delay;
+    if (m.has(other)) return from;
+    m.how = t == term::delay ? following::delayed : following::first_order;
+    const double seconds = r.of().period * static_cast<double>(r.of().rows());
+    m.lag = least(
+        [&](double lag) {
+            m.lag = lag;
+            return fit_columns(r, m).rms;
+        },
+        0.002 * r.of().period, seconds / 20, 22, 12);
+    if (!m.has(t)) m.freed.push_back(t);
+    return settled(r, fit_columns(r, m));
+}
+inline fitted begun_with_pitch(const readings& r, const fitted& from) {
+    link_model m = from.model;
+    const double known = m.pitch_period > 0 ? m.pitch_period : r.of().turn;
+    if (!m.has(term::pitch)) m.freed.push_back(term::pitch);
+    m.pitch_harmonics = 1;
+    const bool passed = known > 0 && r.travel() >= 1.5 * known;
+    if (known > 0 && !passed) return from;
+    const double p = known > 0 ? known : repeating_period(r, from, 0, false);
+    if (!(p > 0)) return from;
+    m.pitch_period = p;
+    fitted best = known > 0 ? fit_columns(r, m)
+                            : refined_period(r, m, p, [](link_model& x, double y) { x.pitch_period = y; });
+    for (int h = 2; h <= 4; ++h) {
+        link_model more = best.model;
+        more.pitch_harmonics = h;
+        if (known > 0 && m.pitch.size() > static_cast<std::size_t>(h)) continue;
+        fitted next = fit_columns(r, more);
+        if (next.score > best.score + 5) best = std::move(next);
+    }
+    return settled(r, std::move(best));
+}
+inline fitted begun_with_cyclic(const readings& r, const fitted& from, double margin) {
+    link_model m = from.model;
+    if (!m.has(term::cyclic)) m.freed.push_back(term::cyclic);
+    const auto put = [](link_model& x, double y) { x.cyclic_period = y; };
+    // The strongest wave first, however near it is to a turn: then its own period has to predict better.
+    for (const double but : {0.0, r.of().turn}) {
+        const double p = repeating_period(r, from, but, true);
+        if (!(p > 0)) return from;
+        fitted best = refined_period(r, m, p, put);
+        if (is_own_period(r, best, margin)) return settled(r, std::move(best));
+    }
+    return from;
+}
+
 QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& from, term t, double margin) {
     link_model m = from.model;
     const auto freed = [&](link_model& x) {
@@ -139,20 +189,8 @@ QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& 
     };
     switch (t) {
     case term::delay:
-    case term::first_order: {
-        const auto other = t == term::delay ? term::first_order : term::delay;
-        if (m.has(other)) return from;
-        m.how = t == term::delay ? following::delayed : following::first_order;
-        const double seconds = r.of().period * static_cast<double>(r.of().rows());
-        m.lag = least(
-            [&](double lag) {
-                m.lag = lag;
-                return fit_columns(r, m).rms;
-            },
-            0.002 * r.of().period, seconds / 20, 22, 12);
-        freed(m);
-        return settled(r, fit_columns(r, m));
-    }
+    case term::first_order:
+        return begun_with_lag(r, from, t);
     case term::play:
         m.play = least(
             [&](double width) {
@@ -162,38 +200,10 @@ QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& 
             std::max(0.25 * r.of().count(), 0.5 * r.noise()), r.travel() / 12, 16, 10);
         freed(m);
         return settled(r, fit_columns(r, m));
-    case term::pitch: {
-        const double known = m.pitch_period > 0 ? m.pitch_period : r.of().turn;
-        freed(m);
-        m.pitch_harmonics = 1;
-        const bool passed = known > 0 && r.travel() >= 1.5 * known;
-        if (known > 0 && !passed) return from;
-        const double p = known > 0 ? known : repeating_period(r, from, 0, false);
-        if (!(p > 0)) return from;
-        m.pitch_period = p;
-        fitted best = known > 0 ? fit_columns(r, m)
-                                : refined_period(r, m, p, [](link_model& x, double y) { x.pitch_period = y; });
-        for (int h = 2; h <= 4; ++h) {
-            link_model more = best.model;
-            more.pitch_harmonics = h;
-            if (known > 0 && m.pitch.size() > static_cast<std::size_t>(h)) continue;
-            fitted next = fit_columns(r, more);
-            if (next.score > best.score + 5) best = std::move(next);
-        }
-        return settled(r, std::move(best));
-    }
-    case term::cyclic: {
-        freed(m);
-        const auto put = [](link_model& x, double y) { x.cyclic_period = y; };
-        // The strongest wave first, however near it is to a turn: then its own period has to predict better.
-        for (const double but : {0.0, r.of().turn}) {
-            const double p = repeating_period(r, from, but, true);
-            if (!(p > 0)) return from;
-            fitted best = refined_period(r, m, p, put);
-            if (is_own_period(r, best, margin)) return settled(r, std::move(best));
-        }
-        return from;
-    }
+    case term::pitch:
+        return begun_with_pitch(r, from);
+    case term::cyclic:
+        return begun_with_cyclic(r, from, margin);
     case term::motor_friction:
         if (!(m.compliance > 0 || m.has(term::spring))) return from; // it winds up nothing
         if (m.play > 0)                                              // it decides which flank is in contact

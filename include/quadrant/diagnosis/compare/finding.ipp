@@ -34,6 +34,16 @@ inline bool shrinks(const fit_of_log& more, const fit_of_log& less, const rules&
     return more.above_floor() < (1 - r.least_shrink) * less.above_floor();
 }
 
+/// How probable a name can be with which `all` leaves less than `without`: what no name explains in the other
+/// log may be what this name stands for here; and no law that both have is right to more than a few per cent.
+inline double at_most_probable(const direction& d, const fit_of_log& reference, const fit_of_log& without,
+                               const fit_of_log& all) {
+    const double explained = taken_off(without, all);
+    const bool open = d.reference->verdict > verdict::explained;
+    const double rest = open ? reference.above_floor() : 0;
+    return 1 - by_chance(all.names, rest / explained);
+}
+
 QUADRANT_DIAGNOSIS_DECL finding by_scores(const direction& d, const std::string& axis, log_of_axis& reference,
                                           log_of_axis& own, const rules& r) {
     const auto of = [&](const machine_description& m) -> const axis_description& {
@@ -72,12 +82,7 @@ QUADRANT_DIAGNOSIS_DECL finding by_scores(const direction& d, const std::string&
         found.gain = all.total - without.total;
         found.loss = out.reference.total - joined.total;
         if (found.gain < r.margin || !shrinks(all, without, r)) continue;
-        // What no name explains in the other log may be what this name stands for here; and no law of what both
-        // have is right to more than a few per cent.
-        const double explained = taken_off(without, all);
-        const bool open = d.reference->verdict > verdict::explained;
-        const double rest = open ? out.reference.above_floor() : 0;
-        found.probability = std::min(found.probability, 1 - by_chance(all.names, rest / explained));
+        found.probability = std::min(found.probability, at_most_probable(d, out.reference, without, all));
         const bool asked_of_both = found.loss >= r.margin && shrinks(out.reference, joined, r);
         if (found.probability >= 0.5) (asked_of_both ? out.named : out.undecided).push_back(std::move(found));
     }
