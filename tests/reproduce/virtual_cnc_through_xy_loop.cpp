@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// The loops of the Virtual CNC run again as an xy_loop. Its laws have no switching: PID and sliding mode are the
-// cascade of a milling_axis in other words, and both axes of one loop move as two servos do.
+// The loops of the Virtual CNC run again as an xy_loop. Its laws have no switching: PID and sliding mode are
+// the cascade of a milling_axis in other words, and both axes of one loop move as two servos do.
 #include "quadrant_reproduce/experiment/vcnc_contour.hpp"
 #include "quadrant_reproduce/experiment/vcnc_program.hpp"
 #include "quadrant_reproduce/fuzzy_trial.hpp"

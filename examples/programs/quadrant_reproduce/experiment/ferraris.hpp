@@ -47,6 +47,19 @@ inline outcome ferraris_calibration_case(const std::string& id) {
     out.rows = {
         {id, "sensitivity", "m/(V s2)", mean_gain / used, {}, {}, gain, "mean up to 40 Hz, as in the thesis"},
         {id, "offset", "m/s2", mean_offset / used, {}, {}, offset, "mean up to 40 Hz"}};
+    double uniform = 0;
+    for (std::size_t k = 0; k < gains.x.size() && std::abs(gains.y[k] / (mean_gain / used) - 1) < 0.05; ++k)
+        uniform = gains.x[k];
+    out.rows.push_back(
+        {id,
+         "uniform_up_to",
+         "Hz",
+         uniform,
+         {},
+         {},
+         {},
+         "sensitivity within 5 % of the mean; 100 Hz is the highest that is tried. Ours has noise "
+         "alone; why the thesis' sensor scatters above 40 Hz is not said"});
     for (line* l : {&gains, &offsets}) l->name = "found at one frequency";
     const line printed_gain{
         .name = "printed mean", .x = {0.2, 40}, .y = {gain, gain}, .drawn = line::style::dashed};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../draw.hpp"
+#include "../milling_table.hpp"
 #include "../push_run.hpp"
 #include "harmonics.hpp"
 
@@ -82,6 +83,24 @@ inline outcome harmonic_sensitivity(const std::string& id) {
                         {},
                         poles});
     out.rows.push_back({id, "error_23Hz_response", "um", two.error(hertz(23)), {}, {}, {}, poles});
+    // At a harmonic itself eq. (D.15) is exactly 0, which has no decibels: the frequency is off by its last
+    // digit.
+    const auto zero = [&](const char* what, const force_observer_loop& l, double at) {
+        const double beside = std::nextafter(at, 2 * at);
+        out.rows.push_back(
+            {id,
+             what,
+             "dB",
+             quadrant::analysis::decibel(std::abs(l.sensitivity(hertz(beside)))),
+             {},
+             {},
+             {},
+             "an exact zero: digits of rounding, the published ones too; ours one last digit of the "
+             "frequency beside it"});
+    };
+    zero("zero_one_46Hz", one, 46);
+    zero("zero_two_46Hz", two, 46);
+    zero("zero_two_69Hz", two, 69);
     const band b{hertz(1), hertz(400), 200};
     const auto curve = [&](const char* name, const force_observer_loop& l) {
         return over_frequency(name, b, [&](quadrant::frequency f) { return l.error(f); });
@@ -197,6 +216,45 @@ inline outcome harmonic_runs(const std::string& id) {
     return out;
 }
 
+/// Fig. D.12: the circle under the first harmonic alone, without and with the observer that knows it.
+struct one_harmonic {
+    using box = thesis::by_harmonics<1>;
+    static box::parameters of(const thesis::axis& a) {
+        box::parameters p;
+        p.of = a;
+        return p;
+    }
+};
+inline outcome harmonic_circle(const std::string& id) {
+    using thesis::configuration, thesis::gms_model, thesis::gms_plant, thesis::no_memory;
+    const thesis::cut c;
+    outcome out;
+    panel drawn{.x_label = "", .y_label = "um", .lines = {}, .polar = true, .polar_zero = 30.0};
+    const auto add = [&]<class Configuration>(const char* quantity, const char* name, Configuration*) {
+        const auto found = thesis::mill<Configuration, gms_plant>(c, thesis::synthesized(c, 1));
+        out.rows.push_back(
+            {id,
+             quantity,
+             "um",
+             found.diverged ? std::nullopt : std::optional(found.rms),
+             {},
+             {},
+             {},
+             "radial error on the circle of 30 mm at 100 mm/s, first harmonic; GMS fed forward"});
+        line turn{.name = name, .x = {}, .y = {}};
+        for (std::size_t k = found.radial.size() / 3 * 2; k < found.radial.size(); ++k)
+            turn.x.push_back(found.angle[k]), turn.y.push_back(found.radial[k]);
+        drawn.lines.push_back(std::move(turn));
+    };
+    add("circle_rms_off_1", "without",
+        static_cast<configuration<gms_model, thesis::no_observer, no_memory>*>(nullptr));
+    add("circle_rms_on_1", "with", static_cast<configuration<gms_model, one_harmonic, no_memory>*>(nullptr));
+    out.pictures = {{"Radial error with one harmonic",
+                     "Polar plot of one turn in um about the nominal circle of 30 mm; force scale 1.38.",
+                     {std::move(drawn)}}};
+    return out;
+}
+
 inline experiment harmonic_observer() {
     const std::string id = "thesis.harmonic_observer";
     return {"The harmonic force observer",
@@ -209,9 +267,10 @@ inline experiment harmonic_observer() {
             0.10,
             {{id, [=] {
                   auto out = harmonic_sensitivity(id);
-                  auto more = harmonic_runs(id);
-                  out.rows.insert(out.rows.end(), more.rows.begin(), more.rows.end());
-                  out.pictures.insert(out.pictures.end(), more.pictures.begin(), more.pictures.end());
+                  for (auto& more : {harmonic_runs(id), harmonic_circle(id)}) {
+                      out.rows.insert(out.rows.end(), more.rows.begin(), more.rows.end());
+                      out.pictures.insert(out.pictures.end(), more.pictures.begin(), more.pictures.end());
+                  }
                   return out;
               }}}};
 }
