@@ -33,8 +33,8 @@ for k in range(120):  # a double integrator with a mode at 180 Hz
 # What is asked for, its axes, and words that its page must have.
 pages = {"analysis": ("analyse", mill, [], 3, 15, ("phase margin",)),
          "measured": ("analyse", mill, ["--axis", "x", "--frf", scratch / "measured.csv"], 1, 7, ("proposed velocity gain", "proposed notch", "Measured response")),
-         "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed", "averages", "1: all of the position")),
-         "tuning": ("tune", mill.with_name("sliding.json"), ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)"))}
+         "chirp": ("analyse", mill, ["--axis", "x", "--chirp", scratch / "chirp.csv"], 1, 8, ("proposed", "averages", "1: all of the position", "measure further up")),
+         "tuning": ("tune", mill.with_name("sliding.json"), ["--axis", "x"], 1, 2, ("phase margin", "no rule asks for a change", "(acceptable)", "Tuning of sliding.json"))}
 T, x, v, lines = 1e-3, 0.0, 0.0, ["t_s,x_ref_m,x_pos_m,x_cmd_V"]
 for k in range(9000):  # a free mass under a PD law with a chirp in its reference
     reference = 4e-5 * math.sin(2 * math.pi * 9 / math.log(400) * (400 ** (k * T / 9) - 1))

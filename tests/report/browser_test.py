@@ -7,6 +7,7 @@ browser_test.py REPORT.html [--expect-verdict V] [--expect-cause EFFECT] --shots
 import argparse
 import base64
 import pathlib
+import re
 import sys
 import tempfile
 
@@ -137,6 +138,7 @@ def check_zoom(driver):
         for legend in driver.execute_script(LEGENDS, axis):
             print(f"  under the pointer: {legend}")
             check(legend.endswith(" s"), f"no value is shown under the pointer, only '{legend}'")
+            check(not re.search(r"spikes up to \S+ go", legend), f"spikes have no unit: '{legend}'")
         driver.execute_script("document.querySelector(`button[data-axis='${arguments[0]}']`).click()", axis)
         check(driver.execute_script(RANGES, axis) == whole, "the button does not show the whole record")
 

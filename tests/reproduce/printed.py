@@ -65,11 +65,15 @@ def numbers_named(text, what):
     return found
 
 
+def section_of(path, source):
+    """The parts of one source."""
+    listed = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("\n## ")[0]
+    return next(each for each in listed.split("\n### ") if each.startswith(source))
+
+
 def parts_of(path, source):
     """The places of the parts of one source, a line each."""
-    listed = pathlib.Path(path).read_text(encoding="utf-8").split("## Every part of the sources")[1].split("\n## ")[0]
-    section = next(each for each in listed.split("\n### ") if each.startswith(source))
-    return "\n".join(line.split("|")[1] for line in section.splitlines() if line.startswith("| "))
+    return "\n".join(line.split("|")[1] for line in section_of(path, source).splitlines() if line.startswith("| "))
 
 
 def without_others(parts):
@@ -105,6 +109,24 @@ def part_faults(path, folder):
         yield f"{source}: {kind} {chapter}{'.' * bool(chapter)}{number} is not among the parts"
     if len(wanted) < 250:
         yield f"only {len(wanted)} figures, tables and equations found in the texts"
+
+
+def loop_faults(path):
+    """Every experiment says whether it runs through xy_loop, and why not."""
+    text = pathlib.Path(path).read_text(encoding="utf-8")
+    table = lambda head: [line.split("|")[1].strip() for line in text.split(head)[1].split("\n\n")[0].splitlines()[2:]]
+    experiments, said = table("| experiment | figures |"), table("| experiment | runs |")
+    if experiments != said:
+        yield f"xy_loop: {len(said)} lines for {len(experiments)} experiments"
+
+
+def file_faults(path):
+    """Every header and page that a part names is in the repository."""
+    root = pathlib.Path(__file__).resolve().parent.parent.parent
+    for source in SOURCE_FILES:
+        for name in re.findall(r"\b[a-z_]+/[a-z_]+\.(?:hpp|md)\b", section_of(path, source)):
+            if not (root / name).exists() and not (root / "include" / "quadrant" / name).exists():
+                yield f"{source}: {name} is not in the repository"
 
 
 def text_of(folder, pattern):
@@ -153,13 +175,16 @@ def main():
     faults = list(count_faults(listed))
     missing = [line for line in pathlib.Path(sys.argv[1]).read_text(encoding="utf-8").splitlines() if "| missing |" in line]
     faults += [f"missing: {line}" for line in missing]
+    faults += list(loop_faults(sys.argv[1])) + list(file_faults(sys.argv[1]))
+    cannot = sum(1 for row in listed if row[6].startswith("cannot"))
+    if f"- cannot be computed: {cannot}, each" not in pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"):
+        faults.append(f"the headline does not say that {cannot} numbers cannot be computed")
     whole = len(sys.argv) > 2 and pathlib.Path(sys.argv[2]).is_dir()
     if whole:
         faults += text_faults(listed, sys.argv[2])
         faults += part_faults(sys.argv[1], sys.argv[2])
     for fault in faults[:40]:
         print("FAILED:", fault)
-    cannot = sum(1 for row in listed if row[6].startswith("cannot"))
     print(f"{len(listed)} printed numbers, {len(listed) - cannot} with ours beside, {cannot} with a reason; "
           f"{'compared with the texts; ' if whole else ''}{len(faults)} faults")
     sys.exit(bool(faults) or len(listed) < 600)

@@ -8,6 +8,7 @@
 #include "measured_loop.hpp"
 #include "propose.hpp"
 
+#include <fmt/format.h>
 #include <quadrant/analysis/nyquist.hpp>
 
 namespace quadrant_cnc {
@@ -57,6 +58,13 @@ void read_measured(axis_analysis& out, const an::impulse_test& model, const frf_
     out.figures = an::band_figures(loop, band);
     out.measured = measured_axis{measured.file,    measured.frf.lines.size(), measured.from_Hz(),
                                  measured.to_Hz(), measured.coherence,        measured.frf.lines};
+    const double end = std::abs(an::complex(loop.open(band.to)));
+    if (!(end < 1)) {
+        out.measured->not_told = fmt::format("the open loop's gain is still {:.3g} at its end, {:.4g} Hz: measure "
+                                             "further up, to where it is below 1",
+                                             end, band.to.value());
+        return;
+    }
     try {
         // Two integrators: the phase begins between 0 and -360 deg, whether the law has one or not.
         out.stable = an::unstable_poles([&](frequency f) { return loop.open(f); }, band, 2) == 0;

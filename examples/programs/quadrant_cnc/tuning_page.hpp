@@ -62,7 +62,7 @@ inline std::string html_report(const std::vector<axis_tuning>& all, const std::s
     }
     return quadrant_gap::fill(
         joined(files::analysis_template_html),
-        {{"title", escape("Tuning of " + file)},
+        {{"title", escape("Tuning of " + quadrant_gap::file_name(file))},
          {"badge", settled ? "<span class=\"badge no_gap\">no rule asks for a change</span>"
                            : "<span class=\"badge unexplained\">did not settle</span>"},
          {"sentence",

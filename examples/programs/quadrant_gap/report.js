@@ -54,6 +54,7 @@ function spikes(columns) {
 function draw_time(figure) {
     const c = chart_of(figure), first = !graphs[c.axis], cut = spikes(c.columns.slice(1));
     const rows = c.columns[0].map((_, k) => c.columns.map(column => column[k]));
+    const unit = (c.y.match(/\[(.+)\]/) || []).slice(1).map(text => ' ' + text).join(''); // "command [V]"
     const plot = figure.querySelector('.plot');
     plot.classList.toggle('first', first);
     const graph = new Dygraph(plot, rows, {
@@ -62,7 +63,7 @@ function draw_time(figure) {
         underlayCallback: canvas => { canvas.lineJoin = 'round'; }, // a mitred zigzag shows spikes that the data have not
         legend: 'always', labelsDiv: figure.querySelector('.legend'),
         legendFormatter: data => legend(c.names, data.x === undefined ? null : data.series.map(s => s.y === undefined ? '' : digits(s.y)))
-            + (cut ? ` <span>spikes up to ${digits(cut.most)} go beyond the chart</span>` : '')
+            + (cut ? ` <span>spikes up to ${digits(cut.most)}${unit} go beyond the chart</span>` : '')
             + (data.x === undefined ? '' : ` <span>at ${digits(data.x)} s</span>`),
         interactionModel: {...Dygraph.defaultInteractionModel, ...touch},
         axes: {x: {valueFormatter: digits, pixelsPerLabel: 70}, y: {valueFormatter: digits, pixelsPerLabel: 25}},

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "plants.hpp"
+
 #include "experiment/circle.hpp"
 #include "experiment/friction.hpp"
 #include "experiment/friction_dob.hpp"
@@ -6,5 +8,5 @@
 #include "experiments.hpp"
 
 std::vector<quadrant_reproduce::experiment> quadrant_reproduce::friction_experiments() {
-    return {friction(), friction_dob(), circle(), identification()};
+    return {friction(), friction_dob(), circle(), slow_circle(), identification()};
 }

@@ -54,14 +54,16 @@ struct fuzzy_trial {
         return mean;
     }
 
-private:
-    static int samples() { return int(std::lround(way.duration() / period.value())); }
+    /// What the axis is asked at one sample.
     static axis_motion<> at(int k) {
         const bool back = k >= samples();
         const auto m = way.at((back ? k - samples() : k) * period.value());
         const double sign = back ? -1 : 1;
         return {(back ? way.length - m.s : m.s) * 1_m, sign * m.v * 1_mps, sign * m.a * 1_mps2};
     }
+
+private:
+    static int samples() { return int(std::lround(way.duration() / period.value())); }
     /// With half a period more delay; NaN when there is none above 0.
     static double phase_margin(const sliding_mode<>::parameters& p) {
         const analysis::law_loop loop{sliding_mode<>(p, period),

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "plants.hpp"
+
 #include "experiment/dob_force.hpp"
 #include "experiment/feedforward.hpp"
 #include "experiment/forces.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "publication.hpp"
+#include "through_loop.hpp"
 
 #include <algorithm>
 
@@ -23,7 +24,7 @@ inline std::string own(const std::optional<double>& v) { return v ? fmt::format(
 
 /// Where ours stands, or why there is none.
 inline std::string found_at(const printed& p) {
-    if (p.used) return "used as a parameter";
+    if (p.used) return "used as a parameter" + (p.reason.empty() ? p.reason : "; " + p.reason);
     if (p.cannot()) return "cannot be computed: " + p.reason;
     std::string at = fmt::format("`{}` {}", p.id, p.quantity);
     if (p.how == reading::reduction || p.how == reading::rise)
@@ -108,6 +109,20 @@ inline std::string parts_markdown(const std::vector<part>& all, const printed_li
     return out;
 }
 
+/// Which experiments run through `xy_loop`, and why the others do not.
+inline std::string through_loop_markdown(const std::vector<section>& all) {
+    std::string out = "| experiment | runs | how, or why not |\n|---|---|---|\n";
+    for (const section& s : all) {
+        const through_loop* t = through_loop_of(s.what.title);
+        out += fmt::format("| {} | {} | {} |\n", s.what.title,
+                           !t        ? "missing"
+                           : t->runs ? "yes"
+                                     : "no",
+                           t ? t->words : "");
+    }
+    return out;
+}
+
 inline std::string agreement_markdown(const publication& p) {
     return fmt::format(
         "- figures that the sources simulated: {}\n- figures that they measured: {}\n- what they derive from "
@@ -159,6 +174,11 @@ inline std::string markdown(const std::vector<section>& all) {
     }
     if (!outside.empty()) out += "\nOutside of the reference:\n\n" + outside;
     out += "\n## Every part of the sources\n" + parts_markdown(parts(), list, rows, all);
+    out += "\n## Through the loop of the whole table\n\n"
+           "`xy_loop` is the library's loop of both axes: controllers, table and process in one type. Tests "
+           "run the "
+           "experiments of one axis again as an axis of it, while the other one moves, too.\n\n" +
+           through_loop_markdown(all);
     for (const section& s : all) {
         out += fmt::format("\n## {}\n\n{}\n\nSource: {}.\n\n", s.what.title, s.what.text, s.what.source);
         out +=

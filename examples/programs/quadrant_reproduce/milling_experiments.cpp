@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "plants.hpp"
+
 #include "experiment/cutting.hpp"
 #include "experiment/ferraris.hpp"
 #include "experiment/forces.hpp"

@@ -193,15 +193,17 @@ private:
     loop loop_;
 };
 
-/// The cutter by its measured harmonics.
+/// The cutter by its measured harmonics, the first `harmonics` of them.
 class synthesized {
 public:
-    explicit synthesized(const cut& c) : x_(of(c, milling_harmonics::x)), y_(of(c, milling_harmonics::y)) {}
+    explicit synthesized(const cut& c, std::size_t harmonics = 15)
+        : x_(of(c, milling_harmonics::x, harmonics)), y_(of(c, milling_harmonics::y, harmonics)) {}
     milling_force<1>::value operator()(double) { return {x_(), y_()}; }
 
 private:
-    static cutting_force<15> of(const cut& c, const harmonic_table<15>& harmonics) {
-        return {{c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, harmonics},
+    static cutting_force<15> of(const cut& c, harmonic_table<15> table, std::size_t harmonics) {
+        for (std::size_t i = harmonics; i < 15; ++i) table.real[i] = table.imaginary[i] = 0;
+        return {{c.spindle * milling_harmonics::fundamental, c.force * milling_harmonics::scale, table},
                 period};
     }
     cutting_force<15> x_, y_;

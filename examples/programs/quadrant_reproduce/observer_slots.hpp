@@ -104,6 +104,7 @@ public:
                T) {}
     void sense(quantity_of<signal::acceleration>) noexcept {}
     void reset() noexcept { box_.reset(), applied_ = volt(); }
+    void settle(quantity<si::length> at, volt estimate) noexcept { box_.settle(at), applied_ = -estimate; }
     volt operator()(quantity<si::length> position, volt) noexcept { return box_(position, applied_); }
     void applied(volt u) noexcept { applied_ = u; }
 

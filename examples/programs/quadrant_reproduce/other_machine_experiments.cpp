@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "plants.hpp"
+
 #include "experiment/adaptation.hpp"
 #include "experiment/bands.hpp"
 #include "experiment/chapters.hpp"

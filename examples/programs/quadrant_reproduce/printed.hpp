@@ -34,11 +34,11 @@ struct printed {
     std::string source, place, what; ///< [Jamaludin2008], Table 2.3, "x, gain margin"
     std::string text, unit;          ///< letter for letter
     origin from;
-    std::string id{}, quantity{};           ///< ours is the figure of this row,
-    std::optional<double> used{};           ///< or this constant of the program;
-    std::string reason{};                   ///< or there is none, and this is why
-    double scale = 1;                       ///< unit of the row over the printed unit
-    reading how = reading::value;           ///< what is done with the row
+    std::string id{}, quantity{}; ///< ours is the figure of this row,
+    std::optional<double> used{}; ///< or this constant of the program;
+    std::string reason{};         ///< or there is none, and this is why; of a constant: why it differs
+    double scale = 1;             ///< unit of the row over the printed unit
+    reading how = reading::value; ///< what is done with the row
     std::string base_id{}, base_quantity{}; ///< of the other row
     double base = 0;                        ///< of the other printed number
 
@@ -74,6 +74,11 @@ public:
     printed_place& cannot(origin from, std::string what, std::string text, std::string unit,
                           std::string reason) {
         add(from, std::move(what), std::move(text), std::move(unit)).reason = std::move(reason);
+        return *this;
+    }
+    /// Why the last entry's constant is not the printed one.
+    printed_place& differs(std::string why) {
+        into_->back().reason = std::move(why);
         return *this;
     }
     /// What the last entry's row says against another row.

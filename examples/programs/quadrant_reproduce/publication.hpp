@@ -82,7 +82,8 @@ inline void fill(std::vector<section>& all, const printed_list& list) {
         for (row& r : s.rows) {
             // What was read off the measured response stands beside the model with modes, too.
             const bool on_modes = r.id.starts_with("thesis.loop_modes.");
-            const auto at = first.find({on_modes ? "thesis.loop." + r.id.substr(18) : r.id, r.quantity});
+            auto at = first.find({r.id, r.quantity});
+            if (at == first.end() && on_modes) at = first.find({"thesis.loop." + r.id.substr(18), r.quantity});
             if (at == first.end()) continue;
             const auto put = [](std::optional<double>& column, const printed* p) {
                 if (p && !column) column = p->value();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "plants.hpp"
+
 #include "experiment/stage_cycle.hpp"
 #include "experiment/stage_drive.hpp"
 #include "experiment/stage_moves.hpp"

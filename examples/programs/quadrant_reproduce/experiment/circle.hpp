@@ -29,14 +29,15 @@ inline std::array<quadrant::axis_motion<>, 2> along_a_circle(double t, double ra
          {radius * sn * 1_m, radius * cs * rate * 1_mps, radius * (-sn * rate * rate + cs * gain) * 1_mps2}}};
 }
 
-/// Both axes along a circle of 30 mm at 100 mm/s: half a turn to get going, one and a half turns at speed; the
-/// middle turn is judged. Radii are those of the axes, not of their encoders.
+/// Both axes along a circle of 30 mm at some speed [m/s]: half a turn to get going, one and a half turns at it;
+/// the middle turn is judged. Radii are those of the axes, not of their encoders.
 template <class Compensation, class Observer>
-outcome circle_case(const std::string& id, const std::string& name) {
+outcome circle_case(const std::string& id, const std::string& name, double speed = 0.1,
+                    std::size_t substeps = 50) {
     using namespace quadrant;
     using namespace quadrant::literals;
-    const double radius = 0.03, w = 0.1 / radius, T = thesis::period.value(), started = thesis::pi_ / w;
-    const thesis::reading how{.substeps = 50};
+    const double radius = 0.03, w = speed / radius, T = thesis::period.value(), started = thesis::pi_ / w;
+    const thesis::reading how{.substeps = substeps};
     thesis::friction_axis<Compensation, Observer> x(thesis::x, how), y(thesis::y, how);
     analysis::circular_path path{{}, {}, thesis::period};
     bool diverged = false;
@@ -75,7 +76,8 @@ outcome circle_case(const std::string& id, const std::string& name) {
     for (const auto& d : found.deviation) polar.y.push_back(1e6 * d.value());
     const bool observed = !std::is_same_v<Observer, thesis::no_observer>;
     out.pictures = {
-        {std::string("Radial deviation ") + (observed ? "with the observer" : "without observer"),
+        {std::string("Radial deviation ") + (speed < 0.1 ? "at 10 mm/s " : "") +
+             (observed ? "with the observer" : "without observer"),
          "Polar plot in um about the nominal circle; x reverses at 0 and 180 degrees, y at 90 and 270.",
          {panel{.x_label = "",
                 .y_label = "um",
@@ -102,6 +104,31 @@ inline experiment circle() {
          {id + "dob_static",
           [=] { return circle_case<static_curve, observer>(id + "dob_static", "and static"); }},
          {id + "dob_gms", [=] { return circle_case<gms_model, observer>(id + "dob_gms", "and GMS"); }}}};
+}
+
+/// Figs. 4.11 and 4.31.
+inline experiment slow_circle() {
+    using namespace thesis;
+    const std::string id = "thesis.circle_slow.";
+    const auto of = [=]<class Compensation, class Observer>(const char* which, const char* name, Compensation*,
+                                                            Observer*) {
+        return run_case{id + which,
+                        [=] { return circle_case<Compensation, Observer>(id + which, name, 0.01, 10); }};
+    };
+    constexpr no_friction_model* none = nullptr;
+    constexpr static_curve* curve = nullptr;
+    constexpr gms_model* gms = nullptr;
+    constexpr no_observer* alone = nullptr;
+    constexpr observer* observed = nullptr;
+    return {
+        "The circle at 10 mm/s",
+        "[Jamaludin2008] Figs. 4.11 and 4.31",
+        "The same circle ten times slower, plant sub-steps of 50 us. The thesis draws what its machine did and "
+        "prints no number of it.",
+        0.10,
+        {of("none", "none", none, alone), of("static", "static", curve, alone), of("gms", "GMS", gms, alone),
+         of("dob", "observer alone", none, observed), of("dob_static", "and static", curve, observed),
+         of("dob_gms", "and GMS", gms, observed)}};
 }
 
 } // namespace quadrant_reproduce

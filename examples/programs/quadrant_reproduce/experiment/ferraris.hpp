@@ -9,12 +9,39 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 #include <vector>
 
 namespace quadrant_reproduce {
 
 /// What Appendix B gives for the sensor [m/(V s^2)], [m/s^2].
 inline constexpr double ferraris_gain = 32.98, ferraris_offset = -8.58e-3;
+
+/// What was found at each frequency, beside the printed means.
+inline picture ferraris_picture(line gains, line offsets) {
+    constexpr double gain = ferraris_gain, offset = ferraris_offset;
+    for (line* l : {&gains, &offsets}) l->name = "found at one frequency";
+    const line printed_gain{
+        .name = "printed mean", .x = {0.2, 40}, .y = {gain, gain}, .drawn = line::style::dashed};
+    const line printed_offset{.name = "printed mean",
+                              .x = {0.2, 40},
+                              .y = {1e3 * offset, 1e3 * offset},
+                              .drawn = line::style::dashed};
+    return {"Calibration of the Ferraris sensor",
+            "Gain and offset found from a sinusoid of each frequency. The thesis' sensor is uniform "
+            "up to 40 Hz; ours "
+            "is ideal above that, too.",
+            {panel{.x_label = "",
+                   .y_label = "gain [m/(V s2)]",
+                   .lines = {gains, printed_gain},
+                   .log_x = true,
+                   .y_range = std::pair{30.0, 37.0}},
+             panel{.x_label = "frequency [Hz]",
+                   .y_label = "offset [mm/s2]",
+                   .lines = {offsets, printed_offset},
+                   .log_x = true,
+                   .y_range = std::pair{-40.0, 20.0}}}};
+}
 
 /// Appendix B: an ideal sensor of the printed gain and offset on a table that moves as a sinusoid, read with
 /// noise, calibrated by least squares against the encoder of 0.25 um.
@@ -47,27 +74,20 @@ inline outcome ferraris_calibration_case(const std::string& id) {
     out.rows = {
         {id, "sensitivity", "m/(V s2)", mean_gain / used, {}, {}, gain, "mean up to 40 Hz, as in the thesis"},
         {id, "offset", "m/s2", mean_offset / used, {}, {}, offset, "mean up to 40 Hz"}};
-    for (line* l : {&gains, &offsets}) l->name = "found at one frequency";
-    const line printed_gain{
-        .name = "printed mean", .x = {0.2, 40}, .y = {gain, gain}, .drawn = line::style::dashed};
-    const line printed_offset{.name = "printed mean",
-                              .x = {0.2, 40},
-                              .y = {1e3 * offset, 1e3 * offset},
-                              .drawn = line::style::dashed};
-    out.pictures = {{"Calibration of the Ferraris sensor",
-                     "Gain and offset found from a sinusoid of each frequency. The thesis' sensor is uniform "
-                     "up to 40 Hz; ours "
-                     "is ideal above that, too.",
-                     {panel{.x_label = "",
-                            .y_label = "gain [m/(V s2)]",
-                            .lines = {gains, printed_gain},
-                            .log_x = true,
-                            .y_range = std::pair{30.0, 37.0}},
-                      panel{.x_label = "frequency [Hz]",
-                            .y_label = "offset [mm/s2]",
-                            .lines = {offsets, printed_offset},
-                            .log_x = true,
-                            .y_range = std::pair{-40.0, 20.0}}}}};
+    double uniform = 0;
+    for (std::size_t k = 0; k < gains.x.size() && std::abs(gains.y[k] / (mean_gain / used) - 1) < 0.05; ++k)
+        uniform = gains.x[k];
+    out.rows.push_back(
+        {id,
+         "uniform_up_to",
+         "Hz",
+         uniform,
+         {},
+         {},
+         {},
+         "sensitivity within 5 % of the mean; 100 Hz is the highest that is tried. Ours has noise "
+         "alone; why the thesis' sensor scatters above 40 Hz is not said"});
+    out.pictures = {ferraris_picture(std::move(gains), std::move(offsets))};
     return out;
 }
 

