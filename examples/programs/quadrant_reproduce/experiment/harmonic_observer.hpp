@@ -13,7 +13,6 @@ namespace quadrant_reproduce {
 /// Fig. D.4: the error under 1 V with no observer, with one harmonic and with two.
 inline picture error_with_harmonics(const force_observer_loop& one, const force_observer_loop& two) {
     using quadrant::analysis::hertz;
-    using complex = force_observer_loop::complex;
     const band b{hertz(1), hertz(400), 200};
     const auto curve = [&](const char* name, const force_observer_loop& l) {
         return over_frequency(name, b, [&](quadrant::frequency f) { return l.error(f); });
