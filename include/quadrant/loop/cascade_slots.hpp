@@ -13,8 +13,9 @@ template <class Boxes> using command_of = typename decltype(Boxes::velocity_loop
 /// The number type in which a set of boxes calculates.
 template <class Boxes> using real_of_boxes = real_of<decltype(Boxes::velocity_loop)>;
 
-/// One box per role, each mapping what its place in the diagram maps. Write `static_assert(axis_boxes<my_axis>)`
-/// under your struct: the compiler then names the member that is missing or maps something else.
+/// One box per role, each mapping what its place in the diagram maps. Write
+/// `static_assert(axis_boxes<my_axis>)` under your struct: the compiler then names the member that is missing
+/// or maps something else.
 template <class B>
 concept axis_boxes = requires {
     typename command_of<B>; // velocity_loop
