@@ -34,13 +34,15 @@ struct previewed : quadrant::preview<Capacity, quadrant::axis_motion<Real>> {
     void settle(value x) noexcept { base::settle(as_motion(x)); }
     /// The textbook's Hermite cubic through the samples before and behind.
     std::complex<double> response(quadrant::frequency f) const {
-        constexpr double T = 5e-4;
-        const double lead = quadrant::detail::plain(this->given().lead), whole = std::floor(lead / T),
-                     u = lead / T - whole;
-        const auto sample = [&](double n) { return std::polar(1.0, 2 * std::numbers::pi * f.value() * T * n); };
+        constexpr double period = 5e-4;
+        const double lead = quadrant::detail::plain(this->given().lead), whole = std::floor(lead / period),
+                     u = lead / period - whole;
+        const auto sample = [&](double n) {
+            return std::polar(1.0, 2 * std::numbers::pi * f.value() * period * n);
+        };
         const double h00 = 2 * u * u * u - 3 * u * u + 1, h10 = u * u * u - 2 * u * u + u, h01 = 1 - h00,
                      h11 = u * u * u - u * u;
-        return sample(whole - double(Capacity)) * ((h00 + T * h10) + (h01 + T * h11) * sample(1));
+        return sample(whole - double(Capacity)) * ((h00 + period * h10) + (h01 + period * h11) * sample(1));
     }
 };
 
