@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: BSL-1.0
 // NaN, infinities, extremes, allocation: the same policy in every block.
 #include "blocks.hpp"
+#include "count_allocations.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
-
-namespace {
-std::size_t allocations = 0;
-}
-// The whole program counts; only what happens inside a step is looked at.
-// Not inlined: GCC warns when it sees only one of a pair.
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-    ++allocations;
-    if (void* p = std::malloc(bytes != 0 ? bytes : 1)) return p;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace conformance;
-std::size_t conformance::allocated() { return allocations; }
+std::size_t conformance::allocated() { return counted::allocations; }
 
 namespace {
 template <class Real>
@@ -160,17 +146,17 @@ TEST_CASE("every block: no allocation in step, reset, settle or copy") {
         CAPTURE(e.name);
         auto block = e(values<double>{});
         using in = input_of<decltype(block), double>;
-        const std::size_t before = allocations;
+        const std::size_t before = counted::allocations;
         run<double>(block, e.amplitude, 5, 100);
         block(in::from_value(unknown(std::numeric_limits<double>::quiet_NaN())));
         if constexpr (requires { block.settle(in()); }) block.settle(in::from_value(1));
         auto copy = block;
         copy.reset();
         run<double>(copy, e.amplitude, 5, 100);
-        const std::size_t after = allocations;
+        const std::size_t after = counted::allocations;
         CHECK(after == before);
     });
-    const std::size_t before = allocations;
+    const std::size_t before = counted::allocations;
     ::operator delete(::operator new(8));
-    CHECK(allocations == before + 1); // the counter counts
+    CHECK(counted::allocations == before + 1); // the counter counts
 }

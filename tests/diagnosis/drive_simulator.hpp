@@ -22,8 +22,8 @@ struct machine {
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
     bool enabled_column = false;
-    double force_of_current = 0;        ///< [N/A]: the drive's current is logged, too; 0: it is not
-    bool current_is_mean = false;       ///< over the row; else as the row begins
+    double force_of_current = 0;  ///< [N/A]: the drive's current is logged, too; 0: it is not
+    bool current_is_mean = false; ///< over the row; else as the row begins
     bool stock_pid =
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
@@ -67,7 +67,8 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         << (kind == takes::volts   ? ",q_cmd_V"
             : kind == takes::force ? ",q_cmd_N"
                                    : "")
-        << (tap ? ",q_duty" : "") << (m.force_of_current > 0 ? ",q_current_A" : "") << (m.enabled_column ? ",q_enabled" : "") << "\n";
+        << (tap ? ",q_duty" : "") << (m.force_of_current > 0 ? ",q_current_A" : "")
+        << (m.enabled_column ? ",q_enabled" : "") << "\n";
     for (std::size_t k = 0; k < reference.size(); ++k) {
         const double read = std::round((x + noise(random)) / m.count) * m.count;
         const double speed = (reference[std::min(k + 1, reference.size() - 1)] - reference[k]) / period;

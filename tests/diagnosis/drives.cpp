@@ -107,8 +107,9 @@ TEST_CASE("velocity drive, PI: the friction that its integral hides is found wit
     REQUIRE(friction);
     CHECK(value_of(*friction, "coulomb_N") == doctest::Approx(30).epsilon(0.1));
 }
-TEST_CASE("velocity drive with a measured current: every number of the file is wrong by most of its tolerance, and "
-          "nobody is blamed, whichever way the current is read") {
+TEST_CASE(
+    "velocity drive with a measured current: every number of the file is wrong by most of its tolerance, and "
+    "nobody is blamed, whichever way the current is read") {
     auto m = pi_drive;
     m.force_of_current = 20;
     m.mass = 103;

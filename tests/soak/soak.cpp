@@ -6,23 +6,12 @@
 // Stretches of noise, of a held value, of rest and of a slow sine, of random length. A line a block; exit code
 // 1 where one raised a fault, gave what is no finite number, allocated, or is not as new after a reset.
 #include "conformance/blocks.hpp"
+#include "count_allocations.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
-
-namespace {
-std::size_t allocations = 0;
-}
-void* operator new(std::size_t bytes) {
-    ++allocations;
-    if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace {
 using namespace conformance;
@@ -77,13 +66,13 @@ bool soaked(const char* name, double amplitude, const Block& fresh, std::uint64_
     double most = 0;
     std::uint64_t not_finite = 0;
     const std::uint64_t steps = steps_of(fresh), calls = (samples + steps - 1) / steps;
-    const std::size_t before = allocations;
+    const std::size_t before = counted::allocations;
     for (std::uint64_t k = 0; k < calls; ++k) {
         const double y = give(block, input());
         not_finite += !std::isfinite(y);
         most = std::abs(y) > most ? std::abs(y) : most;
     }
-    const bool faulted = block.faulted(), allocated = allocations != before;
+    const bool faulted = block.faulted(), allocated = counted::allocations != before;
     block.reset();
     Block as_new = fresh;
     as_new.reset();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "count_allocations.hpp"
 #include "limits.hpp"
 
 #include <doctest/doctest.h>
@@ -8,23 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <new>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
-
-namespace {
-std::size_t allocations = 0;
-}
-// The whole program counts. Not inlined: GCC warns when it sees only one of a pair.
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-    ++allocations;
-    if (void* p = std::malloc(bytes != 0 ? bytes : 1)) return p;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 using namespace quadrant;
 using namespace quadrant::path;
@@ -374,10 +362,10 @@ TEST_CASE("interpolator: neither a move nor a period allocates") {
     draw random{std::mt19937(8)};
     const program moves = random.path();
     interpolator<16> drive({machine}, 1_ms);
-    const std::size_t before = allocations;
+    const std::size_t before = counted::allocations;
     for (std::size_t next = 0; next < moves.size() || !drive.done(); drive())
         while (!drive.full() && next < moves.size()) drive.push(moves[next++]);
-    CHECK(allocations == before);
+    CHECK(counted::allocations == before);
 }
 
 TEST_CASE("interpolator: dwells last whole periods, rounded up, and hold still") {

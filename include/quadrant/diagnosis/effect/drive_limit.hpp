@@ -42,12 +42,10 @@ inline constexpr effect drive_limit{
         double& (*const of)(plant_model&) =
             servo ? [](plant_model& p) -> double& { return p.drive.maximum_duty; }
                   : [](plant_model& p) -> double& { return p.drive.force_limit; };
-        parameter limit = detail::limit_below(s, servo ? "drive.maximum_duty" : "drive.force_limit_N", of, most);
-        if (s.record.observer.drive->tapped()) { // what was measured was not cut off, but for its noise
-            limit.low = 0.9 * most;
-            limit.start = detail::best_start(s, of, {0.97 * most, 0.99 * most, most});
-        }
-        return {{limit}};
+        const char* key = servo ? "drive.maximum_duty" : "drive.force_limit_N";
+        if (s.record.observer.drive->tapped()) // what was measured was not cut off, but for its noise
+            return {{detail::limit_below(s, key, of, most, 0.9, {0.97, 0.99, 1})}};
+        return {{detail::limit_below(s, key, of, most)}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         if (p.drive.kind == drive_kind::position_servo) return {{"drive.maximum_duty", {p.drive.maximum_duty}}};

@@ -56,12 +56,15 @@ inline double best_start(const screening& s, double& (*of)(plant_model&), const 
 
 /// Where the fit of a limit begins: the best of several shares of the largest value that the record shows. No
 /// slope leads to a limit that clips nothing.
-inline parameter limit_below(const screening& s, const char* key, double& (*of)(plant_model&), double most) {
+/// `lowest`: share of that value below which no limit is looked for.
+inline parameter limit_below(const screening& s, const char* key, double& (*of)(plant_model&), double most,
+                             double lowest = 0.05,
+                             std::vector<double> starts = {0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2}) {
+    for (double& start : starts) start *= most;
     return {.key = key,
             .of = of,
-            .start = best_start(
-                s, of, {0.97 * most, 0.9 * most, 0.8 * most, 0.65 * most, 0.5 * most, 0.35 * most, 0.2 * most}),
-            .low = 0.05 * most,
+            .start = best_start(s, of, starts),
+            .low = lowest * most,
             .high = most,
             .logarithmic = true,
             .step = 1e-2};

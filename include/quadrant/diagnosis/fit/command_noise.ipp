@@ -33,22 +33,32 @@ QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x) {
     return std::sqrt(least / of_shape);
 }
 
-QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, double mass, double period,
-                                                double pole) {
+namespace detail {
+
+/// rms of a channel's means for white noise of this force, of which one sample makes response(impulse).
+template <class Response>
+double noise_in_means(const channel& c, double force, double pole, Response response) {
     const auto forgotten = static_cast<std::size_t>(30 / (1 - pole));
     std::vector<double> impulse(2 * (c.mean + forgotten), 0.0);
     impulse[c.mean] = force;
-    const auto mean = detail::running_means(detail::innovation_of(impulse, mass, period, pole, 0), c.mean);
+    const auto mean = running_means(response(std::move(impulse)), c.mean);
     return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL double command_noise_in(const channel& c, double force, double mass, double period,
+                                                double pole) {
+    return detail::noise_in_means(c, force, pole, [&](const std::vector<double>& impulse) {
+        return detail::innovation_of(impulse, mass, period, pole, 0);
+    });
 }
 
 QUADRANT_DIAGNOSIS_DECL double tap_noise_in(const channel& c, double force, const drive_model& d, double period,
                                             double pole) {
-    const auto forgotten = static_cast<std::size_t>(30 / (1 - pole));
-    std::vector<double> impulse(2 * (c.mean + forgotten), 0.0);
-    impulse[c.mean] = force;
-    const auto mean = detail::running_means(as_reading(d, std::move(impulse), period, pole), c.mean);
-    return std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0));
+    return detail::noise_in_means(c, force, pole, [&](std::vector<double> impulse) {
+        return as_reading(d, std::move(impulse), period, pole);
+    });
 }
 
 QUADRANT_DIAGNOSIS_DECL double share_added_by_measurement(const std::vector<double>& innovation,

@@ -42,7 +42,7 @@ struct axis_record {
     bool replayed() const { return observer.drive != nullptr; }
     /// Whether the force that the velocity loop of such a drive gives was measured.
     bool taps_force(const drive_model& d) const {
-        return observer.drive && observer.drive->tapped() && !d.reads_in_turn();
+        return observer.drive && observer.drive->tapped() && d.kind != drive_kind::position_servo;
     }
     /// Whether the drive's loops are closed on the model, so that its path is judged.
     bool closed() const { return observer.closed.has_value(); }

@@ -266,9 +266,8 @@ namespace detail {
 QUADRANT_DIAGNOSIS_DECL void add_command_noise(axis_record& r, const plant_model& described, double force) {
     r.command_noise = r.observer.drive ? 0 : force * white_noise_below(r.bandwidth_Hz, r.period);
     for (channel& c : r.score.channels)
-        c.command_noise =
-            c.of_tap ? tap_noise_in(c, force, described.drive, r.period, r.observer.pole())
-                     : command_noise_in(c, force, described.mass, r.period, r.observer.pole());
+        c.command_noise = c.of_tap ? tap_noise_in(c, force, described.drive, r.period, r.observer.pole())
+                                   : command_noise_in(c, force, described.mass, r.period, r.observer.pole());
     predictor corrected = r.observer;
     corrected.led = nullptr;
     std::vector<double> e;
@@ -287,12 +286,9 @@ QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_descri
     if (how == held_by::motion) r.observer.led = motion_to_lead(r, described);
     r.observer.substeps = substeps_of(described, r.period);
     if (how == held_by::loop) r.observer.closed = r.velocity[0];
-    if (r.observer.drive && r.observer.drive->tapped()) {
-        r.read = r.observer.drive->timing(described.drive);
-        r.reaction = reaction_to_reading(described, *r.observer.drive);
-    }
+    if (r.observer.drive && r.observer.drive->tapped()) r.read = r.observer.drive->timing(described.drive);
+    if (r.observer.drive) r.reaction = reaction_to_reading(described, *r.observer.drive);
     if (r.observer.drive && !r.observer.drive->tapped()) {
-        r.reaction = reaction_to_reading(described, *r.observer.drive);
         r.observer.drift_pole = drift_pole_of(described, r.period);
         auto e = detail::innovation_of(r.reaction, described.mass, r.period, r.observer.pole());
         if (r.observer.drift_pole < 1) predictor::take_drift_out(e, r.observer.drift_pole);

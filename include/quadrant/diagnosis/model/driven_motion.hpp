@@ -278,7 +278,8 @@ private:
             const double reading = (static_cast<double>(k) + d.read.age / period) * parts - 0.5;
             double law = 0;
             if (d.read.tap == tap_reading::row_mean)
-                for (std::size_t i = 0; i < parts; ++i) law += at(reading + 0.5 + static_cast<double>(i)) / parts;
+                for (std::size_t i = 0; i < parts; ++i)
+                    law += at(reading + 0.5 + static_cast<double>(i)) / parts;
             else
                 law = at(reading);
             if (!steps.empty()) law = std::clamp(law + steps[k], -d.force_limit, d.force_limit);

@@ -15,12 +15,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> timing_of_readings(const drive_mo
                          .expected = 0,
                          .spread = period / std::numbers::sqrt3};
     };
-    return {
-        within_a_row(
-            "reading_age", [](plant_model& p) -> double& { return p.drive.read.age; }, d.read.age),
-        within_a_row(
-            "tap_lateness", [](plant_model& p) -> double& { return p.drive.read.tap_lateness; },
-            d.read.tap_lateness)};
+    return {within_a_row(
+                "reading_age", [](plant_model& p) -> double& { return p.drive.read.age; }, d.read.age),
+            within_a_row(
+                "tap_lateness", [](plant_model& p) -> double& { return p.drive.read.tap_lateness; },
+                d.read.tap_lateness)};
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> numbers_of_record(const plant_model& described,

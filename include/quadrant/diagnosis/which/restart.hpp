@@ -19,12 +19,11 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
                         .fit(plant, {start_of_drive(plant.force_constant * record.scale.command)}, 4)
                         .plant;
     }
-    if (record.observer.drive && record.observer.drive->tapped()) {
-        const tap_reading tap = plant.drive.read.tap; // of the drive, not of a record
+    if (plant.drive.reads_in_turn() && record.observer.drive && record.observer.drive->tapped()) {
         plant.drive.read = record.read;
-        plant.drive.read.tap = tap;
-        const auto timing = timing_of_readings(plant.drive, record.period);
-        if (!timing.empty()) plant = fitter(record.observer, record.score).fit(plant, timing, 4).plant;
+        plant = fitter(record.observer, record.score)
+                    .fit(plant, timing_of_readings(plant.drive, record.period), 4)
+                    .plant;
     }
     if (plant.cutting.count == 0) return plant;
     const fitter fit(record.observer, record.score);

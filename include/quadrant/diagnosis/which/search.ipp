@@ -7,7 +7,8 @@ namespace quadrant::inline v0::diagnosis {
 namespace detail {
 
 /// The way in which the tap is read with which the described machine, calibrated, gives least otherwise: by the
-/// median over the rows, in which an effect that acts in a part of them has no say.
+/// median over the rows, which an effect in a part of them moves little. Where it bends the calibration, the
+/// choice may be wrong.
 inline tap_reading best_tap(const fitter& fit, const driven_motion& drive, plant_model described,
                             const std::vector<parameter>& own) {
     constexpr int steps = 6; // of a fit: the ways differ by more than its last digits
