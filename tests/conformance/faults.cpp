@@ -32,6 +32,9 @@ template <class Real, class Block> bool same_future(Block a, Block b, double amp
     }
     return true;
 }
+
+/// One piece of machine code for all: with -ffast-math a second one may round differently.
+template <class Block> [[gnu::noinline]] void start_again(Block& block) { block.reset(); }
 } // namespace
 
 TEST_CASE_TEMPLATE("every block: a bad sample gives the last output, changes no state and is told until reset",
@@ -120,8 +123,12 @@ TEST_CASE_TEMPLATE("every block: finite on extremes, and usable after a reset", 
                     if (round % 3 == 1) block.settle(in::from_value(x));
             }
         CHECK(all_finite);
-        block.reset();
-        CHECK(same_future<Real>(block, e(values<Real>{}), e.amplitude));
+        start_again(block);
+        auto fresh = e(values<Real>{});
+#ifdef __FAST_MATH__ // the constructor's piece of code may round differently (docs/use_in_a_project.md)
+        start_again(fresh);
+#endif
+        CHECK(same_future<Real>(block, fresh, e.amplitude));
     });
 }
 

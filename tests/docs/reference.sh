@@ -25,7 +25,7 @@ says() { # PAGE TEXT, as it stands in the comment
     sed 's/<[^>]*>//g; s/&lt;/</g; s/&gt;/>/g; s/&quot;/"/g; s/&amp;/\&/g' "$out/html/$1" | grep -qF -- "$2" || wrong "$1 does not say: $2"
 }
 if [ "${2-}" != comments ]; then
-says index.html 'it says why a machine does not do what its simulation says'
+says index.html 'it says why a machine does not do what its simulation predicts'
 says classquadrant_1_1notch.html 'H(s) = (s^2 + w^2) / (s^2 + width w s + w^2), bilinear'
 says classquadrant_1_1notch.html "jump = |b0' - b0| |x[k] - x[k-1]|"
 says classquadrant_1_1notch.html 'The state that belongs to these values, without a step'

@@ -47,7 +47,7 @@ public:
     constexpr rule(const char* words) : pieces_{{{words, 0, false}}}, count_(1) {}
     constexpr explicit rule(double number, const char* unit = nullptr)
         : pieces_{{{unit, number, true}}}, count_(1) {}
-    constexpr friend rule operator+(rule left, const rule& right) {
+    template <class Isa = isa::here> constexpr friend rule operator+(rule left, const rule& right) {
         for (std::size_t i = 0; i < right.count_ && left.count_ < left.pieces_.size(); ++i)
             left.pieces_[left.count_++] = right.pieces_[i];
         return left;

@@ -5,6 +5,8 @@
 #include "regression.hpp"
 #include "scoring.hpp"
 
+#include <fmt/format.h>
+
 namespace quadrant::inline v0::diagnosis {
 
 /// What the forces of two motors on one beam say of its ends. Of a rigid beam that its guides let turn, each

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../how_far/how_far.hpp"
+#include "../next/blind_spots.hpp"
+#include "../next/next_experiment.hpp"
+#include "../which/as_applied.hpp"
+#include "../which/block_places.hpp"
+#include "../which/calibrated.hpp"
+#include "../which/causes.hpp"
+#include "describe_rest.hpp"
+#include "judge.hpp"
+#include "notes.hpp"
+#include "own_words.hpp"
+
+namespace quadrant::inline v0::diagnosis::detail {
+
+/// What two encoders say joins what the force says: their causes come first, being read off, not inferred.
+inline void join_transmission(diagnosis_result& out, axis_result& result, std::vector<cause>& causes,
+                              chain::two_encoders& t) {
+    std::vector<cause> first;
+    t.of_the_guide(result.calibrated);
+    t.of_the_guide(result.calibrated_with_suspects);
+    for (cause& c : causes) {
+        t.of_the_guide(c.parameters);
+        t.of_the_guide(c.with_suspects);
+    }
+    if (result.verdict <= verdict::within_tolerance) causes.clear(); // as where there is one encoder
+    chain::join(result, first, out, std::move(t.found), "readings");
+    causes.insert(causes.begin(), first.begin(), first.end());
+    out.notes.insert(out.notes.end(), t.notes.begin(), t.notes.end());
+}
+
+QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
+                                           const stages& stage, chain::two_encoders* of_transmission,
+                                           const other_axes& others) {
+    const auto names = static_cast<double>(std::max<std::size_t>(1, c.best().effects.size()));
+    const auto begins = [&](double from, double to, const std::string& what) {
+        const progress part = tell.part(from, to);
+        part("axis " + c.axis.name + ": " + what, 0);
+        c.models.begins(part, names);
+    };
+    begins(stage.search, stage.rivals, "what else may cause it");
+    axis_result result;
+    result.name = c.axis.name;
+    result.kind = c.axis.kind;
+    result.command_unit = c.axis.command_unit;
+    result.driven = c.axis.drive.closes();
+    auto rivals = rivals_by_weight(c);
+    begins(stage.rivals, stage.causes, "how sure each cause is");
+    auto causes = plant_causes(c, rivals);
+    begins(stage.causes, stage.gap, "how far the gap shrinks");
+    const bool guess = untested(c);
+    if (guess) detail::to_suspects(causes);
+    const how_far shrinks(c);
+    if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
+    put_as_applied(c, causes, rivals);
+    tell_turning_inertia(out, c, causes, others);
+    if (guess) {
+        out.notes.push_back(
+            worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
+                   "samples that it was not fitted to; record more, or give a hold-out log.",
+                   c.axis.name.c_str()));
+    } else if (!c.second && c.motions < 2)
+        out.notes.push_back(
+            worded("axis %s: the record holds one motion, which is cut into %zu pieces to test what was "
+                   "fitted to the others: an effect that shows in another motion only is not seen.",
+                   c.axis.name.c_str(), c.record.segments));
+    if (auto of_controller = controller_cause(c)) { // the first explains most
+        const double command = rms(c.command_difference(c.log, *c.axis.controller));
+        const bool first = command > rms(c.models.residual(c.models.given()));
+        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
+    }
+    if (auto of_count = count_cause(c)) {
+        const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
+        causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
+    }
+    shrinks.measure(result, causes);
+    result.calibrated = calibrated(c, c.applied(), causes);
+    if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
+    const verdict behind = result.verdict = judge(c, causes);
+    result.cut = c.models.cut() || !c.models.missed().empty();
+    if (behind == verdict::within_tolerance && !c.at_floor())
+        out.notes.push_back(
+            worded("axis %s: what is left has structure that no cause explains; it is smaller than "
+                   "what machines inside the tolerances differ by.",
+                   c.axis.name.c_str()));
+    result.where = block_places(c);
+    const auto views = regimes(c.models.residual(c.models.given()), c.record);
+    result.where.insert(result.where.end(), views.begin(), views.end());
+    for (cause& x : causes)
+        if (x.effect != "controller_mismatch") mark_bounds(claimed(x) ? c.applied() : c.best(), x.parameters);
+    mark_bounds(c.applied(), result.calibrated);
+    mark_bounds(c.best(), result.calibrated_with_suspects);
+    if (of_transmission) join_transmission(out, result, causes, *of_transmission);
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, result.calibrated_with_suspects);
+    put_in_words(result.kind, causes);
+    note_bounds(out, result);
+    note_excluded(out, causes);
+    note_missed(out, c);
+    out.verdict = std::max(out.verdict, result.verdict);
+    if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
+        out.causes.insert(out.causes.end(), causes.begin(), causes.end());
+        begins(stage.gap, 1, "what is left, and the next experiment");
+        if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
+        const bool proposed = !out.next.motion.empty();
+        // Where the path alone is compared, there is no residual force that a motion could show.
+        const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
+        if (by_force && !c.models.over() && behind > verdict::within_tolerance) propose(out, c, causes, rivals);
+        if (!proposed) {
+            out.next.motion = text_of(out.next.motion, c.axis.kind);
+            out.next.finding = text_of(out.next.finding, c.axis.kind);
+        }
+    }
+    const auto unseen = unseen_by(result, causes);
+    out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());
+    out.axes.push_back(std::move(result));
+}
+
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../where/places.hpp"
+#include "../which/axis_case.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace quadrant::inline v0::diagnosis::detail {
+
+/// One block and no hold-out log: nothing is left to test a cause on that was not fitted.
+inline bool untested(const axis_case& c) { return !c.second && c.record.segments < 2; }
+
+/// A value that the tolerance stopped: either the tolerance is too narrow, or something else acts.
+inline void note_bounds(diagnosis_result& out, const axis_result& result) {
+    for (const parameter_estimate& p : result.calibrated) {
+        if (!p.on_bound) continue;
+        std::string name(parts_of(p.key.substr(p.key.rfind('.') + 1)).stem);
+        std::replace(name.begin(), name.end(), '_', ' ');
+        out.notes.push_back(
+            worded("axis %s: the calibrated %s stops at the end of its tolerance: the tolerance "
+                   "is too narrow, or an effect acts that is not named.",
+                   result.name.c_str(), name.c_str()));
+    }
+}
+
+/// What the owner excludes although it explains the record better than what is named.
+inline void note_excluded(diagnosis_result& out, const std::vector<cause>& causes) {
+    for (const cause& x : causes)
+        if (!x.better_excluded.empty())
+            out.notes.push_back(fmt::format("axis {}: {}, which the machine file excludes, explains the record "
+                                            "better than {} does: check excluded_effects.",
+                                            x.axis, label_of_effect(x.better_excluded),
+                                            label_of_effect(x.effect)));
+}
+
+/// What the search did not come to before its time was up.
+inline void note_missed(diagnosis_result& out, const axis_case& c) {
+    if (!c.models.over()) return;
+    std::string names;
+    for (const effect* e : c.models.suspects())
+        if (c.models.missed().contains(e)) names += (names.empty() ? "" : ", ") + std::string(e->label);
+    const std::string what = !names.empty()   ? "not tried beside what was found: " + names
+                             : c.models.cut() ? "a further cause may be missing"
+                                              : "no motion was searched for that would tell more";
+    out.notes.push_back(worded("axis %s: the time was up: %s.", c.axis.name.c_str(), what.c_str()));
+}
+
+} // namespace quadrant::inline v0::diagnosis::detail

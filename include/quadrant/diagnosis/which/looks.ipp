@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../text/bad_input.hpp"
+#include "../where/places.hpp"
+#include "causes.hpp"
+
+namespace quadrant::inline v0::diagnosis::detail {
+
+/// A record without a single block of samples to score says nothing of a model. Nothing else is too short.
+inline void need_blocks(const axis_case& c, const std::string& file) {
+    if (!c.record.score.channels.front().segment_of_block.empty()) return;
+    std::size_t longest = 0, pieces = 0, row = 0;
+    for (const unsigned char out : c.log.left_out) {
+        row = out ? 0 : row + 1;
+        pieces += row == 1;
+        longest = std::max(longest, row);
+    }
+    const std::string in_pieces =
+        pieces < 2 ? ""
+                   : worded(" in %zu pieces, the longest of %zu (import with a longer --sample-period bridges "
+                            "short gaps)",
+                            pieces, longest);
+    throw bad_input(file,
+                    worded("%zu samples of axis %s%s: a diagnosis needs at least %zu in a row, one block to "
+                           "start the observer and one to score",
+                           c.log.position.size(), c.axis.name.c_str(), in_pieces.c_str(),
+                           c.record.score.skip + c.record.score.block));
+}
+
+/// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
+/// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
+/// Beside forces without a name a corrected model predicts best by standing still. A drive's loops are replayed
+/// with the readings.
+inline bool contradicts_motion(const axis_case& c) {
+    if (c.best().effects.empty() || c.models.over() || c.axis.drive.closes() || !shows_along_motion(c.best()))
+        return false;
+    return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
+}
+
+/// The same where the command was measured, and what was found makes the axis answer it less than described. A
+/// stiff loop makes a measured command answer every force that the model does not have, and neither that nor
+/// the noise of its sensor moves the axis: a heavy model of a weak motor follows no command, predicts the
+/// readings best, and the forces along the motion do not ask for it.
+inline bool answers_too_little(const axis_case& c) {
+    if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
+        c.best().effects.empty() || c.models.over() || c.best().fit.plant.backlash > 0)
+        return false;
+    const auto answer = [](const candidate& m) {
+        return m.fit.plant.force_constant / m.fit.plant.moving_mass();
+    };
+    return answer(c.best()) < (1 - c.limits.least_shrink) * answer(c.path.front());
+}
+
+/// Whether a measured command leaves a gap open. The command of a real loop answers every force that the model
+/// does not have; where these are many, the score of the predictions rests on what the corrections carry.
+inline bool open_by_measured_command(const axis_case& c) {
+    return c.axis.actuator.command_is == command_origin::measured && !c.axis.drive.closes() &&
+           !c.models.over() && !c.at_floor() && !c.within_its_laws() && !c.best().effects.empty() &&
+           !(c.best().fit.plant.backlash > 0);
+}
+
+/// What is left in both logs, in energy [N^2].
+inline double left_in_both(const axis_case& c) {
+    return square(c.models.held_out_force(c.best())) + square(c.second_log(c.best()).force);
+}
+/// Whether the hold-out log shows a gap that the log holds little of: only the other way round is there
+/// something to fit.
+inline bool hides_what_the_other_shows(const axis_case& c) {
+    if (!c.tested_apart() || c.record.replayed() || c.settled_on_second || c.controller_differs() ||
+        c.models.over())
+        return false;
+    return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
+}
+
+QUADRANT_DIAGNOSIS_DECL std::unique_ptr<axis_case>
+look_at(const looked_at& of, const std::string& file, const progress& tell, std::vector<std::string>& notes) {
+    const double least_shrink = of.limits.least_shrink;
+    const auto look = [&](held_by how, const axis_case* before, bool exchanged) {
+        const bool again = before || exchanged;
+        const progress part =
+            tell.part(again ? of.stage.first_look : 0, again ? of.stage.search : of.stage.first_look);
+        const axis_log& fitted = exchanged ? *of.holdout : of.log;
+        return std::make_unique<axis_case>(of.axis, fitted, exchanged ? &of.apart : of.holdout, of.period,
+                                           of.excluded, of.limits, part, how, before);
+    };
+    // Looks at the forces along the measured motion where the predictions mislead. Returns why it is
+    // evaluated on them, or nothing.
+    const auto along_motion = [&](std::unique_ptr<axis_case>& found, bool exchanged) {
+        const bool stands = contradicts_motion(*found), little = answers_too_little(*found),
+                   open = open_by_measured_command(*found);
+        if (!stands && !little && !open) return "";
+        tell("axis " + of.axis.name + ": again, along the measured motion");
+        auto led = look(held_by::motion, found.get(), exchanged);
+        const double least =
+            (open ? 1 + least_shrink : 1 - least_shrink) * (stands ? 1 : found->left_along_motion());
+        if (!(led->left_along_motion() < least)) return "";
+        found = std::move(led);
+        return stands   ? "standing where the axis moves"
+               : little ? "answering the measured command too little"
+                        : "leaving to the corrections what no name explains";
+    };
+    auto found = look(of.soft ? held_by::loop : held_by::readings, nullptr, false);
+    need_blocks(*found, file);
+    if (of.both)
+        notes.push_back(
+            fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
+                        "holds says too little in one of them.",
+                        of.axis.name));
+    const char* why_along = along_motion(found, false);
+    if (!of.both && hides_what_the_other_shows(*found)) {
+        tell("axis " + of.axis.name + ": again, fitted to the hold-out log");
+        auto exchanged = look(held_by::readings, nullptr, true);
+        if (exchanged->at_floor() || left_in_both(*exchanged) < (1 - least_shrink) * left_in_both(*found)) {
+            notes.push_back(fmt::format("axis {}: fitted to the hold-out log and judged on the log: "
+                                        "what is wrong shows in the motion of "
+                                        "the hold-out log only.",
+                                        of.axis.name));
+            why_along = along_motion(exchanged, true);
+            exchanged->controller = found->controller; // replayed from the log, as ever
+            exchanged->exchanged = true;
+            found = std::move(exchanged);
+        }
+    }
+    if (*why_along)
+        notes.push_back(fmt::format(
+            "axis {}: judged by the forces along the measured motion: models corrected by the readings "
+            "predicted best by {}.",
+            of.axis.name, why_along));
+    return found;
+}
+
+} // namespace quadrant::inline v0::diagnosis::detail
