@@ -157,6 +157,36 @@ TEST_CASE("noise of a measured command: leaves in the bands and in the residual 
           doctest::Approx(force * white_noise_below(100, period)).epsilon(0.03));
 }
 
+TEST_CASE("joint starts: an effect begins beside another where it was found by itself") {
+    const parameter mass{.key = "mass_kg",
+                         .of = [](plant_model&p) -> double& { return p.mass; },
+                         .start = 134,
+                         .low = 10,
+                         .high = 900},
+        constant{.key = "constant_force_N",
+                 .of = [](plant_model&p) -> double& { return p.constant_force; },
+                 .start = 0,
+                 .low = -600,
+                 .high = 600};
+    plant_description d;
+    d.mass_kg = 134;
+    d.force_constant_N_per_V = 1;
+    fit_result found{.plant = plant_model(d, workshop::usual.give()), .parameters = {constant, mass}};
+    found.plant.mass = 165;
+    const std::vector<std::vector<parameter>> starts{{mass}};
+    const auto begun = detail::begun_where(found, starts);
+    REQUIRE(begun);
+    CHECK(begun->front().start == 165);
+    found.plant.mass = 1000; // a start stays inside its bounds
+    CHECK(detail::begun_where(found, starts)->front().start == 900);
+    found.plant.mass = 135; // the start that there is
+    CHECK_FALSE(detail::begun_where(found, starts));
+    found.plant.mass = 165;
+    found.parameters = {constant}; // the fit did not move it
+    CHECK_FALSE(detail::begun_where(found, starts));
+    CHECK_FALSE(detail::begun_where(found, {}));
+}
+
 TEST_CASE("residual force: a force that the model lacks is seen with its size and sign") {
     // A free mass under 10 N that the model does not know; residual force is what the model pushes too much.
     const double period = 0.0005, mass = 50;

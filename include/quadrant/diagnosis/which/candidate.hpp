@@ -80,13 +80,21 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
 /// The parameters of a fitted model, ready to be fitted again from where they are.
 QUADRANT_DIAGNOSIS_DECL std::vector<parameter> resumed(const fit_result& f);
 
-/// A first look at `from` with one more effect: a step or two from every start that the effect offers, the
-/// slopes of the parameters that `from` has taken from there; the best kept, less what its parameters cost. No
-/// score yet. An effect that offers no start leaves an infinite objective.
+namespace detail {
+/// The first of these starts whose numbers another fit has all found, begun there; none, where it found others
+/// or they are those of that start.
+QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
+begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts);
+} // namespace detail
+
+/// A first look at `from` with one more effect: a step or two from every start that it offers, and from
+/// where a fit has `found` it by itself; the slopes of the parameters that `from` has taken from there; the best
+/// kept, less what its parameters cost. No score yet. An effect that offers no start leaves an infinite
+/// objective.
 class first_look {
 public:
     first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,
-               const shared_slopes& slopes, int steps);
+               const shared_slopes& slopes, int steps, const fit_result* found = nullptr);
     /// One from each start, to be run by the fitter.
     std::vector<fit_course>& courses() { return courses_; }
     /// The best of what they came to.

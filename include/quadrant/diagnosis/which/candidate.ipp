@@ -125,12 +125,35 @@ inline void begin_at_the_best(std::vector<parameter>& ps, std::size_t first, con
     p.start = values[static_cast<std::size_t>(std::min_element(looks.begin(), looks.end()) - looks.begin())];
 }
 
+QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
+begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts) {
+    plant_model there = found.plant;
+    for (std::vector<parameter> out : starts) {
+        bool all = !out.empty(), new_to_all = false;
+        for (parameter& p : out) {
+            const auto q = std::find_if(found.parameters.begin(), found.parameters.end(),
+                                        [&](const parameter& each) { return &each.of(there) == &p.of(there); });
+            all = all && q != found.parameters.end();
+            if (!all) break;
+            const double x = std::clamp(p.of(there), p.low, p.high);
+            new_to_all = new_to_all || std::abs(x - p.start) > 0.05 * std::abs(x);
+            p.start = x;
+        }
+        if (all) return new_to_all ? std::optional(std::move(out)) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidate& from, const effect& added,
-                                               const screening& look, const shared_slopes& slopes, int steps) {
+                                               const screening& look, const shared_slopes& slopes, int steps,
+                                               const fit_result* found) {
     const auto resumed_from = resumed(from.fit);
-    for (const auto& start : added.starts(look)) {
+    auto starts = added.starts(look);
+    if (found)
+        if (auto where = detail::begun_where(*found, starts)) starts.push_back(std::move(*where));
+    for (const auto& start : starts) {
         plant_model plant = from.fit.plant;
         added.join(plant, look);
         std::vector<parameter> ps;

@@ -265,6 +265,9 @@ private:
     /// The best of these that pays, after sorting them; null: none does.
     const candidate* paying(std::vector<candidate>& next, const candidate& best) const;
     static candidate joined(const candidate& from, const effect* added);
+    /// The fit of the calibrated machine and this effect alone, where that pays. Beside another cause the same
+    /// numbers are a good start: Newton's step from the machine file's may be stopped by friction that sticks.
+    const fit_result* found_alone(const effect& e) const;
     /// What happens to a model whose turn comes when the time is up.
     enum class when_late { go_on, leave_out };
     /// A first look at each of these: `from` and the effect that it names last.

@@ -790,6 +790,13 @@ QUADRANT_DIAGNOSIS_DECL bool search::holds(const candidate& more, const candidat
     });
 }
 
+QUADRANT_DIAGNOSIS_DECL const fit_result* search::found_alone(const effect& e) const {
+    if (record_.closed()) return nullptr; // a path is looked at from many starts
+    for (const candidate& c : tried_)
+        if (c.effects.size() == 1 && c.effects.front() == &e && pays(c, calibrated_)) return &c.fit;
+    return nullptr;
+}
+
 QUADRANT_DIAGNOSIS_DECL candidate search::joined(const candidate& from, const effect* added) {
     candidate c{.effects = from.effects};
     c.effects.push_back(added);
@@ -824,7 +831,8 @@ QUADRANT_DIAGNOSIS_DECL void search::sketch_each(const candidate& from, const st
                 const screening look{axis_.plant,          axis_.tolerance, record_,
                                      origins[j].fit.plant, left[j],         innovation[j]};
                 looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
-                                   rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4)));
+                                   rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4)),
+                                   found_alone(*models[i].effects.back()));
                 std::move(looks.back().courses().begin(), looks.back().courses().end(),
                           std::back_inserter(courses));
             }
