@@ -27,15 +27,11 @@ long_files = {
     "include/quadrant/diagnosis/fit/fit.ipp",
     "include/quadrant/diagnosis/fit/predictor.ipp",
     "include/quadrant/diagnosis/fit/record.ipp",
-    "include/quadrant/diagnosis/which/causes.ipp",
-    "include/quadrant/diagnosis/which/search.hpp",
-    "include/quadrant/diagnosis/which/search.ipp",
 }
 long_functions = {
     "include/quadrant/diagnosis/fit/drive_estimate.ipp",
     "include/quadrant/diagnosis/which/calibration.ipp",
     "include/quadrant/diagnosis/which/candidate.ipp",
-    "include/quadrant/diagnosis/which/causes.ipp",
 }
 strings = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"|(?<![0-9a-fA-F])\'(?:[^\'\\\n]|\\.)+\'', re.S)
 control = re.compile(r"^(?:else\s+)?(?:if|for|while|switch|do|else|try|catch|return|case|default)\b")

@@ -3,6 +3,7 @@
 #include "../../base/version.hpp"
 #include "../where/places.hpp"
 #include "../which/causes.hpp"
+#include "../which/read_off.hpp"
 #include "driven_loop.hpp"
 
 #include <span>

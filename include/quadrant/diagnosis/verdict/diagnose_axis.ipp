@@ -7,6 +7,7 @@
 #include "../which/block_places.hpp"
 #include "../which/calibrated.hpp"
 #include "../which/causes.hpp"
+#include "../which/read_off.hpp"
 #include "describe_rest.hpp"
 #include "judge.hpp"
 #include "notes.hpp"
@@ -30,6 +31,64 @@ inline void join_transmission(diagnosis_result& out, axis_result& result, std::v
     out.notes.insert(out.notes.end(), t.notes.begin(), t.notes.end());
 }
 
+/// What was tested on too little of a record.
+inline void note_few_motions(diagnosis_result& out, const axis_case& c) {
+    if (untested(c)) {
+        out.notes.push_back(
+            worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
+                   "samples that it was not fitted to; record more, or give a hold-out log.",
+                   c.axis.name.c_str()));
+    } else if (!c.second && c.motions < 2)
+        out.notes.push_back(
+            worded("axis %s: the record holds one motion, which is cut into %zu pieces to test what was "
+                   "fitted to the others: an effect that shows in another motion only is not seen.",
+                   c.axis.name.c_str(), c.record.segments));
+}
+
+/// Causes that are read off the record stand beside those of the plant; what explains most comes first.
+inline void add_read_off(std::vector<cause>& causes, const axis_case& c) {
+    const auto found = [&] { return rms(c.models.residual(c.models.given())); };
+    if (auto of_controller = controller_cause(c)) {
+        const bool first = rms(c.command_difference(c.log, *c.axis.controller)) > found();
+        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
+    }
+    if (auto of_count = count_cause(c)) {
+        const bool first = 2 * square(rounding_force(c, c.count)) > square(found());
+        causes.insert(first ? causes.begin() : causes.end(), *of_count);
+    }
+}
+
+/// Where the gap lies, and which values stop at the end of a tolerance.
+inline void add_places(axis_result& result, std::vector<cause>& causes, const axis_case& c) {
+    result.where = block_places(c);
+    const auto views = regimes(c.models.residual(c.models.given()), c.record);
+    result.where.insert(result.where.end(), views.begin(), views.end());
+    for (cause& x : causes)
+        if (x.effect != "controller_mismatch") mark_bounds(claimed(x) ? c.applied() : c.best(), x.parameters);
+    mark_bounds(c.applied(), result.calibrated);
+    mark_bounds(c.best(), result.calibrated_with_suspects);
+}
+
+inline void put_in_words(axis_result& result, std::vector<cause>& causes) {
+    put_in_words(result.kind, result.where);
+    put_in_words(result.kind, result.calibrated);
+    put_in_words(result.kind, result.calibrated_with_suspects);
+    put_in_words(result.kind, causes);
+}
+
+/// What the causes leave, and the motion that would tell more.
+inline void add_rest(diagnosis_result& out, const axis_case& c, const axis_result& result,
+                     const std::vector<cause>& causes, const std::vector<std::vector<rival>>& rivals) {
+    describe_rest(out, c, result, causes);
+    const bool proposed = !out.next.motion.empty();
+    // Where the path alone is compared, there is no residual force that a motion could show.
+    const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
+    if (by_force && !c.models.over()) propose(out, c, causes, rivals);
+    if (proposed) return;
+    out.next.motion = text_of(out.next.motion, c.axis.kind);
+    out.next.finding = text_of(out.next.finding, c.axis.kind);
+}
+
 QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
                                            const stages& stage, chain::two_encoders* of_transmission,
                                            const other_axes& others) {
@@ -49,31 +108,13 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     begins(stage.rivals, stage.causes, "how sure each cause is");
     auto causes = plant_causes(c, rivals);
     begins(stage.causes, stage.gap, "how far the gap shrinks");
-    const bool guess = untested(c);
-    if (guess) detail::to_suspects(causes);
+    if (untested(c)) to_suspects(causes);
     const how_far shrinks(c);
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
     tell_turning_inertia(out, c, causes, others);
-    if (guess) {
-        out.notes.push_back(
-            worded("axis %s: the record holds one block of samples, so that no cause can be tested on "
-                   "samples that it was not fitted to; record more, or give a hold-out log.",
-                   c.axis.name.c_str()));
-    } else if (!c.second && c.motions < 2)
-        out.notes.push_back(
-            worded("axis %s: the record holds one motion, which is cut into %zu pieces to test what was "
-                   "fitted to the others: an effect that shows in another motion only is not seen.",
-                   c.axis.name.c_str(), c.record.segments));
-    if (auto of_controller = controller_cause(c)) { // the first explains most
-        const double command = rms(c.command_difference(c.log, *c.axis.controller));
-        const bool first = command > rms(c.models.residual(c.models.given()));
-        causes.insert(first ? causes.begin() : causes.end(), *of_controller);
-    }
-    if (auto of_count = count_cause(c)) {
-        const double rounding = rounding_force(c, c.count), found = rms(c.models.residual(c.models.given()));
-        causes.insert(2 * square(rounding) > square(found) ? causes.begin() : causes.end(), *of_count);
-    }
+    note_few_motions(out, c);
+    add_read_off(causes, c);
     shrinks.measure(result, causes);
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
@@ -84,34 +125,17 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
             worded("axis %s: what is left has structure that no cause explains; it is smaller than "
                    "what machines inside the tolerances differ by.",
                    c.axis.name.c_str()));
-    result.where = block_places(c);
-    const auto views = regimes(c.models.residual(c.models.given()), c.record);
-    result.where.insert(result.where.end(), views.begin(), views.end());
-    for (cause& x : causes)
-        if (x.effect != "controller_mismatch") mark_bounds(claimed(x) ? c.applied() : c.best(), x.parameters);
-    mark_bounds(c.applied(), result.calibrated);
-    mark_bounds(c.best(), result.calibrated_with_suspects);
+    add_places(result, causes, c);
     if (of_transmission) join_transmission(out, result, causes, *of_transmission);
-    put_in_words(result.kind, result.where);
-    put_in_words(result.kind, result.calibrated);
-    put_in_words(result.kind, result.calibrated_with_suspects);
-    put_in_words(result.kind, causes);
+    put_in_words(result, causes);
     note_bounds(out, result);
     note_excluded(out, causes);
     note_missed(out, c);
     out.verdict = std::max(out.verdict, result.verdict);
-    if (result.verdict != verdict::no_gap && result.verdict != verdict::within_tolerance) {
+    if (result.verdict > verdict::within_tolerance) {
         out.causes.insert(out.causes.end(), causes.begin(), causes.end());
         begins(stage.gap, 1, "what is left, and the next experiment");
-        if (behind > verdict::within_tolerance) describe_rest(out, c, result, causes);
-        const bool proposed = !out.next.motion.empty();
-        // Where the path alone is compared, there is no residual force that a motion could show.
-        const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
-        if (by_force && !c.models.over() && behind > verdict::within_tolerance) propose(out, c, causes, rivals);
-        if (!proposed) {
-            out.next.motion = text_of(out.next.motion, c.axis.kind);
-            out.next.finding = text_of(out.next.finding, c.axis.kind);
-        }
+        if (behind > verdict::within_tolerance) add_rest(out, c, result, causes, rivals);
     }
     const auto unseen = unseen_by(result, causes);
     out.not_seen.insert(out.not_seen.end(), unseen.begin(), unseen.end());

@@ -92,7 +92,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> regimes(const std::vector<double>& re
     const std::vector<double> position(r.position.begin(), r.position.end());
     out.push_back(
         {"position", "", "repeats with the position along the travel", binned(position, 100, nowhere), ""});
-    out.push_back({"time", "", "in the first half of the record (0.5: no trend)",
+    out.push_back({"time", "", "in the first half of the record (50 %: no trend)",
                    detail::share_on(residual, r, draws, [&](std::size_t k) { return 2 * k < n; }), ""});
     out.push_back({"acceleration", "", "follows the acceleration", binned(r.acceleration, 24, nowhere), ""});
 

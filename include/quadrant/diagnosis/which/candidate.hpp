@@ -87,10 +87,9 @@ QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
 begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts);
 } // namespace detail
 
-/// A first look at `from` with one more effect: a step or two from every start that it offers, and from
-/// where a fit has `found` it by itself; the slopes of the parameters that `from` has taken from there; the best
-/// kept, less what its parameters cost. No score yet. An effect that offers no start leaves an infinite
-/// objective.
+/// A first look at `from` with one more effect: a step or two from every start that it offers, and from where a
+/// fit has `found` it by itself; the slopes of the parameters that `from` has taken from there; the best kept,
+/// less what its parameters cost. No score yet. An effect that offers no start leaves an infinite objective.
 class first_look {
 public:
     first_look(const fitter& fit, const candidate& from, const effect& added, const screening& look,

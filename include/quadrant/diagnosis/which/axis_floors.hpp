@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "axis_models.hpp"
+#include "chance.hpp"
+
+#include <random>
+
+namespace quadrant::inline v0::diagnosis {
+
+/// How little a model may leave before nothing is left to explain: noise, what machines inside the owner's
+/// tolerances differ by, what a law of friction is wrong by; and whether one more effect earns its place above
+/// that.
+class axis_floors : public axis_models {
+public:
+    /// Whether a cause is a number of the machine file that ends inside the owner's tolerance: that is
+    /// calibration.
+    bool is_calibration(const candidate& c, const effect* e) const;
+
+    /// White noise of the position as a model sees it [m].
+    double noise(const candidate& c) const;
+
+    /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it
+    /// sees of noise and half a count.
+    double structure(const std::vector<double>& ms, const channel& c, double sigma) const;
+    /// In all channels: of a model that leaves noise alone it is below rules.structure.
+    double structure(const candidate& c, double sigma) const;
+    /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what
+    /// machines inside the owner's tolerances leave there.
+    bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const;
+    /// Whether no channel holds more above the noise than machines inside the owner's tolerances differ by
+    /// there.
+    bool within_tolerances(const std::vector<std::vector<double>>& ms, const scoring& score,
+                           double sigma) const;
+    bool immaterial(const candidate& c) const;
+    /// Whether every channel is at the floor: noise, or nothing that would matter. Of a model on this record
+    /// or, with its mean squares there, on another.
+    bool settled(const std::vector<std::vector<double>>& ms, const scoring& score, double sigma) const;
+
+    /// The residual force that noise and rounding alone leave [N].
+    double floor_force(const candidate& c) const { return floor_force(noise(c)); }
+    double floor_force(double noise) const;
+
+    /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
+    bool at_noise(const candidate& c) const;
+
+    bool settled(const candidate& c) const { return settled(c.fit.ms, record_.score, noise(c)); }
+
+    /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what
+    /// causes do.
+    bool near_floor(const candidate& c) const { return held_out_force(c) < rules_.near_floor * floor_force(c); }
+    /// The same, or what the laws of its friction and of its causes may be wrong by.
+    bool near_its_laws(const candidate& c) const;
+
+    /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by
+    /// which a machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of
+    /// 20 differ less [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
+    const std::vector<double>& tolerance_cloud() const;
+
+    /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
+    bool pays(const candidate& more, const candidate& less) const;
+    /// Less is left above the noise of the reading: force on held-out motion, by more than a hair; or, while
+    /// that does not grow, half of the innovations of one channel. A drag is small beside the peaks of every
+    /// reversal, but not in its own band.
+    bool shrinks(const candidate& more, const candidate& less) const;
+
+    /// The path of a loop closed on this model is off by more than those of machines inside the owner's
+    /// tolerances are from one another, in one standard deviation. Of a calibrated machine without a cause: it,
+    /// or the described one.
+    bool differs_from_like_machines(const candidate& c) const;
+
+protected:
+    using axis_models::axis_models;
+
+    /// Mean square of a channel above what it sees of the noise [m^2].
+    static double left_in(const std::vector<double>& ms, const channel& c, double sigma);
+    /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted
+    /// force [N].
+    double friction_level(const plant_model& p) const;
+    /// Whether the residual force falls in three of four segments. A transient that no name explains, such as a
+    /// start, may hold most of the residual and hide what the rest of the record shows.
+    bool shrinks_in_most_segments(const candidate& more, const candidate& less) const;
+
+    mutable std::vector<double> cloud_{};            ///< found when it is asked for
+    mutable std::optional<double> floor_of_noise_{}; ///< residual force of a white noise of 1 m [N], likewise
+};
+
+} // namespace quadrant::inline v0::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "axis_floors.ipp"
+#endif

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::inline v0::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration(const candidate& c, const effect* e) const {
+    plant_model fitted = c.fit.plant;
+    const auto values = e->read(fitted);
+    for (const parameter& own : calibrated_.fit.parameters)
+        if (!values.empty() && own.key == values.front().key && own.key != "presliding_length_m") {
+            const double x = own.of(fitted);
+            return x >= own.low && x <= own.high;
+        }
+    return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::noise(const candidate& c) const {
+    if (!*c.noise) {
+        std::vector<double> innovation;
+        record_.observer.run(c.fit.plant, innovation);
+        *c.noise = position_noise(innovation, record_.score, record_.resolution);
+    }
+    return **c.noise;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::structure(const std::vector<double>& ms, const channel& c,
+                                                      double sigma) const {
+    double sum = 0;
+    for (std::size_t b = 0; b < ms.size(); ++b) {
+        const double limit = 4 * (c.of_noise(sigma) + c.of_rounding(record_.resolution, b));
+        sum += 0.5 * c.nu * std::max(0.0, std::log(ms[b] / limit));
+    }
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::structure(const candidate& c, double sigma) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < c.fit.ms.size(); ++i)
+        sum += structure(c.fit.ms[i], record_.score.channels[i], sigma);
+    return sum;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::immaterial(const std::vector<double>& ms, const channel& c,
+                                                     double sigma, std::size_t i) const {
+    return left_in(ms, c, sigma) < square(rules_.immaterial) * tolerance_cloud()[i];
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::within_tolerances(const std::vector<std::vector<double>>& ms,
+                                                            const scoring& score, double sigma) const {
+    for (std::size_t i = 0; i < std::min(ms.size(), tolerance_cloud().size()); ++i)
+        if (!(left_in(ms[i], score.channels[i], sigma) < tolerance_cloud()[i])) return false;
+    return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::immaterial(const candidate& c) const {
+    const double sigma = noise(c);
+    for (std::size_t i = 0; i < c.fit.ms.size(); ++i)
+        if (!immaterial(c.fit.ms[i], record_.score.channels[i], sigma, i)) return false;
+    return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const std::vector<std::vector<double>>& ms,
+                                                  const scoring& score, double sigma) const {
+    for (std::size_t i = 0; i < ms.size(); ++i)
+        if (structure(ms[i], score.channels[i], sigma) >= rules_.structure &&
+            (i >= record_.score.channels.size() || !immaterial(ms[i], score.channels[i], sigma, i)))
+            return false;
+    return true;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(double noise) const {
+    if (!floor_of_noise_)
+        floor_of_noise_ = residual_force_floor(axis_.plant.mass_kg, 1, record_.period, record_.bandwidth_Hz,
+                                               record_.reaction);
+    return std::hypot(noise * *floor_of_noise_, record_.command_noise);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::at_noise(const candidate& c) const {
+    // The innovations are free of the drift that a drive's integral makes of noise, the residual force is
+    // not.
+    const double most = record_.observer.drift_pole < 1 ? rules_.near_floor : 1.3;
+    return structure(c, noise(c)) <= 0 && held_out_force(c) < most * floor_force(c);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::near_its_laws(const candidate& c) const {
+    // A path is fitted whole: a motion that alone shows a cause is not to be lost.
+    const auto left = [&](const candidate& m) {
+        return record_.closed() ? rms(residual(m)) : held_out_force(m);
+    };
+    const double taken = std::max(0.0, square(left(calibrated_)) - square(left(c)));
+    const double laws = law_error * std::hypot(friction_level(c.fit.plant), std::sqrt(taken));
+    return left(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
+}
+
+QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {
+    if (!cloud_.empty()) return cloud_;
+    std::mt19937_64 random(20080901);
+    std::vector<plant_model> plants(21,
+                                    calibrated_.fit.plant); // the first is the calibrated machine itself
+    for (std::size_t j = 1; j < plants.size(); ++j)
+        for (const auto& p : calibrated_.fit.parameters) {
+            const double low = p.to_fit(p.low), high = p.to_fit(p.high);
+            const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+            if (p.key != "presliding_length_m" && !is_of_record(p) && !is_of_feedback(p))
+                p.of(plants[j]) = p.from_fit(low + share * (high - low));
+        }
+    std::vector<std::vector<double>> e(plants.size());
+    record_.observer.run(plants, e);
+    const auto& channels = record_.score.channels;
+    std::vector<std::vector<double>> sizes(channels.size());
+    for (std::size_t j = 1; j < e.size(); ++j) {
+        for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
+        for (std::size_t i = 0; i < channels.size(); ++i)
+            sizes[i].push_back(square(rms(detail::seen(e[j], channels[i]))));
+    }
+    for (auto& of_channel : sizes) cloud_.push_back(quantile(of_channel, 0.95));
+    return cloud_;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::pays(const candidate& more, const candidate& less) const {
+    for (const effect* e : more.effects)
+        if (!has(less, e) && is_calibration(more, e)) return false;
+    const double gain = more.total - less.total, so_far = std::max(0.0, less.total - calibrated_.total);
+    const auto added = static_cast<double>(more.effects.size()) - static_cast<double>(less.effects.size());
+    if (gain < std::max(1.0, added) * std::max(rules_.margin, rules_.relative_margin * so_far)) return false;
+    if (record_.closed() && !differs_from_like_machines(less)) return false;
+    // What calibration bends to hides some of what an effect takes off.
+    return shrinks(more, less) || (record_.closed() && less.stops_at_a_tolerance() && shrinks(more, given_));
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks(const candidate& more, const candidate& less) const {
+    if (record_.closed()) { // evaluated on its path; the forces of a gear that friction holds say little
+        const double law = square(record_.score.channels.front().floor);
+        const auto left = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms.front()) - law); };
+        return left(more) < square(1 - rules_.least_shrink) * left(less);
+    }
+    const double floor = square(floor_force(more)), fall = square(1 - rules_.least_shrink);
+    const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
+    if (left(more) < fall * left(less)) return true;
+    if (left(more) > left(less) / fall) return false;
+    const double sigma = noise(more);
+    for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
+        const double of_noise = record_.score.channels[i].of_noise(sigma);
+        const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[i]) - of_noise); };
+        if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
+    }
+    return shrinks_in_most_segments(more, less); // dear: asked last
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in_most_segments(const candidate& more,
+                                                                   const candidate& less) const {
+    if (record_.segments < least_segments) return false;
+    std::vector<double> floor(record_.segments, 0.0);
+    const double of_row = square(floor_force(more));
+    for (const std::size_t segment : record_.segment) floor[segment] += of_row;
+    const auto before = energy_by_segment(less), after = energy_by_segment(more);
+    const auto above = [&](const std::vector<double>& energy, std::size_t i) {
+        return std::max(0.0, energy[i] - floor[i]);
+    };
+    std::size_t falls = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        falls += above(after, i) < square(1 - rules_.least_shrink) * above(before, i);
+    return 4 * falls >= 3 * record_.segments;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::differs_from_like_machines(const candidate& c) const {
+    // The 95th of 100 machines differs by two standard deviations.
+    const candidate& before =
+        c.effects.empty() && mean_of(given_.fit.ms.front()) > mean_of(c.fit.ms.front()) ? given_ : c;
+    return mean_of(before.fit.ms.front()) > tolerance_cloud().front() / 4;
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::left_in(const std::vector<double>& ms, const channel& c,
+                                                    double sigma) {
+    return mean_of(ms) - c.of_noise(sigma);
+}
+
+QUADRANT_DIAGNOSIS_DECL double axis_floors::friction_level(const plant_model& p) const {
+    const auto& f = p.friction;
+    if (!(f.load > 0)) return f.coulomb + f.excess;
+    std::vector<double> transmitted(record_.position.size());
+    for (std::size_t k = 0; k < transmitted.size(); ++k)
+        transmitted[k] = p.force_constant * record_.command[k] - p.static_force(record_.position[k]);
+    return f.coulomb + f.excess + f.load * rms(transmitted);
+}
+
+} // namespace quadrant::inline v0::diagnosis

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::inline v0::diagnosis::detail {
+
+QUADRANT_DIAGNOSIS_DECL void in_lowest_terms(std::vector<parameter_estimate>& values) {
+    parameter_estimate *cycle = nullptr, *phases = nullptr, *sizes = nullptr;
+    for (parameter_estimate& p : values) {
+        if (p.key.find("period") != p.key.npos || p.key == "process.fundamental_Hz") cycle = &p;
+        if (p.key.ends_with("phase_rad")) phases = &p;
+    }
+    for (parameter_estimate& p : values)
+        if (phases && &p != phases && p.values.size() == phases->values.size() && p.values.size() > 1)
+            sizes = &p;
+    if (!cycle || !sizes) return;
+    double odd = 0, all = 0;
+    for (std::size_t i = 0; i < sizes->values.size(); ++i) {
+        all += square(sizes->values[i].value);
+        if (i % 2 == 0) odd += square(sizes->values[i].value);
+    }
+    if (!(odd < 0.01 * all)) return;
+    for (parameter_estimate* p : {sizes, phases}) {
+        std::vector<estimate> even;
+        for (std::size_t i = 1; i < p->values.size(); i += 2) even.push_back(p->values[i]);
+        p->values = even;
+    }
+    const double factor = cycle->key.ends_with("_Hz") ? 2 : 0.5;
+    for (estimate& e : cycle->values) e = {factor * e.value, factor * e.low, factor * e.high};
+    in_lowest_terms(values);
+}
+
+QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& values, const effect& e,
+                                             const axis_case& c, double left) {
+    in_lowest_terms(values);
+    const double relative = std::min(1.0, std::hypot(0.01, left));
+    for (auto& p : values)
+        for (estimate& v : p.values) {
+            const double part = relative * (p.key.ends_with("_rad") ? 1.0 : std::abs(v.value));
+            const double error = std::hypot(part, p.key.ends_with("_m") ? 0.5 * c.resolution : 0.0);
+            v.low = v.value - std::hypot(v.value - v.low, error);
+            v.high = v.value + std::hypot(v.high - v.value, error);
+        }
+    for (estimate& v : values.front().values) v.high *= e.by_another_law;
+}
+
+QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
+                                   const std::vector<parameter_estimate>& other) {
+    for (auto& p : mine)
+        for (const auto& o : other)
+            if (o.key == p.key)
+                for (std::size_t k = 0; k < std::min(p.values.size(), o.values.size()); ++k) {
+                    p.values[k].low = std::min(p.values[k].low, o.values[k].low);
+                    p.values[k].high = std::max(p.values[k].high, o.values[k].high);
+                }
+}
+
+QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimate>& values) {
+    return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
+        const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
+        return cycle && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
+    });
+}
+
+} // namespace quadrant::inline v0::diagnosis::detail

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::inline v0::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::says(const std::string& line) const {
+    const double done = looks_ / looks_of_a_round_;
+    tell_(axis_.name + ": " + line, rounds_ ? done / std::max(*rounds_, done) : 1 - std::exp2(-done));
+}
+
+QUADRANT_DIAGNOSIS_DECL std::string model_fits::names_of(std::span<const std::size_t> some,
+                                                         const std::vector<candidate>& models) {
+    std::string out;
+    for (const std::size_t i : some) {
+        const effect& added = *models[i].effects.back();
+        (out += out.empty() ? "" : ", ") += added.label.empty() ? added.name : added.label;
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::begin_at(candidate& c, plant_model known) {
+    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
+        const parameter& p = c.fit.parameters[i];
+        c.fit.x[static_cast<Eigen::Index>(i)] =
+            std::clamp(p.to_fit(p.of(known)), p.to_fit(p.low), p.to_fit(p.high));
+    }
+    fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
+}
+
+QUADRANT_DIAGNOSIS_DECL std::size_t model_fits::effort() const {
+    if (!record_.replayed()) return 1;
+    const std::size_t affords =
+        std::max<std::size_t>(1, rules_.rows_of_a_look / std::max<std::size_t>(1, record_.position.size()));
+    // The valleys of a path are narrow: few steps from a start show little, but three times as many are enough.
+    return record_.closed() ? std::min<std::size_t>(3, affords) : affords;
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate model_fits::as_described(candidate c) {
+    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i)
+        if (const parameter& p = c.fit.parameters[i]; p.spread > 0 && !is_of_record(p))
+            c.fit.x[static_cast<Eigen::Index>(i)] = p.expected;
+    fitter::put(c.fit.plant, c.fit.parameters, c.fit.x);
+    return c;
+}
+
+QUADRANT_DIAGNOSIS_DECL const fit_result* model_fits::found_alone(const effect& e) const {
+    if (record_.closed()) return nullptr; // a path is looked at from many starts
+    for (const candidate& c : tried_)
+        if (c.effects.size() == 1 && c.effects.front() == &e && pays(c, calibrated_)) return &c.fit;
+    return nullptr;
+}
+
+QUADRANT_DIAGNOSIS_DECL candidate model_fits::joined(const candidate& from, const effect* added) {
+    candidate c{.effects = from.effects};
+    c.effects.push_back(added);
+    return c;
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
+                                                     const std::vector<std::size_t>& which,
+                                                     std::vector<candidate>& models, when_late how) const {
+    if (which.empty()) return;
+    const fitter fit(record_.observer, record_.score);
+    std::vector<candidate> origins{from};
+    if (record_.replayed() && from.stops_at_a_tolerance()) origins.push_back(as_described(from));
+    std::vector<std::vector<double>> left, innovation;
+    std::vector<shared_slopes> slopes;
+    for (const candidate& origin : origins) {
+        fit_result here = origin.fit;
+        slopes.push_back(fit.slopes(here));
+        left.push_back(residual_behind_drive(origin));
+        innovation.push_back(std::move(here.innovation.rows));
+    }
+    std::vector<const fit_result*> alone(models.size()); // found here: what `pays` remembers is no thread's own
+    for (const std::size_t i : which) alone[i] = found_alone(*models[i].effects.back());
+    const auto sketch = [&](std::span<const std::size_t> some) {
+        const bool late = how == when_late::leave_out && over();
+        for (const std::size_t i : some) {
+            models[i].total = -std::numeric_limits<double>::infinity();
+            models[i].missed = late;
+        }
+        if (late) return;
+        std::vector<first_look> looks;
+        std::vector<fit_course> courses;
+        for (const std::size_t i : some)
+            for (std::size_t j = 0; j < origins.size(); ++j) {
+                const screening look{axis_.plant,          axis_.tolerance, record_,
+                                     origins[j].fit.plant, left[j],         innovation[j]};
+                looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
+                                   rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4)),
+                                   alone[i]);
+                std::move(looks.back().courses().begin(), looks.back().courses().end(),
+                          std::back_inserter(courses));
+            }
+        fit.run(std::span(courses));
+        auto next = courses.begin();
+        for (std::size_t j = 0; j < looks.size(); ++j) {
+            for (fit_course& c : looks[j].courses()) c = std::move(*next++);
+            fit_result best = looks[j].best();
+            fit_result& kept = models[some[j / origins.size()]].fit;
+            if (j % origins.size() == 0 || best.objective < kept.objective) kept = std::move(best);
+        }
+    };
+    in_groups(which, 4, sketch, 1, models);
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::finish_best(std::vector<std::size_t>& which, std::size_t most,
+                                                     std::vector<candidate>& models, when_late how) const {
+    std::stable_sort(which.begin(), which.end(),
+                     [&](auto a, auto b) { return models[a].fit.objective < models[b].fit.objective; });
+    const std::size_t fitted = std::min(most, which.size());
+    const auto fit = [&](std::span<const std::size_t> some) {
+        std::vector<candidate*> pair;
+        for (const std::size_t i : some) pair.push_back(&models[i]);
+        if (how == when_late::leave_out && over())
+            for (candidate* c : pair) judge(record_, *c);
+        else
+            finish(record_, pair);
+    };
+    in_groups(std::span(which).first(fitted), 4, fit, looks_of_a_fit, models);
+    in_groups(std::span(which).subspan(fitted), 1,
+              [&](std::span<const std::size_t> one) { judge(record_, models[one[0]]); });
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::finish_near(const std::vector<std::size_t>& which, std::size_t fitted,
+                                                     const candidate& from,
+                                                     std::vector<candidate>& models) const {
+    double most = 0; // gained by one of them
+    for (const std::size_t i : which)
+        if (std::isfinite(models[i].total)) most = std::max(most, models[i].total - from.total);
+    if (!(most > rules_.margin)) return;
+    std::vector<std::size_t> near;
+    for (std::size_t j = std::min(fitted, which.size()); j < which.size(); ++j)
+        if (models[which[j]].total - from.total > rules_.near_best * most) near.push_back(which[j]);
+    const auto fit = [&](std::span<const std::size_t> some) {
+        if (over()) return;
+        std::vector<candidate*> each;
+        for (const std::size_t i : some) each.push_back(&models[i]);
+        finish(record_, each);
+    };
+    in_groups(near, 4, fit, looks_of_a_fit, models);
+}
+
+QUADRANT_DIAGNOSIS_DECL const candidate* model_fits::tried(const candidate& from, const effect* added) const {
+    for (const candidate& c : tried_)
+        if (c.effects.size() == from.effects.size() + 1 && has(c, added) && has_all(c, from)) return &c;
+    return nullptr;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::string model_fits::describe(const candidate& c) const {
+    std::string out;
+    for (const effect* e : c.effects) (out += out.empty() ? "" : ", ") += e->label.empty() ? e->name : e->label;
+    if (!std::isfinite(c.total)) return out += ": this record does not show it";
+    return (out += ": gain ") += std::to_string(static_cast<long>(c.total - calibrated_.total));
+}
+
+} // namespace quadrant::inline v0::diagnosis
