@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
