@@ -25,7 +25,6 @@ FUNCTION, FILE = 60, 250
 long_files = {
     "include/quadrant/diagnosis/fit/fit.ipp",
     "include/quadrant/diagnosis/fit/predictor.ipp",
-    "include/quadrant/diagnosis/fit/record.ipp",
 }
 long_functions = {
     "include/quadrant/diagnosis/which/calibration.ipp",

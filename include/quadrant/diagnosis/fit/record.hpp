@@ -6,6 +6,8 @@
 #include "command_noise.hpp"
 #include "drive_noise.hpp"
 #include "fit.hpp"
+#include "gap_rows.hpp"
+#include "residual_force.hpp"
 #include "scales.hpp"
 
 namespace quadrant::inline v0::diagnosis {
@@ -54,21 +56,6 @@ struct axis_record {
 QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t> motion_segments(std::span<const double> motion, double period,
                                                                  const record_scales& scale);
 
-/// Residual force M (a_model - a_measured): what the model pushes and the machine did not follow [N], both
-/// accelerations through the identical zero-phase filter. Both are second differences of positions, so that a
-/// right model leaves the encoder's rounding only. Rows that are left out (axis_record::left_out) count as if
-/// nothing were left there.
-QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& plant,
-                                                           std::span<const double> position,
-                                                           std::span<const double> model_acceleration,
-                                                           double period, double bandwidth_Hz,
-                                                           std::span<const unsigned char> left_out = {});
-
-/// rms of residual_force() when the position carries white noise of `sigma` and nothing else is wrong.
-/// `reaction`: of a drive whose replay is fed the position.
-QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
-                                                    double bandwidth_Hz, std::span<const double> reaction = {});
-
 /// The same of a record: with what the replay of its drive makes of that noise, and the noise of a measured
 /// command.
 QUADRANT_DIAGNOSIS_DECL double force_floor(const axis_record& r, double mass, double sigma);
@@ -81,25 +68,6 @@ QUADRANT_DIAGNOSIS_DECL double position_noise(const std::vector<double>& innovat
 /// How finely a period is simulated: the springs of a described contact turn by a tenth of a radian at most in
 /// a sub-step, in ten at most. A contact of one spring, which stands for what no record shows, needs none.
 QUADRANT_DIAGNOSIS_DECL std::size_t substeps_of(const plant_model& described, double period);
-
-/// Rows that are not judged: those of long gaps, and those in which the observer forgets the gap before.
-struct gap_rows {
-    std::vector<unsigned char> gap, settling;
-};
-
-/// The rows of gaps that last longer than the response of the observer. It follows what was filled into a
-/// shorter one (a missing row, a wrong reading) without harm. Behind a longer one its state is unknown, as at
-/// the start of a record, and as many rows go by before it is judged.
-QUADRANT_DIAGNOSIS_DECL gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows,
-                                           std::size_t skip);
-
-/// First rows of the blocks of this length from `skip` on, one behind the other, around the rows that are not
-/// judged.
-QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t>
-lay_blocks(std::size_t block, std::size_t skip, const std::vector<unsigned char>& settling, std::size_t rows);
-
-/// These rows and their neighbours: a second difference reaches over one row on each side.
-QUADRANT_DIAGNOSIS_DECL std::vector<unsigned char> around(const std::vector<unsigned char>& rows);
 
 /// residual_force() of a model on a record. Where something was measured behind the drive, what this drive
 /// would have made otherwise is part of it, unless only what lies behind the drive is asked for.

@@ -25,31 +25,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t> motion_segments(std::span<const
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& plant,
-                                                           std::span<const double> position,
-                                                           std::span<const double> model_acceleration,
-                                                           double period, double bandwidth_Hz,
-                                                           std::span<const unsigned char> left_out) {
-    const std::size_t n = position.size();
-    auto raw = acceleration_of(plant, position, period);
-    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = plant.mass * (model_acceleration[k] - raw[k]);
-    for (std::size_t k = 0; k < left_out.size(); ++k)
-        if (left_out[k]) raw[k] = 0;
-    return zero_phase(raw, bandwidth_Hz, period);
-}
-
-QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
-                                                    double bandwidth_Hz, std::span<const double> reaction) {
-    std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
-    const std::size_t at = impulse.size() / 2;
-    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
-    impulse[at] = -2 * impulse[at + 1];
-    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
-    double sum = 0;
-    for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
-    return sigma * std::sqrt(sum);
-}
-
 QUADRANT_DIAGNOSIS_DECL double force_floor(const axis_record& r, double mass, double sigma) {
     return std::hypot(residual_force_floor(mass, sigma, r.period, r.bandwidth_Hz, r.reaction), r.command_noise);
 }
@@ -70,53 +45,6 @@ QUADRANT_DIAGNOSIS_DECL std::size_t substeps_of(const plant_model& described, do
     for (std::size_t i = 0; i < f.contact.elements; ++i) stiffness += f.stiffness(i);
     return static_cast<std::size_t>(
         std::clamp(std::ceil(10 * period * std::sqrt(stiffness / described.mass)), 1.0, 10.0));
-}
-
-QUADRANT_DIAGNOSIS_DECL gap_rows long_gaps(std::span<const unsigned char> left_out, double response_rows,
-                                           std::size_t skip) {
-    gap_rows out;
-    const std::size_t n = left_out.size();
-    for (std::size_t first = 0; first < n;) {
-        std::size_t last = first;
-        while (last < n && left_out[last]) ++last;
-        if (static_cast<double>(last - first) > response_rows) {
-            out.gap.resize(n, 0);
-            out.settling.resize(n, 0);
-            std::fill(out.gap.begin() + static_cast<std::ptrdiff_t>(first),
-                      out.gap.begin() + static_cast<std::ptrdiff_t>(last), static_cast<unsigned char>(1));
-            std::fill(out.settling.begin() + static_cast<std::ptrdiff_t>(first),
-                      out.settling.begin() + static_cast<std::ptrdiff_t>(std::min(n, last + skip)),
-                      static_cast<unsigned char>(1));
-        }
-        first = last + 1;
-    }
-    return out;
-}
-
-QUADRANT_DIAGNOSIS_DECL std::vector<std::size_t>
-lay_blocks(std::size_t block, std::size_t skip, const std::vector<unsigned char>& settling, std::size_t rows) {
-    std::vector<std::size_t> out;
-    for (std::size_t first = skip; first + block <= rows;) {
-        std::size_t clear = first + block;
-        while (!settling.empty() && clear > first && !settling[clear - 1]) --clear;
-        if (!settling.empty() && clear > first) {
-            first = clear; // behind the last row of it that is not judged
-            continue;
-        }
-        out.push_back(first);
-        first += block;
-    }
-    return out;
-}
-
-QUADRANT_DIAGNOSIS_DECL std::vector<unsigned char> around(const std::vector<unsigned char>& rows) {
-    std::vector<unsigned char> out = rows;
-    for (std::size_t k = 0; k < rows.size(); ++k)
-        if (rows[k]) {
-            if (k > 0) out[k - 1] = 1;
-            if (k + 1 < rows.size()) out[k + 1] = 1;
-        }
-    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_of(const axis_record& r, const plant_model& plant,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+
+namespace quadrant::inline v0::diagnosis {
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> residual_force(const plant_model& plant,
+                                                           std::span<const double> position,
+                                                           std::span<const double> model_acceleration,
+                                                           double period, double bandwidth_Hz,
+                                                           std::span<const unsigned char> left_out) {
+    const std::size_t n = position.size();
+    auto raw = acceleration_of(plant, position, period);
+    for (std::size_t k = 1; k + 1 < n; ++k) raw[k] = plant.mass * (model_acceleration[k] - raw[k]);
+    for (std::size_t k = 0; k < left_out.size(); ++k)
+        if (left_out[k]) raw[k] = 0;
+    return zero_phase(raw, bandwidth_Hz, period);
+}
+
+QUADRANT_DIAGNOSIS_DECL double residual_force_floor(double mass, double sigma, double period,
+                                                    double bandwidth_Hz, std::span<const double> reaction) {
+    std::vector<double> impulse(reaction.empty() ? 4001 : reaction.size(), 0.0);
+    const std::size_t at = impulse.size() / 2;
+    impulse[at - 1] = impulse[at + 1] = mass / (period * period);
+    impulse[at] = -2 * impulse[at + 1];
+    for (std::size_t k = 0; k < reaction.size(); ++k) impulse[k] -= reaction[k];
+    double sum = 0;
+    for (double h : zero_phase(impulse, bandwidth_Hz, period)) sum += h * h;
+    return sigma * std::sqrt(sum);
+}
+
+} // namespace quadrant::inline v0::diagnosis
