@@ -27,23 +27,14 @@ cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
 version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
 flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
     -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
-part() { # NAME HEADER...
-    name=$1
-    shift
-    for header; do printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$header" "$header"; done >"$build/$name.cpp"
-}
-part diagnose diagnose next/next_experiment
-part compare compare compare/finding compare/fit_of_log compare/values compare/with_causes
-part apply apply read_diagnosis read_machine text/json_text effect/effect_list
-part passes simulate fit/predictor fit/fit fit/bounded_step fit/regression fit/drive_estimate fit/record fit/drive_noise fit/command_noise model/linear_past model/sample_loss
-part search which/search which/candidate which/calibration which/interval which/causes which/as_applied which/calibrated
-part case which/axis_case which/block_places where/places how_far/how_far how_far/closed_loop how_far/driven_loop
-part chain chain/diagnose_chain chain/links chain/search chain/values chain/outcome chain/readings chain/fit chain/start chain/position_compensation
-part compensate compensate compensate/compensation compensate/tracking_forecast
-part controllers controller/kinds where/controller_box where/controller_mismatch
+# A file for each folder of the diagnosis, and for each call with the folder of its parts.
+rm -f "$build"/part_*
+for part in $(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort); do
+    printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$part" "$part" >>"$build/part_${part%%/*}.cpp"
+done
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
-set -- diagnose compare apply passes search case chain compensate controllers binding
+set -- $(cd "$build" && for source in part_*.cpp; do echo "${source%.cpp}"; done) binding
 printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I '{}' em++ $flags -c "$build/{}.cpp" -o "$build/{}.o"
 cd "$build"
 em++ -O2 -fwasm-exceptions $(printf '%s.o ' "$@") -o quadrant.js --no-entry \

@@ -32,11 +32,12 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> numbers_of_record(const plant_mod
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give) {
-    const plant_description& d = axis.plant;
-    const tolerance_description& tolerance = axis.tolerance;
-    std::vector<parameter> out;
-    const auto within = [&](std::string_view key, double& (*of)(plant_model&), double value, double relative) {
+namespace detail {
+
+/// A number that moves by its tolerance, relative to its value; none where either is missing.
+struct within_tolerance {
+    std::vector<parameter>& out;
+    void operator()(std::string_view key, double& (*of)(plant_model&), double value, double relative) const {
         if (!(value > 0) || !(relative > 0)) return;
         const double ratio = std::min(relative, 0.9);
         out.push_back(
@@ -49,43 +50,31 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
              .step = 1e-3,
              .expected = std::log(value),
              .spread = ratio / std::numbers::sqrt3}); // the standard deviation of a uniform inside the bounds
-    };
-    within(
-        "mass_kg", [](plant_model& p) -> double& { return p.mass; }, d.mass_kg, tolerance.of("mass"));
-    within(
-        "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },
-        d.force_constant_N_per_V, tolerance.of("force_constant"));
-    within(
-        "viscous_N_s_per_m", [](plant_model& p) -> double& { return p.friction.viscous_slope; },
-        d.viscous_N_s_per_m, tolerance.of("viscous"));
-    within(
-        "delay_s", [](plant_model& p) -> double& { return p.delay; }, d.delay_s, tolerance.of("delay"));
+    }
+};
+
+/// Both levels of friction move inside their tolerances, and the excess between them by what either lets it.
+inline void add_friction(std::vector<parameter>& out, const plant_description& d,
+                         const tolerance_description& tolerance) {
+    const within_tolerance within{out};
     const double coulomb = d.coulomb_N.value_or(0), excess = d.static_N ? *d.static_N - coulomb : 0;
     within(
         "coulomb_N", [](plant_model& p) -> double& { return p.friction.coulomb; }, coulomb,
         tolerance.of("coulomb"));
-    if (excess >
-        0) { // both levels move inside their tolerances, and the excess between them by what either lets it
-        within(
-            "static_N", [](plant_model& p) -> double& { return p.friction.excess; }, excess,
-            tolerance.of("static") * *d.static_N / excess);
-        if (!out.empty() && out.back().key == "static_N") {
-            const double play = tolerance.of("static") * *d.static_N + tolerance.of("coulomb") * coulomb;
-            out.back().low = std::max(0.01 * excess, excess - play);
-            out.back().high = excess + play;
-        }
-    }
+    if (!(excess > 0)) return;
     within(
-        "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
-        d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
-    for (const effect* e : every_effect())
-        for (const machine_key& key : e->keys)
-            if (key.of && key.tolerance)
-                for (double value : numbers_of(axis, key, *e))
-                    within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
-    // Every contact gives way a little before it slips; up to ten times that it is no cause, nor is any
-    // presliding displacement of a friction that is not described at all. One that is described as giving way
-    // further, or element by element, stays as described.
+        "static_N", [](plant_model& p) -> double& { return p.friction.excess; }, excess,
+        tolerance.of("static") * *d.static_N / excess);
+    if (out.empty() || out.back().key != "static_N") return;
+    const double play = tolerance.of("static") * *d.static_N + tolerance.of("coulomb") * coulomb;
+    out.back().low = std::max(0.01 * excess, excess - play);
+    out.back().high = excess + play;
+}
+
+/// Every contact gives way a little before it slips; up to ten times that it is no cause, nor is any
+/// presliding displacement of a friction that is not described at all. One that is described as giving way
+/// further, or element by element, stays as described.
+inline void add_contact(std::vector<parameter>& out, const plant_description& d, double give) {
     const double most = (d.describes_friction() ? 10 : 500) * give;
     const friction_contact contact = plant_model(d, give).friction.contact;
     if (contact.elements == 1 && contact.length <= most)
@@ -98,6 +87,35 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
                        .step = 1e-2,
                        .expected = std::log(contact.length),
                        .spread = 1.5});
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give) {
+    const plant_description& d = axis.plant;
+    const tolerance_description& tolerance = axis.tolerance;
+    std::vector<parameter> out;
+    const detail::within_tolerance within{out};
+    within(
+        "mass_kg", [](plant_model& p) -> double& { return p.mass; }, d.mass_kg, tolerance.of("mass"));
+    within(
+        "force_constant_N_per_V", [](plant_model& p) -> double& { return p.force_constant; },
+        d.force_constant_N_per_V, tolerance.of("force_constant"));
+    within(
+        "viscous_N_s_per_m", [](plant_model& p) -> double& { return p.friction.viscous_slope; },
+        d.viscous_N_s_per_m, tolerance.of("viscous"));
+    within(
+        "delay_s", [](plant_model& p) -> double& { return p.delay; }, d.delay_s, tolerance.of("delay"));
+    detail::add_friction(out, d, tolerance);
+    within(
+        "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
+        d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
+    for (const effect* e : every_effect())
+        for (const machine_key& key : e->keys)
+            if (key.of && key.tolerance)
+                for (double value : numbers_of(axis, key, *e))
+                    within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
+    detail::add_contact(out, d, give);
     return out;
 }
 

@@ -18,20 +18,26 @@ QUADRANT_DIAGNOSIS_DECL double rarity(const std::vector<const effect*>& effects)
     return sum;
 }
 
-} // namespace detail
+/// Curvature and gradient of the score around a fit: of each fold, and of all.
+struct fold_sums {
+    std::array<fold_sum, folds> of{};
+    fold_sum all{};
+    Eigen::VectorXd low{}, high{}; ///< how far each number may still move
+};
 
-QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool replayed, bool closed) {
+/// Sums of the blocks; the candidate gets those that intervals are made of.
+inline fold_sums sums_of(candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
-    std::array<detail::fold_sum, folds> sums;
-    detail::fold_sum all{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-    for (auto& f : sums) f = all;
+    fold_sums out;
+    out.all = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+    out.of.fill(out.all);
     c.curvature = Eigen::MatrixXd::Zero(n, n);
     c.gradient = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(s.segments));
     Eigen::MatrixXd scratch;
-    detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
+    each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const double w = view.nu / (blocks.ms[b] + view.floor * view.floor);
-            auto& f = sums[fold_of(view.segment_of_block[b])];
+            auto& f = out.of[fold_of(view.segment_of_block[b])];
             const Eigen::MatrixXd& curvature = blocks.curvature(b, scratch);
             f.a += w * curvature;
             f.g += w * blocks.gradient(b);
@@ -39,42 +45,72 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
             c.gradient.col(static_cast<Eigen::Index>(view.segment_of_block[b])) += w * blocks.gradient(b);
         }
     });
-    for (const auto& f : sums) {
-        all.a += f.a;
-        all.g += f.g;
+    for (const auto& f : out.of) {
+        out.all.a += f.a;
+        out.all.g += f.g;
     }
-    Eigen::VectorXd low(n), high(n);
+    return out;
+}
+
+/// What the owner knows of each number, and its bounds.
+inline void add_what_is_known(fold_sums& sums, const fit_result& fit) {
+    const auto n = fit.x.size();
+    sums.low.resize(n);
+    sums.high.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-        const auto& p = c.fit.parameters[static_cast<std::size_t>(i)];
-        const double x = c.fit.x[i];
-        low[i] = std::min(p.to_fit(p.low) - x, 0.0);
-        high[i] = std::max(p.to_fit(p.high) - x, 0.0);
+        const auto& p = fit.parameters[static_cast<std::size_t>(i)];
+        const double x = fit.x[i];
+        sums.low[i] = std::min(p.to_fit(p.low) - x, 0.0);
+        sums.high[i] = std::max(p.to_fit(p.high) - x, 0.0);
         if (!(p.spread > 0)) {
             // A fold may leave a number open. That it lies within its bounds is known all the same, and is
             // worth the inverse variance of an even spread over them.
-            if (const double width = high[i] - low[i]; width > 0 && std::isfinite(width))
-                all.a(i, i) += 12 / (width * width);
+            if (const double width = sums.high[i] - sums.low[i]; width > 0 && std::isfinite(width))
+                sums.all.a(i, i) += 12 / (width * width);
             continue;
         }
-        all.a(i, i) += 1 / (p.spread * p.spread);
-        all.g[i] += (x - p.expected) / (p.spread * p.spread);
+        sums.all.a(i, i) += 1 / (p.spread * p.spread);
+        sums.all.g[i] += (x - p.expected) / (p.spread * p.spread);
     }
+}
+
+/// One Newton step from the whole fit to that without a fold.
+inline Eigen::VectorXd step_without(const fold_sums& sums, std::size_t fold, bool replayed) {
+    Eigen::MatrixXd a = sums.all.a - sums.of[fold].a;
+    a.diagonal() *= 1 + 1e-9;
+    if (replayed) return bounded_step(a, sums.all.g - sums.of[fold].g, sums.low, sums.high);
+    return solved(a, sums.of[fold].g) // at the optimum, where nothing presses against a bound
+        .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
+        .cwiseMax(sums.low)
+        .cwiseMin(sums.high);
+}
+
+/// Of a path: a machine far from its description has to be worth it, and so has a number that is free.
+inline double penalty_of_path(const fit_result& fit, double readings) {
+    const auto free = std::count_if(fit.parameters.begin(), fit.parameters.end(),
+                                    [](const parameter& p) { return !(p.spread > 0); });
+    const auto& friction = fit.plant.friction;
+    constexpr double frictionless = 1e-3; // odds of a servo's gear without any
+    const bool none = !(friction.coulomb + friction.excess + friction.load > 0);
+    return fitter::prior(fit) +
+           0.5 * score_temperature * static_cast<double>(free) * std::log(std::max(2.0, readings)) -
+           (none ? score_temperature * std::log(frictionless) : 0);
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool replayed, bool closed) {
+    detail::fold_sums sums = detail::sums_of(c, s);
+    detail::add_what_is_known(sums, c.fit);
     c.held_out.assign(s.segments, 0.0);
     c.leave.clear();
     std::array<Eigen::VectorXd, folds> step;
     for (std::size_t f = 0; f < folds; ++f) {
-        Eigen::MatrixXd a = all.a - sums[f].a;
-        a.diagonal() *= 1 + 1e-9;
-        if (replayed)
-            step[f] = bounded_step(a, all.g - sums[f].g, low, high);
-        else // at the optimum, where nothing presses against a bound
-            step[f] = solved(a, sums[f].g)
-                          .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
-                          .cwiseMax(low)
-                          .cwiseMin(high);
+        step[f] = detail::step_without(sums, f, replayed);
         c.leave.push_back(c.fit.x + step[f]);
     }
     double readings = 0;
+    Eigen::MatrixXd scratch;
     detail::each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const auto segment = view.segment_of_block[b];
@@ -83,17 +119,8 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
             readings += view.nu / score_temperature;
         }
     });
-    c.penalty = detail::flexibility(c.fit) + c.fit.choices + detail::rarity(c.effects);
-    if (closed) { // a machine far from its description has to be worth it, and so has a number that is free
-        const auto free = std::count_if(c.fit.parameters.begin(), c.fit.parameters.end(),
-                                        [](const parameter& p) { return !(p.spread > 0); });
-        const auto& friction = c.fit.plant.friction;
-        constexpr double frictionless = 1e-3; // odds of a servo's gear without any
-        if (!(friction.coulomb + friction.excess + friction.load > 0))
-            c.penalty -= score_temperature * std::log(frictionless);
-        c.penalty += fitter::prior(c.fit) - detail::flexibility(c.fit) +
-                     0.5 * score_temperature * static_cast<double>(free) * std::log(std::max(2.0, readings));
-    }
+    c.penalty = (closed ? detail::penalty_of_path(c.fit, readings) : detail::flexibility(c.fit)) +
+                c.fit.choices + detail::rarity(c.effects);
     c.total = -c.penalty;
     for (double v : c.held_out) c.total += v;
 }
