@@ -40,7 +40,7 @@ struct machine {
     std::function<double(double, double, double)> stranger; ///< a force over position, velocity and time [N]
     /// Growth of the friction's level [N], from the motor's force and the constant forces on its load.
     std::function<double(double, double)> more_level;
-    double bristle = 2e-7;
+    double bristle = 2e-7, bristle_damping = 0.7; ///< the latter over the root of stiffness and mass
     double noise = 8e-8; ///< of the encoder, white [m]
     controller control;
     std::function<double(double, double)>
@@ -158,7 +158,7 @@ inline quadrant::diagnosis::axis_log run(const machine& m, double seconds = 8.15
             if (level > 0) { // LuGre, the bristle's exact exponential step
                 const double stiffness = level / m.bristle, before = z;
                 z = side * m.bristle + (z - side * m.bristle) * std::exp(-std::abs(v) * h / m.bristle);
-                friction += stiffness * z + 0.7 * std::sqrt(stiffness * m.mass) * (z - before) / h;
+                friction += stiffness * z + m.bristle_damping * std::sqrt(stiffness * m.mass) * (z - before) / h;
             }
             const double angle = 2 * std::numbers::pi * x / m.cogging_period;
             double force = motor - friction + m.constant_force - m.spring * x +
