@@ -10,7 +10,7 @@
 using namespace quadrant::diagnosis;
 
 namespace {
-/// A machine with such a bristle, its damping over the root of stiffness and mass, described with another length.
+/// A machine with such a bristle, its damping over the root of stiffness and mass, and the length described.
 diagnosis_result of_bristle(double length, double damping, double described) {
     workshop::machine m;
     m.bristle = length;
