@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// A contact that gives way before it slips, by LuGre's bristle where the diagnosis has sticking contacts: after a
-// full turn it follows the same branch with twice the length, and its damping makes it look stiffer still.
+// A contact that gives way before it slips, by LuGre's bristle where the diagnosis has sticking contacts: after
+// a full turn it follows the same branch with twice the length, and its damping makes it look stiffer still.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
