@@ -110,8 +110,8 @@ inline constexpr effect presliding_friction{
             p.friction.contact.lengths_as_described = {};
         },
     // After a full turn a contact without memory of past reversals (Dahl, LuGre) follows exp(-x/l) where one
-    // with memory follows exp(-x/2l): the same branch at twice the length. Where LuGre's bristle is damped, too,
-    // it looks stiffer: up to 2.8 times (tests/diagnosis/presliding_law.cpp).
+    // with memory follows exp(-x/2l): the same branch at twice the length. Where LuGre's bristle is damped it
+    // looks stiffer: up to 2.8 times (tests/diagnosis/presliding_law.cpp).
     .by_another_law = 3};
 
 } // namespace quadrant::inline v0::diagnosis::suspect
