@@ -61,7 +61,20 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     } else if (how == held_by::loop) {
         nearest_ = first().nearest();
     }
+    if (how == held_by::readings && before)
+        if (const auto way = before->other_tap()) {
+            out.read.tap = *way;
+            out.tap_known = true;
+        }
     return nearest_ ? for_machine(ready, axis, how, &*nearest_) : out;
+}
+
+QUADRANT_DIAGNOSIS_DECL std::optional<tap_reading> axis_case::other_tap() const {
+    const plant_model& plant = best().fit.plant;
+    if (!record.taps_force(plant.drive) || record.tap_known || best().effects.empty()) return {};
+    const fitter fit(record.observer, record.score);
+    const tap_reading way = detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit));
+    return way == plant.drive.read.tap ? std::nullopt : std::optional(way);
 }
 
 QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {

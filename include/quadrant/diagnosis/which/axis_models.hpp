@@ -11,6 +11,13 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+namespace detail {
+/// The way in which the tap is read with which this machine, its `own` numbers fitted, gives least otherwise:
+/// by the median over the rows, which an effect in a part of them moves little.
+QUADRANT_DIAGNOSIS_DECL tap_reading best_tap(const fitter& fit, const driven_motion& drive,
+                                             plant_model described, const std::vector<parameter>& own);
+} // namespace detail
+
 /// The described machine on the record of one axis, calibrated inside the owner's tolerance; and what a model
 /// leaves of that record.
 class axis_models {

@@ -5,11 +5,8 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// The way in which the tap is read with which the described machine, calibrated, gives least otherwise: by the
-/// median over the rows, which an effect in a part of them moves little. Where it bends the calibration, the
-/// choice may be wrong.
-inline tap_reading best_tap(const fitter& fit, const driven_motion& drive, plant_model described,
-                            const std::vector<parameter>& own) {
+QUADRANT_DIAGNOSIS_DECL tap_reading best_tap(const fitter& fit, const driven_motion& drive,
+                                             plant_model described, const std::vector<parameter>& own) {
     constexpr int steps = 6; // of a fit: the ways differ by more than its last digits
     tap_reading best = described.drive.read.tap;
     double least = std::numeric_limits<double>::infinity();
@@ -43,7 +40,7 @@ QUADRANT_DIAGNOSIS_DECL axis_models::axis_models(const axis_record& record, cons
         for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(2 * score_temperature);
     for (parameter& p : numbers_of_record(given_.fit.plant, record))
         start.fit.parameters.push_back(std::move(p));
-    if (record.taps_force(given_.fit.plant.drive))
+    if (record.taps_force(given_.fit.plant.drive) && !record.tap_known)
         given_.fit.plant.drive.read.tap =
             detail::best_tap(fit, *record.observer.drive, given_.fit.plant, start.fit.parameters);
     start.fit.plant = given_.fit.plant;

@@ -34,17 +34,18 @@ struct candidate {
     std::shared_ptr<std::optional<on_holdout>> holdout = std::make_shared<std::optional<on_holdout>>();
     bool missed = false; ///< the time was up before it was looked at
 
-    /// Whether a number of the machine file, calibrated inside the owner's tolerance, ends at its end.
+    /// Whether this number of the machine file, calibrated inside the owner's tolerance, ends at its end.
+    bool stops_at_its_tolerance(std::size_t i) const {
+        const parameter& p = fit.parameters[i];
+        const double x = fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low), high = p.to_fit(p.high);
+        const double hair = 1e-6 * (high - low);
+        return p.spread > 0 && !is_of_record(p) && p.key != "presliding_length_m" &&
+               (x <= low + hair || x >= high - hair);
+    }
+    /// The same for any of them.
     bool stops_at_a_tolerance() const {
-        for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-            const parameter& p = fit.parameters[i];
-            const double x = fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low),
-                         high = p.to_fit(p.high);
-            const double hair = 1e-6 * (high - low);
-            if (p.spread > 0 && !is_of_record(p) && p.key != "presliding_length_m" &&
-                (x <= low + hair || x >= high - hair))
-                return true;
-        }
+        for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+            if (stops_at_its_tolerance(i)) return true;
         return false;
     }
 };
@@ -87,7 +88,7 @@ QUADRANT_DIAGNOSIS_DECL std::optional<std::vector<parameter>>
 begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& starts);
 } // namespace detail
 
-/// A first look at `from` with one more effect: a step or two from every start that it offers, and from where a
+/// A first look at `from` with one more effect: a step or two from every start that it offers, or from where a
 /// fit has `found` it by itself; the slopes of the parameters that `from` has taken from there; the best kept,
 /// less what its parameters cost. No score yet. An effect that offers no start leaves an infinite objective.
 class first_look {

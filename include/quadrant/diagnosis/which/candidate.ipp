@@ -160,8 +160,7 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
         for (parameter& p : out) {
             const auto q = std::find_if(found.parameters.begin(), found.parameters.end(),
                                         [&](const parameter& each) { return &each.of(there) == &p.of(there); });
-            all = all && q != found.parameters.end();
-            if (!all) break;
+            if (!(all = q != found.parameters.end())) break;
             const double x = std::clamp(p.of(there), p.low, p.high);
             new_to_all = new_to_all || std::abs(x - p.start) > 0.05 * std::abs(x);
             p.start = x;
@@ -178,8 +177,11 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
                                                const fit_result* found) {
     const auto resumed_from = resumed(from.fit);
     auto starts = added.starts(look);
-    if (found)
-        if (auto where = detail::begun_where(*found, starts)) starts.push_back(std::move(*where));
+    if (found) {
+        auto where = detail::begun_where(*found, starts);
+        starts.clear();
+        if (where) starts.push_back(std::move(*where));
+    }
     for (const auto& start : starts) {
         plant_model plant = from.fit.plant;
         added.join(plant, look);

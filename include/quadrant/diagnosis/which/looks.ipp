@@ -72,6 +72,28 @@ inline bool hides_what_the_other_shows(const axis_case& c) {
     return c.settled || c.second_log(c.best()).force > 2 * c.models.held_out_force(c.best());
 }
 
+inline const char* in_words(tap_reading way) {
+    switch (way) {
+    case tap_reading::before_set_point:
+        return "read before the row's set-point acts";
+    case tap_reading::after_set_point:
+        return "read behind the row's set-point";
+    case tap_reading::row_mean:
+        break;
+    }
+    return "the mean over a row";
+}
+
+/// Takes what was found with another way of reading the tap, and says so.
+inline void take_if_better(std::unique_ptr<axis_case>& found, std::unique_ptr<axis_case> other, double margin,
+                           std::vector<std::string>& notes) {
+    if (!(other->best().total > found->best().total + margin)) return;
+    found = std::move(other);
+    notes.push_back(fmt::format("axis {}: what was measured in the drive is taken as {}: beside what was "
+                                "found that fits better than what fits the described machine.",
+                                found->axis.name, in_words(found->best().fit.plant.drive.read.tap)));
+}
+
 QUADRANT_DIAGNOSIS_DECL std::unique_ptr<axis_case>
 look_at(const looked_at& of, const std::string& file, const progress& tell, std::vector<std::string>& notes) {
     const double least_shrink = of.limits.least_shrink;
@@ -106,6 +128,10 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
             fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
                         "holds says too little in one of them.",
                         of.axis.name));
+    if (!of.both && found->other_tap()) {
+        tell("axis " + of.axis.name + ": again, with what was measured in the drive read in another way");
+        take_if_better(found, look(held_by::readings, found.get(), false), of.limits.margin, notes);
+    }
     const char* why_along = along_motion(found, false);
     if (!of.both && hides_what_the_other_shows(*found)) {
         tell("axis " + of.axis.name + ": again, fitted to the hold-out log");

@@ -31,14 +31,16 @@ protected:
     /// of a tolerance, it bent to what a missing effect does, and a fit that begins there may stay there.
     static candidate as_described(candidate c);
     static candidate joined(const candidate& from, const effect* added);
-    /// The fit of the calibrated machine and this effect alone, where that pays. Beside another cause the same
-    /// numbers are a good start: Newton's step from the machine file's may be stopped by friction that sticks.
-    const fit_result* found_alone(const effect& e) const;
+    /// The calibrated machine and this effect alone, where that was tried and pays; else null.
+    const candidate* alone(const effect& e) const;
     /// What happens to a model whose turn comes when the time is up.
     enum class when_late { go_on, leave_out };
+    /// Where a first look at one more effect begins.
+    enum class begins_at { every_start, where_alone };
     /// A first look at each of these: `from` and the effect that it names last.
     void sketch_each(const candidate& from, const std::vector<std::size_t>& which,
-                     std::vector<candidate>& models, when_late how) const;
+                     std::vector<candidate>& models, when_late how,
+                     begins_at start = begins_at::every_start) const;
     /// Of these sketches the most promising fitted to the end, the others scored as they stand; sorted by
     /// promise.
     void finish_best(std::vector<std::size_t>& which, std::size_t most, std::vector<candidate>& models,
@@ -74,6 +76,19 @@ protected:
     /// Of the sketches behind the first `fitted` those fitted to the end that come near the best already.
     void finish_near(const std::vector<std::size_t>& which, std::size_t fitted, const candidate& from,
                      std::vector<candidate>& models) const;
+    /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
+    /// lacks, from the part's numbers; all of these side by side. `from`: where their own fits began.
+    void mend_from_parts(std::vector<candidate>& models, const std::vector<std::size_t>& which,
+                         const candidate& from) const;
+
+    /// Whether calibration stops at the end of the tolerance of the number that this effect frees: the number
+    /// is beyond it.
+    static bool is_beyond_tolerance(const candidate& c, const effect& e);
+    /// Where a number beyond its tolerance brings less than half beside another cause of what it brings alone,
+    /// the fit stopped short: friction that sticks lets no small step of it do better. It is fitted again from
+    /// where it was found alone; the best few of these side by side.
+    void mend_from_alone(std::vector<candidate>& models, const std::vector<std::size_t>& which,
+                         const candidate& from) const;
     const candidate* tried(const candidate& from, const effect* added) const;
     std::string describe(const candidate& c) const;
 

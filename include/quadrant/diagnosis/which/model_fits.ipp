@@ -43,10 +43,9 @@ QUADRANT_DIAGNOSIS_DECL candidate model_fits::as_described(candidate c) {
     return c;
 }
 
-QUADRANT_DIAGNOSIS_DECL const fit_result* model_fits::found_alone(const effect& e) const {
-    if (record_.closed()) return nullptr; // a path is looked at from many starts
+QUADRANT_DIAGNOSIS_DECL const candidate* model_fits::alone(const effect& e) const {
     for (const candidate& c : tried_)
-        if (c.effects.size() == 1 && c.effects.front() == &e && pays(c, calibrated_)) return &c.fit;
+        if (c.effects.size() == 1 && c.effects.front() == &e) return pays(c, calibrated_) ? &c : nullptr;
     return nullptr;
 }
 
@@ -58,7 +57,8 @@ QUADRANT_DIAGNOSIS_DECL candidate model_fits::joined(const candidate& from, cons
 
 QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
                                                      const std::vector<std::size_t>& which,
-                                                     std::vector<candidate>& models, when_late how) const {
+                                                     std::vector<candidate>& models, when_late how,
+                                                     begins_at start) const {
     if (which.empty()) return;
     const fitter fit(record_.observer, record_.score);
     std::vector<candidate> origins{from};
@@ -71,8 +71,10 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
         left.push_back(residual_behind_drive(origin));
         innovation.push_back(std::move(here.innovation.rows));
     }
-    std::vector<const fit_result*> alone(models.size()); // found here: what `pays` remembers is no thread's own
-    for (const std::size_t i : which) alone[i] = found_alone(*models[i].effects.back());
+    std::vector<const fit_result*> found(models.size()); // here: what `pays` remembers is no thread's own
+    if (start == begins_at::where_alone)
+        for (const std::size_t i : which)
+            if (const candidate* c = alone(*models[i].effects.back())) found[i] = &c->fit;
     const auto sketch = [&](std::span<const std::size_t> some) {
         const bool late = how == when_late::leave_out && over();
         for (const std::size_t i : some) {
@@ -88,7 +90,7 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
                                      origins[j].fit.plant, left[j],         innovation[j]};
                 looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
                                    rules_.first_look * static_cast<int>(std::min<std::size_t>(effort(), 4)),
-                                   alone[i]);
+                                   found[i]);
                 std::move(looks.back().courses().begin(), looks.back().courses().end(),
                           std::back_inserter(courses));
             }
@@ -152,6 +154,73 @@ QUADRANT_DIAGNOSIS_DECL std::string model_fits::describe(const candidate& c) con
     for (const effect* e : c.effects) (out += out.empty() ? "" : ", ") += e->label.empty() ? e->name : e->label;
     if (!std::isfinite(c.total)) return out += ": this record does not show it";
     return (out += ": gain ") += std::to_string(static_cast<long>(c.total - calibrated_.total));
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::mend_from_parts(std::vector<candidate>& models,
+                                                         const std::vector<std::size_t>& which,
+                                                         const candidate& from) const {
+    std::vector<std::pair<std::size_t, candidate>> again; // of which model
+    for (const std::size_t i : which) {
+        const candidate& c = models[i];
+        if (!std::isfinite(c.total) || c.missed) continue;
+        const candidate* part = nullptr;
+        for (const candidate& t : tried_)
+            if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
+                t.total > c.total + rules_.margin && (!part || t.total > part->total))
+                part = &t;
+        if (!part || over()) continue;
+        const auto lacks =
+            std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(*part, e); });
+        std::vector<candidate> one{joined(*part, *lacks)};
+        sketch_each(*part, {0}, one, when_late::go_on);
+        if (std::isfinite(one.front().fit.objective)) again.emplace_back(i, std::move(one.front()));
+    }
+    std::vector<candidate*> sketches;
+    for (auto& [i, c] : again) sketches.push_back(&c);
+    finish(record_, sketches);
+    for (auto& [i, c] : again) {
+        if (!(c.total > models[i].total)) continue;
+        c.effects = models[i].effects; // what was added last stays last
+        models[i] = std::move(c);
+    }
+}
+
+QUADRANT_DIAGNOSIS_DECL bool model_fits::is_beyond_tolerance(const candidate& c, const effect& e) {
+    if (e.keys.empty()) return false;
+    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i)
+        if (c.fit.parameters[i].key == e.keys.begin()->name && c.stops_at_its_tolerance(i)) return true;
+    return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL void model_fits::mend_from_alone(std::vector<candidate>& models,
+                                                         const std::vector<std::size_t>& which,
+                                                         const candidate& from) const {
+    if (from.effects.empty() || record_.closed() || over()) return; // a path is looked at from many starts
+    std::vector<std::pair<double, std::size_t>> short_of;           // gain alone, and of which model
+    for (const std::size_t i : which) {
+        const candidate& c = models[i];
+        if (!std::isfinite(c.total) || c.missed || !is_beyond_tolerance(from, *c.effects.back())) continue;
+        const candidate* const found = alone(*c.effects.back());
+        if (!found) continue;
+        const double gain = found->total - calibrated_.total;
+        if (c.total - from.total < gain / 2) short_of.emplace_back(gain, i);
+    }
+    std::sort(short_of.rbegin(), short_of.rend());
+    short_of.resize(std::min(short_of.size(), rules_.finalists));
+    std::vector<candidate> again;
+    std::vector<std::size_t> all;
+    for (const auto& [gain, i] : short_of) {
+        all.push_back(again.size());
+        again.push_back(joined(from, models[i].effects.back()));
+    }
+    sketch_each(from, all, again, when_late::go_on, begins_at::where_alone);
+    std::vector<candidate*> sketches;
+    for (candidate& c : again)
+        if (std::isfinite(c.fit.objective)) sketches.push_back(&c);
+    finish(record_, sketches);
+    for (std::size_t j = 0; j < again.size(); ++j)
+        if (again[j].total > models[short_of[j].second].total && std::isfinite(again[j].fit.objective))
+            models[short_of[j].second] = std::move(again[j]);
 }
 
 } // namespace quadrant::inline v0::diagnosis

@@ -58,6 +58,11 @@ public:
     plant_model nearest() const;
 
 private:
+    /// Whether what a model leaves needs no further cause of another kind: nothing that would matter.
+    bool enough(const candidate& c) const { return near_floor(c) && settled(c); }
+    /// The suspects whose number is beyond its tolerance: where nothing that would matter is left, such a
+    /// number alone may still be missing.
+    std::vector<const effect*> beyond_tolerance(const candidate& c) const;
     /// Where freeing a number of the machine file does better although it stays inside the tolerance, the fit
     /// of `best` stopped short (a play or a contact makes its score rough): it goes on from there. True: it got
     /// better.

@@ -6,22 +6,23 @@ namespace quadrant::inline v0::diagnosis {
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
     candidate best = calibrated_;
     std::vector<candidate> beam{calibrated_};
-    while (best.effects.size() < rules_.most_causes && !at_noise(best) && (best.effects.empty() || !over()) &&
-           (best.effects.empty() || !near_floor(best) || !settled(best))) {
+    while (best.effects.size() < rules_.most_causes && !at_noise(best) &&
+           (best.effects.empty() || (!over() && !(enough(best) && beyond_tolerance(best).empty())))) {
         std::vector<candidate> next;
         const auto add = [&](std::vector<candidate> some) {
             for (candidate& c : some)
                 if (std::none_of(next.begin(), next.end(), [&](const auto& n) { return same(n, c); }))
                     next.push_back(std::move(c));
         };
-        for (const candidate& from : beam) add(with_each(from));
+        for (const candidate& from : beam)
+            add(!best.effects.empty() && enough(best) ? with_each(from, beyond_tolerance(from))
+                                                      : with_each(from));
         if (calibrate_again(best, next)) {
             beam.assign(1, best);
             continue;
         }
         const candidate* step = paying(next, best);
-        if (best.effects.empty() && !over() &&
-            !(step && (at_noise(*step) || (near_floor(*step) && settled(*step))))) {
+        if (best.effects.empty() && !over() && !(step && (at_noise(*step) || enough(*step)))) {
             add(everyday());
             step = paying(next, best);
         }
@@ -61,6 +62,12 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::run() const {
     // scores.
     if (!best.effects.empty() && !shrinks(best, given_)) best = calibrated_;
     return path_to(best);
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<const effect*> search::beyond_tolerance(const candidate& c) const {
+    std::vector<const effect*> out = suspects();
+    std::erase_if(out, [&](const effect* e) { return has(c, e) || !is_beyond_tolerance(c, *e); });
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL plant_model search::nearest() const {

@@ -67,11 +67,6 @@ protected:
     /// A model with one of its effects taken off, not fitted again: the others keep their numbers, and what the
     /// effect had moved in the machine file is as described.
     candidate taken_off(const candidate& whole, const effect* own) const;
-    /// A model that scores worse than one of its parts stopped short: it is fitted again with what that part
-    /// lacks, from the part's numbers; all of these side by side. `from`: where their own fits began.
-    void mend_from_parts(std::vector<candidate>& models, const std::vector<std::size_t>& which,
-                         const candidate& from) const;
-
     exclusions excluded_;
     mutable std::set<const effect*> missed_{};
     /// A model with one effect less that was fitted from the numbers of another one.

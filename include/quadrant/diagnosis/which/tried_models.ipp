@@ -26,6 +26,7 @@ tried_models::with_each(const candidate& from, const std::vector<const effect*>&
     finish_best(rank, most_fitted(), out, when_late::leave_out);
     finish_near(rank, most_fitted(), from, out);
     mend_from_parts(out, rank, from);
+    mend_from_alone(out, rank, from);
     for (std::size_t i : rank) {
         if (out[i].missed) {
             missed_.insert(out[i].effects.back());
@@ -55,6 +56,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> tried_models::with_these(const ca
     sketch_each(from, fresh, out, when_late::go_on);
     finish_best(fresh, most, out, when_late::go_on);
     mend_from_parts(out, fresh, from);
+    mend_from_alone(out, fresh, from);
     for (std::size_t i : fresh) {
         says(describe(out[i]));
         tried_.push_back(out[i]);
@@ -209,35 +211,6 @@ QUADRANT_DIAGNOSIS_DECL bool tried_models::beside_drive(const effect& e) const {
     if (e.name == "force_constant" && is_force(axis_.command_unit)) return false; // the drive's gain
     if (e.joins != joint::command || e.box == "drive" || e.name == "actuator_lag") return true;
     return e.name == "actuator_saturation" && record_.observer.drive && record_.observer.drive->tapped();
-}
-
-QUADRANT_DIAGNOSIS_DECL void tried_models::mend_from_parts(std::vector<candidate>& models,
-                                                           const std::vector<std::size_t>& which,
-                                                           const candidate& from) const {
-    std::vector<std::pair<std::size_t, candidate>> again; // of which model
-    for (const std::size_t i : which) {
-        const candidate& c = models[i];
-        if (!std::isfinite(c.total) || c.missed) continue;
-        const candidate* part = nullptr;
-        for (const candidate& t : tried_)
-            if (t.effects.size() + 1 == c.effects.size() && has_all(c, t) && !same(t, from) &&
-                t.total > c.total + rules_.margin && (!part || t.total > part->total))
-                part = &t;
-        if (!part || over()) continue;
-        const auto lacks =
-            std::find_if(c.effects.begin(), c.effects.end(), [&](const effect* e) { return !has(*part, e); });
-        std::vector<candidate> one{joined(*part, *lacks)};
-        sketch_each(*part, {0}, one, when_late::go_on);
-        if (std::isfinite(one.front().fit.objective)) again.emplace_back(i, std::move(one.front()));
-    }
-    std::vector<candidate*> sketches;
-    for (auto& [i, c] : again) sketches.push_back(&c);
-    finish(record_, sketches);
-    for (auto& [i, c] : again) {
-        if (!(c.total > models[i].total)) continue;
-        c.effects = models[i].effects; // what was added last stays last
-        models[i] = std::move(c);
-    }
 }
 
 } // namespace quadrant::inline v0::diagnosis
