@@ -32,7 +32,7 @@ struct axis_record {
     /// Where something was measured behind the drive: when it and the position were read here, as the described
     /// drive has it best, see driven_motion::timing().
     reading_times read{};
-    bool tap_known = false; ///< how the tap is read is known; else the described machine, calibrated, decides
+    std::optional<tap_reading> tap{}; ///< how it was read; none: the described machine, calibrated, decides
     predictor observer;
     scoring score{};
 

@@ -21,16 +21,17 @@ class axis_case {
 public:
     axis_case(const axis_description& a, const axis_log& l, const axis_log* other, double period,
               const exclusions& excluded, const rules& r, const progress& tell, held_by how = held_by::readings,
-              const axis_case* before = nullptr);
+              const axis_case* before = nullptr, std::optional<tap_reading> tap = {});
     axis_case(const axis_case&) = delete; // the record and the models refer to it
     axis_case& operator=(const axis_case&) = delete;
 
 private:
     /// The log made ready. How many independent readings a path holds, only a model near the machine shows: the
     /// error of a wrong one is one long wave. So a first search looks for one. Along a motion it is the nearest
-    /// of the models that were found `before`, and of their causes fitted again along it.
+    /// of the models that were found `before`, and of their causes fitted again along it. `tap`: how that is
+    /// read, where it is known.
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
-                          const axis_case* before);
+                          const axis_case* before, std::optional<tap_reading> tap);
     std::optional<plant_model> nearest_; ///< of that search
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
     bool within_its_laws_on_both(std::vector<plant_model> plants) const;

@@ -16,10 +16,10 @@ constexpr double share_of_record(held_by how) {
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period, const exclusions& excluded,
                                              const rules& r, const progress& tell, held_by how,
-                                             const axis_case* before)
+                                             const axis_case* before, std::optional<tap_reading> tap)
     : axis(a), log(l), holdout(other), limits(r), count(observed_count(l.position, l.position_step)),
       resolution(std::max({a.encoder.resolution_m, coarse() ? count : 0.0, l.position_step})),
-      record(record_of(period, excluded, tell, how, before)), models(record, a, excluded, r, tell) {
+      record(record_of(period, excluded, tell, how, before, tap)), models(record, a, excluded, r, tell) {
     // A velocity drive's controller commands set-points; no force shows how far a difference there moves the
     // axis. What was measured behind an amplifier is not what the controller asked for.
     if (axis.controller && log.has_reference && log.as_sampled && !axis.drive.closes() &&
@@ -44,7 +44,8 @@ QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const ax
 
 QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const exclusions& excluded,
                                                          const progress& tell, held_by how,
-                                                         const axis_case* before) {
+                                                         const axis_case* before,
+                                                         std::optional<tap_reading> tap) {
     const axis_record ready =
         in_pieces(prepare(log, period, resolution, scales_of(axis.plant, log, period, resolution)), motions);
     axis_record out = for_machine(ready, axis, how);
@@ -61,17 +62,14 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     } else if (how == held_by::loop) {
         nearest_ = first().nearest();
     }
-    if (how == held_by::readings && before)
-        if (const auto way = before->other_tap()) {
-            out.read.tap = *way;
-            out.tap_known = true;
-        }
-    return nearest_ ? for_machine(ready, axis, how, &*nearest_) : out;
+    if (nearest_) out = for_machine(ready, axis, how, &*nearest_);
+    out.tap = tap;
+    return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::optional<tap_reading> axis_case::other_tap() const {
     const plant_model& plant = best().fit.plant;
-    if (!record.taps_force(plant.drive) || record.tap_known || best().effects.empty()) return {};
+    if (!record.taps_force(plant.drive) || record.tap || best().effects.empty()) return {};
     const fitter fit(record.observer, record.score);
     const tap_reading way = detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit));
     return way == plant.drive.read.tap ? std::nullopt : std::optional(way);

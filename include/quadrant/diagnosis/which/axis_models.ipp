@@ -40,9 +40,10 @@ QUADRANT_DIAGNOSIS_DECL axis_models::axis_models(const axis_record& record, cons
         for (parameter& p : start.fit.parameters) p.spread /= std::sqrt(2 * score_temperature);
     for (parameter& p : numbers_of_record(given_.fit.plant, record))
         start.fit.parameters.push_back(std::move(p));
-    if (record.taps_force(given_.fit.plant.drive) && !record.tap_known)
+    if (record.taps_force(given_.fit.plant.drive))
         given_.fit.plant.drive.read.tap =
-            detail::best_tap(fit, *record.observer.drive, given_.fit.plant, start.fit.parameters);
+            record.tap ? *record.tap
+                       : detail::best_tap(fit, *record.observer.drive, given_.fit.plant, start.fit.parameters);
     start.fit.plant = given_.fit.plant;
     fit.evaluate(given_.fit);
     given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out

@@ -84,8 +84,8 @@ inline const char* in_words(tap_reading way) {
     return "the mean over a row";
 }
 
-/// Takes what was found with another way of reading the tap, and says so.
-inline void take_if_better(std::unique_ptr<axis_case>& found, std::unique_ptr<axis_case> other, double margin,
+/// Takes what was found with another way of reading the tap where it is better, and says so.
+inline void take_other_tap(std::unique_ptr<axis_case>& found, std::unique_ptr<axis_case> other, double margin,
                            std::vector<std::string>& notes) {
     if (!(other->best().total > found->best().total + margin)) return;
     found = std::move(other);
@@ -97,13 +97,14 @@ inline void take_if_better(std::unique_ptr<axis_case>& found, std::unique_ptr<ax
 QUADRANT_DIAGNOSIS_DECL std::unique_ptr<axis_case>
 look_at(const looked_at& of, const std::string& file, const progress& tell, std::vector<std::string>& notes) {
     const double least_shrink = of.limits.least_shrink;
-    const auto look = [&](held_by how, const axis_case* before, bool exchanged) {
-        const bool again = before || exchanged;
+    const auto look = [&](held_by how, const axis_case* before, bool exchanged,
+                          std::optional<tap_reading> tap = {}) {
+        const bool again = before || exchanged || tap;
         const progress part =
             tell.part(again ? of.stage.first_look : 0, again ? of.stage.search : of.stage.first_look);
         const axis_log& fitted = exchanged ? *of.holdout : of.log;
         return std::make_unique<axis_case>(of.axis, fitted, exchanged ? &of.apart : of.holdout, of.period,
-                                           of.excluded, of.limits, part, how, before);
+                                           of.excluded, of.limits, part, how, before, tap);
     };
     // Looks at the forces along the measured motion where the predictions mislead. Returns why it is
     // evaluated on them, or nothing.
@@ -128,9 +129,9 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
             fmt::format("axis {}: log and hold-out log are fitted together: a soft servo that its friction "
                         "holds says too little in one of them.",
                         of.axis.name));
-    if (!of.both && found->other_tap()) {
+    if (const auto tap = of.both ? std::nullopt : found->other_tap()) {
         tell("axis " + of.axis.name + ": again, with what was measured in the drive read in another way");
-        take_if_better(found, look(held_by::readings, found.get(), false), of.limits.margin, notes);
+        take_other_tap(found, look(held_by::readings, nullptr, false, tap), of.limits.margin, notes);
     }
     const char* why_along = along_motion(found, false);
     if (!of.both && hides_what_the_other_shows(*found)) {

@@ -219,8 +219,7 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::mend_from_alone(std::vector<candidate>&
         if (std::isfinite(c.fit.objective)) sketches.push_back(&c);
     finish(record_, sketches);
     for (std::size_t j = 0; j < again.size(); ++j)
-        if (again[j].total > models[short_of[j].second].total && std::isfinite(again[j].fit.objective))
-            models[short_of[j].second] = std::move(again[j]);
+        if (again[j].total > models[short_of[j].second].total) models[short_of[j].second] = std::move(again[j]);
 }
 
 } // namespace quadrant::inline v0::diagnosis
