@@ -4,5 +4,6 @@
 set -eu
 file=$1 program=$2
 shift 2
-"$@" -O3 -ffast-math -o "$program" "$file"
+$(command -v ccache || true) "$@" -O3 -ffast-math -c -o "$program.o" "$file"
+"$@" -O3 -ffast-math -o "$program" "$program.o" # which turns subnormal numbers off at the start
 "$program"

@@ -39,7 +39,7 @@ diagnose line/1 logs/line/machine.json logs/line/1.log.csv
 diagnose 'line/a b' logs/line/machine.json 'logs/line/a b/log.csv' 'logs/line/a b/holdout.csv'
 diagnose press logs/press.machine.json logs/press.log.csv
 
-# A program that only hands out one of those answers; while "stuck" is there it never ends from the fourth run on.
+# A program that only hands out one of those answers; while "stuck" is there, three runs of it end and no other.
 mkfifo never
 cat >stub.sh <<STUB
 #!/bin/sh
@@ -51,7 +51,8 @@ done
 case \$log in *crash*) kill -SEGV \$\$ ;; esac
 printf '{' >"\$json"
 case \$log in *hang*) read -r nothing <"$scratch/never" ;; esac
-[ ! -e "$scratch/stuck" ] || [ "\$(wc -l <"$scratch/ran.txt")" -le 3 ] || read -r nothing <"$scratch/never"
+[ ! -e "$scratch/stuck" ] || mkdir "$scratch/stuck/1" 2>/dev/null || mkdir "$scratch/stuck/2" 2>/dev/null ||
+    mkdir "$scratch/stuck/3" 2>/dev/null || read -r nothing <"$scratch/never"
 cat "$scratch/alone/press.diagnosis.json" >"\$json"
 cat "$scratch/alone/press.html" >"\$report"
 STUB
@@ -80,14 +81,14 @@ killed_and_resumed() { # JOBS FOLDER COMMAND...: killed when two or three are do
     jobs=$1 folder=$2
     shift 2
     : >ran.txt
-    touch stuck
+    mkdir stuck
     "$@" many --program "$scratch/stub.sh" --out "$scratch/$folder" >said.txt 2>&1 &
     job=$!
     in_ten_seconds "nothing is done" midway "$folder" "$jobs"
     kill -KILL $job
     wait $job 2>/dev/null || true
     in_ten_seconds "what was killed leaves processes at work" none_of "$scratch/$folder"
-    rm stuck
+    rm -r stuck
     whole "$folder"
     ended=$(finished "$folder")
     [ "$ended" -le 3 ] || fail "it was not killed midway but after $ended"

@@ -17,6 +17,7 @@ before=$(cd "$source" && find examples/python | sort)
 $python -m venv --system-site-packages "$scratch/venv" # the system's numpy and build tools
 if [ "${QUADRANT_TESTS-}" = all ]; then
     export QUADRANT_BUILD="$scratch/build"
+    ! command -v ccache >/dev/null || export CMAKE_CXX_COMPILER_LAUNCHER=ccache # it takes ten minutes otherwise
 elif [ -n "$module" ]; then
     export QUADRANT_BUILD="$scratch/build" QUADRANT_PYTHON_MODULE="$module"
 else
