@@ -109,6 +109,12 @@ TEST_CASE("import: what is wrong in the log is told with file, line and column")
     CHECK(with("\n14,0", "\n\n14,0") == "in.txt:8:1: the line before is blank, inside the log");
     CHECK(with("Soll", "Sol") ==
           "in.txt:3:1: no column \"Soll\"; did you mean Sol? (axes.x.reference of map.json)");
+    CHECK(of_log("Zeit\tSoll\n1\t2\n2\t3\n",
+                 R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "Zeit", "unit": "ms"},
+                     "axes": {"x": {"position": {"column": "Soll", "unit": "mm"},
+                                    "command": {"column": "u", "unit": "V"}}}})")
+              .find("no column \"Zeit\": the header is one column; is the separator \"tab\"?") !=
+          std::string::npos);
     CHECK(with("u;", "Soll;").find("is there twice") != std::string::npos);
     CHECK(with("Zeit", "Tid") ==
           "in.txt: no line begins with \"Zeit\", as the map says of the names of the columns");

@@ -79,6 +79,15 @@ TEST_CASE("verdict sentence: names the effects, the axis and the gap before, aft
         CHECK(has(verdict_sentence(sample::unexplained()),
                   "the nearest suspect is cutting force (probability 22 %)"));
     }
+    SUBCASE("what calibration takes off does not remain") {
+        d = sample::unexplained();
+        d.causes.clear();
+        d.axes[0].gap.force_rms_N = d.axes[0].gap_after.force_rms_N = 239;
+        CHECK(has(verdict_sentence(d), "No known effect explains the gap of axis x: 239 N of force where"));
+        d.axes[0].gap_after.force_rms_N = 2.3;
+        CHECK(
+            has(verdict_sentence(d), "what calibration leaves of the gap of axis x: 2.3 N of 239 N of force"));
+    }
     SUBCASE("no gap") {
         CHECK(has(verdict_sentence(sample::no_gap()), "Simulation and machine agree on axis x"));
     }
@@ -93,9 +102,10 @@ TEST_CASE("report: says the verdict, the causes with their intervals, the altern
     const std::string html = html_report(sample::explained());
     for (const char* part :
          {"Coulomb friction and constant force", ">explained</span>", "20.4 N (19.9 to 20.8)",
-          "cannot be distinguished from friction that differs by direction", "coulomb asymmetry", "20.7 → 3.9 N",
-          "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times", "odds of 66.7 to 1",
-          "<p>Simulated beforehand.</p>", "emps_run2.csv", "5 % is assumed", "MIT licence", "Dan Vanderkam"})
+          "cannot be distinguished from friction that differs by direction", "coulomb asymmetry",
+          "20.7 → 3.9 N", "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times",
+          "odds of 66.7 to 1", "<p>Simulated beforehand.</p>", "emps_run2.csv", "5 % is assumed", "MIT licence",
+          "Dan Vanderkam"})
         CHECK_MESSAGE((has(html, part) || has(html, escape(part))), part);
     CHECK(count(html, "data-effect=") == 3);
     CHECK(count(html, "class=\"box guilty\" data-box=\"mechanics\"") == 1);

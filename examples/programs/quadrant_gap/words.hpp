@@ -158,10 +158,17 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
         const std::string hint = !suspect ? ""
                                           : fmt::format("; the nearest suspect is {} (probability {})",
                                                         claim(*suspect), probability(suspect->probability));
-        return fmt::format("{} the gap of axis {}: {}{} remain where sensor noise and rounding leave {}{}.",
-                           a.cut ? "The time was up before a known effect explained"
-                                 : "No known effect explains",
-                           a.name, before, a.positions_only ? "" : " of force", floor, hint);
+        const char* nothing =
+            a.cut ? "The time was up before a known effect explained" : "No known effect explains";
+        const std::string unit = a.positions_only ? "" : " of force";
+        // Calibration alone took the rest: a suspect would have its share of it.
+        if (!suspect && !a.positions_only && a.gap_after.force_rms_N < 0.8 * a.gap.force_rms_N)
+            return fmt::format(
+                "{} what calibration leaves of the gap of axis {}: {} of {}{}, where sensor noise and "
+                "rounding leave {}.",
+                nothing, a.name, quantity(a.gap_after.force_rms_N, "N"), before, unit, floor);
+        return fmt::format("{} the gap of axis {}: {}{} where sensor noise and rounding leave {}{}.", nothing,
+                           a.name, before, unit, floor, hint);
     }
     const auto are = [](const auto& names) { return names.size() > 1 ? "are" : "is"; };
     std::string what;

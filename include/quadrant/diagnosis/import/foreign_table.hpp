@@ -91,13 +91,24 @@ private:
         again_ = true;
     }
 
+    /// Of a header that another separator would split: which.
+    std::string unseparated() const {
+        if (names_.size() != 1) return {};
+        for (const auto& [sign, name] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
+            if (names_[0].find(sign) != std::string::npos)
+                return fmt::format(": the header is one column; is the separator \"{}\"?", name);
+        return {};
+    }
+
     void add(const import_map::source& s, const std::string& name) {
         std::size_t index = s.number - 1;
         if (!s.column.empty()) {
             const auto found = std::find(names_.begin(), names_.end(), s.column);
             if (found == names_.end())
-                lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
-                                             suggestion(s.column, names_), s.place, map_.file));
+                lines_.refuse(0,
+                              fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
+                                          unseparated().empty() ? suggestion(s.column, names_) : unseparated(),
+                                          s.place, map_.file));
             if (std::find(found + 1, names_.end(), s.column) != names_.end())
                 lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
                                              in_quotes(s.column), s.place, map_.file));

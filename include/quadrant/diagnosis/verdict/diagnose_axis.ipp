@@ -129,6 +129,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     if (of_transmission) join_transmission(out, result, causes, *of_transmission);
     put_in_words(result, causes);
     note_bounds(out, result);
+    note_limit(out, c);
     note_excluded(out, causes);
     note_missed(out, c);
     out.verdict = std::max(out.verdict, result.verdict);

@@ -24,6 +24,15 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
     }
 }
 
+/// A controller whose integral is not limited as the file's kind limits it.
+inline void note_limit(diagnosis_result& out, const axis_case& c) {
+    if (c.controller && c.controller->limits_otherwise_from)
+        out.notes.push_back(fmt::format(
+            "axis {}: behind a time at its limit, first at {:.4g} s, the controller's integral is another "
+            "than the described kind's: it is limited otherwise. Nothing else of the controller differs.",
+            c.axis.name, *c.controller->limits_otherwise_from));
+}
+
 /// What the owner excludes although it explains the record better than what is named.
 inline void note_excluded(diagnosis_result& out, const std::vector<cause>& causes) {
     for (const cause& x : causes)

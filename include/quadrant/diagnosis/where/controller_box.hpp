@@ -117,8 +117,9 @@ QUADRANT_DIAGNOSIS_DECL std::unique_ptr<running_controller> begun(const running_
 /// puts out what the described controller would have commanded. Row 0 is taken from the log. What went before
 /// it is unknown, at rest too: the noise of the encoder is in the first command by way of the velocity. What
 /// that leaves open of the initial integral is a constant offset of the replay, which a second pass takes from
-/// the whole record. A law that follows from what it applied is told so by the log. Rows that a controller is
-/// only shown, and those whose look-ahead ends behind the log, are the logged ones.
+/// the record up to where the command reaches its limit, which the integral does not outlive. A law that
+/// follows from what it applied is told so by the log. Rows that a controller is only shown, and those whose
+/// look-ahead ends behind the log, are the logged ones.
 QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_description& c,
                                                            const actuator_description& a, double period,
                                                            const loop_columns& log);

@@ -42,8 +42,10 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
     const auto ahead = static_cast<std::ptrdiff_t>(fresh->lead());
     const std::size_t shown = fresh->past() > 0 ? fresh->past() - fresh->lead() : 0;
     std::vector<double> out(log.command.begin(), log.command.end());
-    const auto pass = [&](double offset) {
+    const double limit = (1 - 1e-3) * detail::stage_of(a).limit;
+    const auto pass = [&](double offset) { // gives the row at which the first integral is forgotten
         const auto loop = begun(*fresh, in, log.command[0] + offset);
+        std::size_t forgotten = out.size();
         for (std::ptrdiff_t k = 1; k + ahead < in.rows(); ++k) {
             const auto row = static_cast<std::size_t>(k);
             if (row < shown) {
@@ -52,16 +54,27 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
                 continue;
             }
             out[row] = loop->step(in.asked(k + ahead), in.measured(k));
+            if (loop->limited() || std::abs(log.command[row]) >= limit) forgotten = std::min(forgotten, row);
             loop->applied(log.command[row]);
         }
+        return forgotten;
     };
-    pass(0);
-    if (fresh->remembers()) {
-        std::vector<double> offset(out.size());
-        for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
-        pass(quantile(offset, 0.5));
+    const std::size_t forgotten = pass(0);
+    if (!fresh->remembers()) return out;
+    std::vector<double> offset(out.size()), best;
+    for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t rows : {forgotten, out.size()}) {
+        if (rows == 0 || (rows == forgotten && !best.empty())) continue;
+        pass(quantile({offset.begin(), offset.begin() + static_cast<std::ptrdiff_t>(rows)}, 0.5));
+        double sum = 0;
+        for (std::size_t k = 0; k < out.size(); ++k)
+            sum += (log.command[k] - out[k]) * (log.command[k] - out[k]);
+        if (!(sum < least) && !best.empty()) continue;
+        least = sum;
+        best = out;
     }
-    return out;
+    return best;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,

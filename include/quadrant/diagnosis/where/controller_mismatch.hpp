@@ -26,6 +26,9 @@ struct controller_finding {
     };
     std::vector<alternative> alternatives; ///< of `key`, where that corrects it
     std::optional<added_finding> added{};  ///< what is added to the command, where no key corrects it
+    /// The controller is the described one but for its integral behind a time at its own limit; when that is
+    /// reached first [s].
+    std::optional<double> limits_otherwise_from{};
     /// A signal is added to the command, and that is more probable than not.
     bool is_added() const { return added && added->probability >= 0.5; }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "added/find_added.hpp"
+#include "own_limit.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -60,6 +61,8 @@ QUADRANT_DIAGNOSIS_DECL controller_finding judge_controller(const controller_des
     out.after_rms = out.difference_rms = rms(difference);
     out.floor_rms = std::sqrt(floor.ms);
     if (floor.explains(block_ms(difference, 0, box.block()))) return out;
+    out.limits_otherwise_from = limit_of_another_law(described, box, record);
+    if (out.limits_otherwise_from) return out;
 
     const double least = same_controller * rms(std::span(log.command).subspan(box.from()));
     const bool matters = out.difference_rms > least;

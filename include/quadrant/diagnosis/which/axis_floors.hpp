@@ -54,6 +54,8 @@ public:
     /// How far apart machines are that the owner calls the same: mean square, by channel, of the innovations by
     /// which a machine drawn from inside the tolerances differs from the calibrated one on this motion; 19 of
     /// 20 differ less [m^2]. Only what sticks out of that cloud matters to him (docs/formats.md, `tolerance`).
+    /// The gains of a drive's loops count where what the drive gives was measured: they do not move the axis
+    /// along its path.
     const std::vector<double>& tolerance_cloud() const;
 
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
@@ -70,6 +72,9 @@ public:
 
 protected:
     using axis_models::axis_models;
+
+    /// By how much the innovations of twenty such machines differ from those of the calibrated one [m].
+    std::vector<std::vector<double>> differences_of_like_machines(bool with_loops) const;
 
     /// Mean square of a channel above what it sees of the noise [m^2].
     static double left_in(const std::vector<double>& ms, const channel& c, double sigma);

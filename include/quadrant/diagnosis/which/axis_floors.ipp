@@ -92,8 +92,8 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::near_its_laws(const candidate& c) cons
     return left(c) < std::hypot(rules_.near_floor * floor_force(c), laws);
 }
 
-QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {
-    if (!cloud_.empty()) return cloud_;
+QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<double>>
+axis_floors::differences_of_like_machines(bool with_loops) const {
     std::mt19937_64 random(20080901);
     std::vector<plant_model> plants(21,
                                     calibrated_.fit.plant); // the first is the calibrated machine itself
@@ -101,19 +101,27 @@ QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud(
         for (const auto& p : calibrated_.fit.parameters) {
             const double low = p.to_fit(p.low), high = p.to_fit(p.high);
             const double share = static_cast<double>(random() >> 11) * 0x1p-53;
-            if (p.key != "presliding_length_m" && !is_of_record(p) && !is_of_feedback(p))
+            if (p.key != "presliding_length_m" && !is_of_record(p) && (with_loops || !is_of_feedback(p)))
                 p.of(plants[j]) = p.from_fit(low + share * (high - low));
         }
     std::vector<std::vector<double>> e(plants.size());
     record_.observer.run(plants, e);
-    const auto& channels = record_.score.channels;
-    std::vector<std::vector<double>> sizes(channels.size());
-    for (std::size_t j = 1; j < e.size(); ++j) {
+    for (std::size_t j = 1; j < e.size(); ++j)
         for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
-        for (std::size_t i = 0; i < channels.size(); ++i)
-            sizes[i].push_back(square(rms(detail::seen(e[j], channels[i]))));
+    e.erase(e.begin());
+    return e;
+}
+
+QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {
+    if (!cloud_.empty()) return cloud_;
+    std::array<std::vector<std::vector<double>>, 2> of; // on the motion alone; with the loops of the drive
+    for (const channel& c : record_.score.channels) {
+        auto& machines = of[c.of_tap];
+        if (machines.empty()) machines = differences_of_like_machines(c.of_tap);
+        std::vector<double> sizes;
+        for (const auto& e : machines) sizes.push_back(square(rms(detail::seen(e, c))));
+        cloud_.push_back(quantile(sizes, 0.95));
     }
-    for (auto& of_channel : sizes) cloud_.push_back(quantile(of_channel, 0.95));
     return cloud_;
 }
 

@@ -14,6 +14,14 @@ inline bool is_as_described(const cause& found, const effect& e, const plant_mod
     return value.low <= described && described <= value.high;
 }
 
+/// Whether a number of the file was found only as far from it as is searched: another effect drives a fit that
+/// far, too.
+inline bool lies_beyond(const cause& found, const candidate& best) {
+    std::vector<parameter_estimate> numbers = found.parameters;
+    mark_bounds(best, numbers);
+    return found.described && numbers.front().on_bound;
+}
+
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
     constexpr double guess = 0.4;
     for (cause& x : causes) {
@@ -76,7 +84,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
         if ((of_laws && like_friction) || c.is_error_of_its_law(e) || undetermined ||
             detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
-            detail::is_as_described(named, e, as_given))
+            detail::is_as_described(named, e, as_given) || detail::lies_beyond(named, c.best()))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }
