@@ -110,10 +110,12 @@ TEST_CASE("import: what is wrong in the log is told with file, line and column")
     CHECK(with("Soll", "Sol") ==
           "in.txt:3:1: no column \"Soll\"; did you mean Sol? (axes.x.reference of map.json)");
     CHECK(of_log("Zeit\tSoll\n1\t2\n2\t3\n",
-                 R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "Zeit", "unit": "ms"},
+                 R"({"schema": "quadrant.import/1", "time": {"column": "Zeit", "unit": "ms"},
                      "axes": {"x": {"position": {"column": "Soll", "unit": "mm"},
                                     "command": {"column": "u", "unit": "V"}}}})")
               .find("no column \"Zeit\": the header is one column; is the separator \"tab\"?") !=
+          std::string::npos);
+    CHECK(with("u;", "current;").find("no column \"u\"; there are Zeit, Soll, current, Zaehler") !=
           std::string::npos);
     CHECK(with("u;", "Soll;").find("is there twice") != std::string::npos);
     CHECK(with("Zeit", "Tid") ==
@@ -143,8 +145,9 @@ TEST_CASE("import: what is wrong in the map is told by its key") {
     CHECK(of_map(changed("/separator", "|")).find("map.json: separator: must be") == 0);
     CHECK(of_map(changed("/time/unit", "mm")) == "map.json: time.unit: must be a unit of time");
     CHECK(of_map(changed("/time", {{"period_s", 0}})) == "map.json: time.period_s: must be a number > 0");
-    CHECK(of_map(without("header")) ==
-          "map.json: time.column: names a column, but the map has no header line: give its number");
+    CHECK(of_map(without("header")) == "accepted"); // the first line has the names
+    CHECK(of_map(R"({"schema": "quadrant.import/1", "files": [{"time": {"column": "Zeit"}}], "axes": {}})") ==
+          "map.json: files[0].time.column: names a column, but the map has no header line: give its number");
     CHECK(of_map(without("axes")) == "map.json: axes: is missing");
     CHECK(of_map("[]") == "map.json: must be an object");
 }

@@ -91,13 +91,18 @@ private:
         again_ = true;
     }
 
-    /// Of a header that another separator would split: which.
-    std::string unseparated() const {
-        if (names_.size() != 1) return {};
-        for (const auto& [sign, name] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
-            if (names_[0].find(sign) != std::string::npos)
-                return fmt::format(": the header is one column; is the separator \"{}\"?", name);
-        return {};
+    /// What may be meant by a name that is not there: another separator, a name that is near, or one of these.
+    std::string instead_of(const std::string& name) const {
+        if (names_.size() == 1)
+            for (const auto& [sign, known] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
+                if (names_[0].find(sign) != std::string::npos)
+                    return fmt::format(": the header is one column; is the separator \"{}\"?", known);
+        if (const std::string near = suggestion(name, names_); !near.empty()) return near;
+        constexpr std::size_t most = 12;
+        std::string out = "; there are";
+        for (std::size_t i = 0; i < std::min(most, names_.size()); ++i)
+            out += fmt::format("{} {}", i ? "," : "", one_line(names_[i]));
+        return out + (names_.size() > most ? ", ..." : "");
     }
 
     void add(const import_map::source& s, const std::string& name) {
@@ -105,10 +110,8 @@ private:
         if (!s.column.empty()) {
             const auto found = std::find(names_.begin(), names_.end(), s.column);
             if (found == names_.end())
-                lines_.refuse(0,
-                              fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
-                                          unseparated().empty() ? suggestion(s.column, names_) : unseparated(),
-                                          s.place, map_.file));
+                lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
+                                             instead_of(s.column), s.place, map_.file));
             if (std::find(found + 1, names_.end(), s.column) != names_.end())
                 lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
                                              in_quotes(s.column), s.place, map_.file));

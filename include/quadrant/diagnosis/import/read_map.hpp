@@ -3,6 +3,8 @@
 #include "../text/json_keys.hpp"
 #include "map.hpp"
 
+#include <algorithm>
+
 namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
@@ -19,6 +21,7 @@ public:
         need_schema(top_, "quadrant.import/1");
         out_.file = one_line(top_.file);
         import_map::layout common;
+        first_line_names_ = !top_.find("files") && names_a_column(root_);
         read_layout(top_, common);
         if (const auto files = top_.find("files")) {
             if (!files->value->is_array() || files->value->empty())
@@ -44,6 +47,12 @@ public:
     }
 
 private:
+    /// Whether a column is given by its name anywhere in a map.
+    static bool names_a_column(const nlohmann::json& node) {
+        if (!node.is_structured()) return false;
+        if (node.is_object() && node.contains("column") && node["column"].is_string()) return true;
+        return std::any_of(node.begin(), node.end(), [](const auto& inner) { return names_a_column(inner); });
+    }
     void read_layout(const json_node& node, import_map::layout& out) {
         if (const auto given = node.find("separator")) out.separator = separator(*given);
         if (const auto given = node.find("decimal")) {
@@ -59,6 +68,7 @@ private:
             out.halscope = true;
             out.separator = ' ';
         }
+        if (first_line_names_ && !out.named()) out.header_line = 1;
         if (const auto given = node.find("time")) read_time(given->object(), out);
     }
     static char separator(const json_node& node) {
@@ -202,6 +212,8 @@ private:
     nlohmann::json root_;
     json_node top_;
     import_map out_{};
+    bool first_line_names_ =
+        false; ///< of one file whose columns are named, where the map says nothing of its header
 };
 
 } // namespace detail
