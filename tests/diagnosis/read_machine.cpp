@@ -563,8 +563,10 @@ TEST_CASE("check_match: a log of another machine is refused") {
     };
     CHECK(said(machine, log(0.0005, {"x"}, "V")) == "accepted");
     CHECK(said(machine, log(0.000504, {"x"}, "V")) == "accepted");
-    CHECK(said(machine, log(0.00025, {"x"}, "V")) ==
-          "log.csv: the sample period is 0.00025 s, sample_period_s of machine.json is 0.0005");
+    CHECK(
+        said(machine, log(0.00025, {"x"}, "V")) ==
+        "log.csv: the sample period is 0.00025 s, sample_period_s of machine.json is 0.0005: correct that, or "
+        "import the log with --sample-period 0.0005");
     CHECK(said(machine, log(0.0005, {"x", "y"}, "V")) == "log.csv: axis y is not described in machine.json");
     CHECK(said(machine, log(0.0005, {}, "V")) == "machine.json: axes.x: is not recorded in log.csv");
     CHECK(said(machine, log(0.0005, {"x"}, "A")) ==

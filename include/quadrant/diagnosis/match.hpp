@@ -165,8 +165,10 @@ inline void check_loops(const machine_description& machine, machine_log& log) {
 /// Refuses a log that cannot be of the machine described: bad_input.
 inline void check_match(const machine_description& machine, const machine_log& log) {
     if (!has_period_of(machine, log))
-        throw bad_input(log.file, fmt::format("the sample period is {:.6g} s, sample_period_s of {} is {:.6g}",
-                                              log.sample_period_s, machine.file, machine.sample_period_s));
+        throw bad_input(log.file, fmt::format("the sample period is {:.6g} s, sample_period_s of {} is {:.6g}: "
+                                              "correct that, or import the log with --sample-period {:.6g}",
+                                              log.sample_period_s, machine.file, machine.sample_period_s,
+                                              machine.sample_period_s));
     const auto named = [](const auto& axes, const std::string& name) {
         return std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
     };

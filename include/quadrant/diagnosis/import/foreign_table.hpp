@@ -3,6 +3,7 @@
 #include "../log/row_clock.hpp"
 #include "../text/json_node.hpp"
 #include "foreign_lines.hpp"
+#include "missing_column.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -91,27 +92,13 @@ private:
         again_ = true;
     }
 
-    /// What may be meant by a name that is not there: another separator, a name that is near, or one of these.
-    std::string instead_of(const std::string& name) const {
-        if (names_.size() == 1)
-            for (const auto& [sign, known] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
-                if (names_[0].find(sign) != std::string::npos)
-                    return fmt::format(": the header is one column; is the separator \"{}\"?", known);
-        if (const std::string near = suggestion(name, names_); !near.empty()) return near;
-        constexpr std::size_t most = 12;
-        std::string out = "; there are";
-        for (std::size_t i = 0; i < std::min(most, names_.size()); ++i)
-            out += fmt::format("{} {}", i ? "," : "", one_line(names_[i]));
-        return out + (names_.size() > most ? ", ..." : "");
-    }
-
     void add(const import_map::source& s, const std::string& name) {
         std::size_t index = s.number - 1;
         if (!s.column.empty()) {
             const auto found = std::find(names_.begin(), names_.end(), s.column);
             if (found == names_.end())
                 lines_.refuse(0, fmt::format("no column {}{} ({} of {})", in_quotes(s.column),
-                                             instead_of(s.column), s.place, map_.file));
+                                             instead_of(s.column, names_), s.place, map_.file));
             if (std::find(found + 1, names_.end(), s.column) != names_.end())
                 lines_.refuse(0, fmt::format("column {} is there twice: give its number in {} of {}",
                                              in_quotes(s.column), s.place, map_.file));

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../text/bad_input.hpp"
+#include "../text/json_node.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace quadrant::inline v0::diagnosis::detail {
+
+/// What may be meant by the name of a column that is not there: another separator, a name that is near, or one of
+/// those that are there.
+inline std::string instead_of(const std::string& name, const std::vector<std::string>& names) {
+    if (names.size() == 1)
+        for (const auto& [sign, known] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
+            if (names[0].find(sign) != std::string::npos)
+                return fmt::format(": the header is one column; is the separator \"{}\"?", known);
+    if (const std::string near = suggestion(name, names); !near.empty()) return near;
+    constexpr std::size_t most = 12;
+    std::string out = "; there are";
+    for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+        out += fmt::format("{} {}", i ? "," : "", one_line(names[i]));
+    return out + (names.size() > most ? ", ..." : "");
+}
+
+} // namespace quadrant::inline v0::diagnosis::detail
