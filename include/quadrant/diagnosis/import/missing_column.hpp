@@ -12,8 +12,8 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// What may be meant by the name of a column that is not there: another separator, a name that is near, or one of
-/// those that are there.
+/// What may be meant by the name of a column that is not there: another separator, a name that is near, or one
+/// of those that are there.
 inline std::string instead_of(const std::string& name, const std::vector<std::string>& names) {
     if (names.size() == 1)
         for (const auto& [sign, known] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
