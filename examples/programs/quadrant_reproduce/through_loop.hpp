@@ -15,10 +15,7 @@ struct through_loop {
 namespace through {
 inline constexpr std::string_view same = "one axis of it gives the same figures, bit for bit",
                                   itself = "is one", law = "transfer functions: nothing moves",
-                                  cnc = "both axes of it give the same errors to 1e-9 of the largest",
-                                  stage =
-                                      "its law weighs ten future samples and a filtered state; a milling_axis "
-                                      "carries the present sample and one ahead, from positions";
+                                  cnc = "both axes of it give the same errors to 1e-9 of the largest";
 } // namespace through
 
 inline constexpr through_loop through_loops[] = {
@@ -61,12 +58,11 @@ inline constexpr through_loop through_loops[] = {
     {"Fuzzy tuning of the sliding mode law", "x gives the same trial to 1e-9 while y rests", true},
     {"The Virtual CNC with an accelerometer, and on another machine",
      "y gives the same errors to 1e-9 with the accelerometer; the other machine differs in its numbers", true},
-    {"Moves of the precision stage", through::stage, false},
-    {"The linear cycle of BS 3800", through::stage, false},
-    {"The drive and the friction of the stage", "one axis by itself, its current loops and its friction",
-     false},
-    {"The precision stage on another machine", through::stage, false},
-    {"Tuning the precision stage", through::stage, false}};
+    {"Moves of the precision stage", through::same, true},
+    {"The linear cycle of BS 3800", through::same, true},
+    {"The drive and the friction of the stage", through::same, true},
+    {"The precision stage on another machine", through::same, true},
+    {"Tuning the precision stage", "each of its moves: one axis of it gives the same, bit for bit", true}};
 
 /// Nothing for a title that is not in the list.
 inline const through_loop* through_loop_of(std::string_view experiment) {
