@@ -24,7 +24,6 @@ struct machine {
     bool enabled_column = false;
     double force_of_current = 0;  ///< [N/A]: the drive's current is logged, too; 0: it is not
     bool current_is_mean = false; ///< over the row; else as the row begins
-    bool duty_is_mean = false;    ///< likewise
     bool stock_pid =
         /// in front of a velocity drive: P, and feedforwards of backward differences, as LinuxCNC's component
         false;
@@ -88,7 +87,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                                                  : reference[k] + (m.shift.empty() ? 0 : m.shift[k]));
         out << static_cast<double>(k) * period << ',' << reference[k] << ',' << read;
         if (kind == takes::volts || kind == takes::force) out << ',' << command.back();
-        double mean_force = 0, first_force = 0, mean_duty = 0, first_duty = 0;
+        double mean_force = 0, first_force = 0;
         for (int i = 0; i < steps; ++i) {
             const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
             const double tick = std::floor(at / (1 + m.clock_slip)); // of the drive's clock
@@ -100,8 +99,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                 followed += std::clamp(command[row] - followed, -m.rate_limit * h, m.rate_limit * h);
                 const double e = followed - x;
                 const double duty = std::clamp(m.duty_gain * e + (e > 0 ? 1 : -1) * m.minimum_duty, -1.0, 1.0);
-                mean_duty += duty / steps;
-                if (i == 0) first_duty = duty;
+                if (tap && i == 0) out << ',' << duty;
                 force = duty * m.supply * m.kt;
             } else if (kind == takes::force) {
                 force = command[row];
@@ -127,7 +125,6 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
             x += h * v;
         }
         const double t = static_cast<double>(k) * period;
-        if (tap) out << ',' << (m.duty_is_mean ? mean_duty : first_duty);
         if (m.force_of_current > 0) { // with noise of a hundredth of the friction
             const double force = m.current_is_mean ? mean_force : first_force;
             out << ',' << (force + 0.01 * m.coulomb * noise(random) / (0.3 * m.count)) / m.force_of_current;

@@ -16,7 +16,6 @@
 #include <quadrant/diagnosis/simulate.hpp>
 #include <quadrant/diagnosis/write_machine.hpp>
 #include <random>
-#include <tuple>
 
 using namespace quadrant::diagnosis;
 using drive_simulator::takes;
@@ -345,20 +344,6 @@ TEST_CASE("position drive: a clock that runs 100 ppm slow is found" * doctest::t
     const cause* slip = only_claim(d, "clock_slip");
     REQUIRE(slip);
     CHECK(value_of(*slip, "drive.clock_slip") == doctest::Approx(1e-4).epsilon(0.1));
-}
-TEST_CASE("position servo: a duty that is logged as the mean over its row is no gap") {
-    auto m = servo;
-    m.duty_is_mean = true;
-    m.delay = 7e-3;
-    std::string file = of_servo;
-    file.replace(file.find("0.002"), 5, "0.010");
-    file.replace(file.find("\"command_delay_s\": 0.002"), 24, "\"command_delay_s\": 0.007");
-    records r;
-    for (auto [log, pace, seed] : {std::tuple{&r.log, 1.0, 1u}, std::tuple{&r.holdout, 0.8, 2u}}) {
-        std::istringstream text(drive_simulator::log(takes::servo, m, 0.01, pace, seed, "rad", true));
-        *log = read_log(text, "log.csv");
-    }
-    CHECK(blames_nobody(diagnosed(file, r)));
 }
 TEST_CASE("position servo: nobody is blamed on a healthy machine, with a measured duty or without" *
           doctest::test_suite("all")) {

@@ -16,7 +16,7 @@ struct reading_times {
     /// How long before what is measured behind the drive was read the drive took the set-point of its row,
     /// beside its delay: registers are read before or after the goal is written [s].
     double tap_lateness = 0;
-    tap_reading tap = tap_reading::before_set_point; ///< of a servo that, or row_mean
+    tap_reading tap = tap_reading::before_set_point; ///< of a drive with a velocity loop
 
     bool operator==(const reading_times&) const = default;
 };

@@ -221,24 +221,20 @@ struct driven_motion {
         return out;
     }
     /// When the readings of this record were taken, where registers are read one after another: the best of
-    /// seven moments each for those of position and tap within a row, and whether the tap is the mean over one.
-    /// A set-point that arrives between two moments makes a step, which no slope sees: a fit has to begin on
-    /// the right side of it.
+    /// seven moments each for those of position and tap within a row. A set-point that arrives between two
+    /// moments makes a step, which no slope sees: a fit has to begin on the right side of it.
     reading_times timing(drive_model d) const {
         reading_times best = d.read;
         if (!d.reads_in_turn()) return best;
         double least = drive_model::none;
-        const auto keep = [&](double age, double lateness, tap_reading tap) {
-            d.read = {age, lateness, tap};
-            double sum = 0;
-            for (double e : run(d).beside) sum += e * e;
-            if (sum < least) best = d.read;
-            least = std::min(least, sum);
-        };
-        for (const tap_reading tap : {tap_reading::before_set_point, tap_reading::row_mean})
-            for (int age = -3; age <= 3; ++age)
-                for (int lateness = -3; lateness <= 3; ++lateness)
-                    keep(age * period / 4, lateness * period / 4, tap);
+        for (int age = -3; age <= 3; ++age)
+            for (int lateness = -3; lateness <= 3; ++lateness) {
+                d.read = {age * period / 4, lateness * period / 4};
+                double sum = 0;
+                for (double e : run(d).beside) sum += e * e;
+                if (sum < least) best = d.read;
+                least = std::min(least, sum);
+            }
         return best;
     }
     /// What this drive gives less what was measured, as the force that it would have made on the axis [N];
