@@ -345,8 +345,7 @@ TEST_CASE("position drive: a clock that runs 100 ppm slow is found" * doctest::t
     REQUIRE(slip);
     CHECK(value_of(*slip, "drive.clock_slip") == doctest::Approx(1e-4).epsilon(0.1));
 }
-TEST_CASE("position servo: nobody is blamed on a healthy machine, with a measured duty or without" *
-          doctest::test_suite("all")) {
+TEST_CASE("position servo: nobody is blamed on a healthy machine, with a measured duty or without") {
     CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo, true))));
     if (all_tests()) CHECK(blames_nobody(diagnosed(of_servo, recorded(takes::servo, servo))));
 }
