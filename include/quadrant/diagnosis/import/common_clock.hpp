@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../log/even_rows.hpp"
+#include "../log/sensor_box.hpp"
 #include "../log/wrong_readings.hpp"
 #include "foreign_table.hpp"
 #include "import_choice.hpp"

@@ -96,7 +96,8 @@ private:
             out.number = of == yes ? 1 : 0;
             break;
         case byte:
-            out.number = static_cast<std::int8_t>(next());
+            out.number = next();
+            if (out.number > 127) out.number -= 256;
             break;
         case i16:
         case i32:

@@ -3,6 +3,7 @@
 #include "../text/axis_words.hpp"
 #include "../where/places.hpp"
 #include "../which/axis_case.hpp"
+#include "../which/rivals.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../result/result.hpp"
 #include "../which/axis_case.hpp"
 
 #include <algorithm>

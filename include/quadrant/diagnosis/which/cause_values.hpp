@@ -2,6 +2,7 @@
 #pragma once
 #include "../result/result.hpp"
 #include "axis_case.hpp"
+#include "rivals.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
