@@ -114,24 +114,18 @@ TEST_CASE("init: the gain of a servo comes from its duty, its torque constant fr
         CHECK(number(begun, "drive", "command_delay_s").holds(servo.delay));
     }
 }
-TEST_CASE("init: with a measured current the force constant is per ampere, and the log tells the mass") {
+TEST_CASE("init: with a measured current the force constant of a drive is per ampere") {
     auto m = position(p_drive);
     m.force_of_current = 20;
-    for (const bool mean : {false, true}) {
-        m.current_is_mean = mean;
-        const auto log = recorded(takes::set_points, m);
-        const auto begun = init_machine(asked(drive_kind::position, {{"force-constant", 20}}), &log);
-        CHECK(begun.machine["axes"]["q"]["plant"]["force_constant_N_per_A"] == 20);
-        CHECK(number(begun, "plant", "mass_kg").holds(m.mass));
-        CHECK(begun.machine["axes"]["q"]["plant"]["mass_kg"] == doctest::Approx(m.mass).epsilon(0.03));
-        CHECK(number(begun, "drive", "position_gain_per_s").holds(m.position_gain));
-    }
+    const auto log = recorded(takes::set_points, m);
+    const auto begun = init_machine(asked(drive_kind::position, {{"mass", 100}, {"force-constant", 20}}), &log);
+    CHECK(begun.machine["axes"]["q"]["plant"]["force_constant_N_per_A"] == 20);
+    CHECK(number(begun, "drive", "position_gain_per_s").holds(m.position_gain));
 }
 TEST_CASE("init: a drive whose numbers nothing fixes is refused with what is missing") {
     const auto volts = recorded(takes::volts, p_drive), goals = recorded(takes::servo, servo, true);
     CHECK(refusal(asked(drive_kind::velocity, {}), &volts) ==
-          "init: axis q: --mass is missing: the motion shows the gains of a drive beside the mass only; with a "
-          "measured current and --force-constant, or a measured force, the log would tell it");
+          "init: axis q: --mass is missing: the motion shows the gains of a drive beside the mass only");
     CHECK(refusal(asked(drive_kind::velocity, {{"mass", 100}, {"force-constant", 20}}), &volts) ==
           "init: axis q: --force-constant is newtons per ampere of a measured current, and the log has none: "
           "leave it out");

@@ -14,51 +14,31 @@ namespace stage_through_xy_loop { // named: templates of the program are made of
 using namespace quadrant;
 using namespace quadrant::literals;
 
-/// What a controller of the stage believes, and how it is tuned.
-struct controller {
+/// What the controller of a stage believes, and how it is tuned.
+struct beliefs {
     stage::machine thought = stage::believed;
     stage::tuning tuned = stage::tight;
 };
 
-/// Filter, predictive law and friction of the stage: what the command is, with the sign of something to be
-/// subtracted.
+/// The controller of the stage: its command with the sign of something to be subtracted.
 template <class Compensation> class stage_law {
 public:
     using input = signal::position;
     using output = signal::voltage;
-    stage_law(const controller& c, duration T)
-        : control_{.box = {{.law = stage::law_of(c.thought, c.tuned),
-                            .friction = Compensation::forward_of(c.thought),
-                            .limit = 8_V},
-                           T}},
-          observer_(Compensation::observer_of(c.thought), T), filter_(stage::filter_of(c.thought, c.tuned), T) {
-    }
+    stage_law(const beliefs& c, duration) : control_(c.thought, c.tuned) {}
     quantity_of<signal::voltage> operator()(quantity_of<signal::position> measured) noexcept {
-        const auto speed = filter_(measured, command_);
-        command_ = control_(due_later, {filter_.position(), speed});
-        if constexpr (requires { observer_.given().correction; })
-            command_ +=
-                observer_(control_.wire.reference_velocity, control_.wire.reference - filter_.position());
-        return -command_;
+        return -control_(measured, due_later);
     }
     void reset() noexcept { settle({}); }
-    void settle(quantity_of<signal::position> x) noexcept {
-        control_.settle(x);
-        observer_.reset();
-        filter_.settle(x);
-        command_ = {};
-    }
+    void settle(quantity_of<signal::position> x) noexcept { control_.settle(x); }
     axis_motion<> due_later{}; ///< what is asked for `horizon` samples from now
 
 private:
-    feed_control<feed_control_boxes<stage::law, typename Compensation::forward>> control_;
-    typename Compensation::observer observer_;
-    kalman<signal::voltage> filter_;
-    quantity_of<signal::voltage> command_{};
+    stage::controller<Compensation> control_;
 };
 
 template <class Compensation> struct boxes {
-    using parameters = controller;
+    using parameters = beliefs;
     boxes(const parameters& c, duration T)
         : memory({}, T), position_loop({}, T), reference_velocity({}, T), measured_velocity({}, T),
           reference_notch({}, T), measured_notch({}, T), velocity_loop({{}, {}, 8_V}, T), inertia({}, T),
@@ -87,40 +67,23 @@ public:
     struct parameters {
         stage::machine x, y;
     };
-    two_stages(const parameters& p, duration T) : x_(p.x, T), y_(p.y, T) {}
+    two_stages(const parameters& p, duration) : x_(p.x), y_(p.y) {}
     positions operator()(const commands& u, const forces& f) noexcept {
         x_.step(u.x.plain(), f.x.plain());
         y_.step(u.y.plain(), f.y.plain());
         return reading();
     }
-    positions reading() const noexcept { return {.x = on_x(x_.measured), .y = on_y(y_.measured)}; }
+    positions reading() const noexcept { return {.x = on_x(x_.measured()), .y = on_y(y_.measured())}; }
     void settle(const positions& at) noexcept {
         x_.settle(at.x.plain());
         y_.settle(at.y.plain());
     }
     void reset() noexcept { settle({}); }
-    bool faulted() const noexcept { return x_.motor.faulted() || y_.motor.faulted(); }
-    double x() const { return x_.motor.now().x.value(); }
+    bool faulted() const noexcept { return x_.faulted() || y_.faulted(); }
+    double x() const { return x_.now().x.value(); }
 
 private:
-    struct one {
-        one(const stage::machine& is, duration T)
-            : motor(Machine::of(is), T), drive(stage::drive_of(is), T), current_loops(is.current_loops) {}
-        void step(quantity_of<signal::voltage> u, quantity_of<signal::force> f) noexcept {
-            measured = current_loops ? motor(0_V, drive(u.value() * 1_A, motor.now().x, motor.now().v) + f)
-                                     : motor(u, f);
-        }
-        void settle(quantity_of<signal::position> at) noexcept {
-            motor.settle(at);
-            drive.reset();
-            measured = at;
-        }
-        typename Machine::type motor;
-        three_phase_drive<> drive;
-        bool current_loops;
-        quantity_of<signal::position> measured{};
-    };
-    one x_, y_;
+    stage::driven<Machine> x_, y_;
 };
 
 struct move_of {
@@ -133,7 +96,7 @@ struct move_of {
 
 /// Every sample of a stage by itself, and of the x axis of a loop in which another one moves as y.
 template <class Compensation, class Machine = stage::lugre_machine, class Reference>
-void same_run(const stage::machine& is, const controller& c, const Reference& reference, double end) {
+void same_run(const stage::machine& is, const beliefs& c, const Reference& reference, double end) {
     stage::axis<Compensation, Machine> alone(is, c.thought, c.tuned);
     xy_loop<boxes<Compensation>, boxes<Compensation>, two_stages<Machine>> loop(
         {.control = {c, {stage::believed, stage::moderate}}, .table = {is, stage::real}}, stage::period);

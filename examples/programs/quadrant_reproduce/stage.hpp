@@ -143,46 +143,94 @@ struct springs_machine {
     }
 };
 
-/// The stage under control; references are given `horizon` samples before they are due.
-template <class Compensation, class Machine = lugre_machine> class axis {
+/// What controls the stage: filter, predictive law and compensation of the friction, with what they think of it.
+template <class Compensation> class controller {
 public:
-    axis(const machine& is, const machine& thought, const tuning& t)
+    controller(const machine& thought, const tuning& t)
         : control_{.box = {{.law = law_of(thought, t),
                             .friction = Compensation::forward_of(thought),
                             .limit = 8_V},
                            period}},
-          observer_(Compensation::observer_of(thought), period), filter_(filter_of(thought, t), period),
-          motor_(Machine::of(is), period), drive_(drive_of(is), period), current_loops_(is.current_loops) {}
+          observer_(Compensation::observer_of(thought), period), filter_(filter_of(thought, t), period) {}
 
-    moment step(double time, const axis_motion<>& due_later) {
-        const auto speed = filter_(measured_, command_);
-        command_ = control_(due_later, {filter_.position(), speed});
+    /// The command; the reference is given `horizon` samples before it is due.
+    quantity<si::electric_potential> operator()(quantity<si::length> measured,
+                                                const axis_motion<>& due_later) noexcept {
+        speed_ = filter_(measured, command_);
+        command_ = control_(due_later, {filter_.position(), speed_});
         if constexpr (requires { observer_.given().correction; })
-            command_ +=
-                observer_(control_.wire.reference_velocity, control_.wire.reference - filter_.position());
-        const moment now{time,
-                         control_.wire.reference.value(),
-                         motor_.now().x.value(),
-                         motor_.now().v.value(),
-                         measured_.value(),
-                         filter_.position().value(),
-                         speed.value(),
-                         command_.value()};
-        measured_ = current_loops_ ? motor_(0_V, drive_(command_.value() * 1_A, motor_.now().x, motor_.now().v))
-                                   : motor_(command_);
-        return now;
+            command_ += observer_(control_.wire.reference_velocity, reference() - filter_.position());
+        return command_;
     }
-    bool faulted() const { return control_.faulted() || filter_.faulted() || motor_.faulted(); }
+    void settle(quantity<si::length> x) noexcept {
+        control_.settle(x);
+        observer_.reset();
+        filter_.settle(x);
+        speed_ = {};
+        command_ = {};
+    }
+    quantity<si::length> reference() const noexcept { return control_.wire.reference; } ///< due now
+    quantity<si::length> position() const noexcept { return filter_.position(); }       ///< estimated
+    quantity<si::velocity> speed() const noexcept { return speed_; }                    ///< estimated
+    bool faulted() const noexcept { return control_.faulted() || filter_.faulted(); }
 
 private:
     feed_control<feed_control_boxes<law, typename Compensation::forward>> control_;
     typename Compensation::observer observer_;
     kalman<signal::voltage> filter_;
+    quantity<si::velocity> speed_{};
+    quantity<si::electric_potential> command_{};
+};
+
+/// The machine and the drive that moves it.
+template <class Machine> class driven {
+public:
+    explicit driven(const machine& is)
+        : motor_(Machine::of(is), period), drive_(drive_of(is), period), current_loops_(is.current_loops) {}
+
+    void step(quantity<si::electric_potential> u, quantity<si::force> f = {}) noexcept {
+        measured_ = current_loops_ ? motor_(0_V, drive_(u.value() * 1_A, motor_.now().x, motor_.now().v) + f)
+                                   : motor_(u, f);
+    }
+    void settle(quantity<si::length> at) noexcept {
+        motor_.settle(at);
+        drive_.reset();
+        measured_ = at;
+    }
+    quantity<si::length> measured() const noexcept { return measured_; }
+    auto now() const noexcept { return motor_.now(); }
+    bool faulted() const noexcept { return motor_.faulted(); }
+
+private:
     typename Machine::type motor_;
     three_phase_drive<> drive_;
     bool current_loops_;
     quantity<si::length> measured_{};
-    quantity<si::electric_potential> command_{};
+};
+
+/// The stage under control; references are given `horizon` samples before they are due.
+template <class Compensation, class Machine = lugre_machine> class axis {
+public:
+    axis(const machine& is, const machine& thought, const tuning& t) : control_(thought, t), machine_(is) {}
+
+    moment step(double time, const axis_motion<>& due_later) {
+        const auto command = control_(machine_.measured(), due_later);
+        const moment now{time,
+                         control_.reference().value(),
+                         machine_.now().x.value(),
+                         machine_.now().v.value(),
+                         machine_.measured().value(),
+                         control_.position().value(),
+                         control_.speed().value(),
+                         command.value()};
+        machine_.step(command);
+        return now;
+    }
+    bool faulted() const { return control_.faulted() || machine_.faulted(); }
+
+private:
+    controller<Compensation> control_;
+    driven<Machine> machine_;
 };
 
 /// From rest at zero; `reference(t)` is defined for every time; `tell(moment)` hears every sample of 0 ... end.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../log/signals.hpp"
 #include "bounded_step.hpp"
 #include "quadratic.hpp"
 
@@ -83,7 +84,6 @@ public:
     static double prior(const fit_result& r);
 
 private:
-    static double square(double v) { return v * v; }
     static const parameter& p(const std::vector<parameter>& ps, Eigen::Index i);
 
     friend class fit_course;

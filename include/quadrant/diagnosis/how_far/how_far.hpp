@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../log/signals.hpp"
 #include "../where/places.hpp"
 #include "../which/causes.hpp"
 #include "../which/read_off.hpp"
@@ -44,7 +45,6 @@ private:
     void compare(cause& c, const closed_loop_run& before, const closed_loop_run& after) const;
     /// Where rounding falls no model can predict: its energy is taken off as a whole.
     void compare_rounding(cause& c, const stage& s) const;
-    static double square(double x) { return x * x; }
     gap_numbers numbers(const stage& s) const;
     void draw(axis_signals& s, const stage& after) const;
 

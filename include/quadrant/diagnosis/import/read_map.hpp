@@ -21,9 +21,10 @@ public:
         need_schema(top_, "quadrant.import/1");
         out_.file = one_line(top_.file);
         import_map::layout common;
-        first_line_names_ = !top_.find("files") && names_a_column(root_);
+        const auto files = top_.find("files");
+        if (!files && !top_.find("layout") && names_a_column(root_)) common.header_line = 1;
         read_layout(top_, common);
-        if (const auto files = top_.find("files")) {
+        if (files) {
             if (!files->value->is_array() || files->value->empty())
                 files->refuse("must be an array of layouts");
             out_.files.clear();
@@ -68,7 +69,6 @@ private:
             out.halscope = true;
             out.separator = ' ';
         }
-        if (first_line_names_ && !out.named()) out.header_line = 1;
         if (const auto given = node.find("time")) read_time(given->object(), out);
     }
     static char separator(const json_node& node) {
@@ -212,8 +212,6 @@ private:
     nlohmann::json root_;
     json_node top_;
     import_map out_{};
-    bool first_line_names_ =
-        false; ///< of one file whose columns are named, where the map says nothing of its header
 };
 
 } // namespace detail

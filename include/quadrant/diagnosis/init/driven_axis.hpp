@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../fit/regression.hpp"
 #include "../fit/with_drives.hpp"
 #include "../machine_file/drive_keys.hpp"
 #include "../machine_file/machine_keys.hpp"
@@ -30,7 +29,9 @@ public:
         put_given();
         need(!servo || gives("supply"), "--supply is missing (the volts of a duty of 1)");
         if (log && log->still) throw bad_input(file_, fmt::format("axis {} never moves", axis_));
-        if (!servo && !gives("mass")) take_mass();
+        if (!servo)
+            need(gives("mass"),
+                 "--mass is missing: the motion shows the gains of a drive beside the mass only");
         if (!log) return;
         read_count(*log);
         const bool duty = !log->duty.empty() || log->command_unit == "duty" || log->command_unit == "V";
@@ -73,30 +74,6 @@ private:
         return record_->effort.empty() ? "" : record_->effort_unit;
     }
 
-    /// The mass by what was measured behind the drive, as if that were the command of a drive without loops.
-    void take_mass() {
-        const char* missing = "--mass is missing: the motion shows the gains of a drive beside the mass only; "
-                              "with a measured current and --force-constant, or a measured force, the log "
-                              "would tell it";
-        need(record_ && (is_force(measured_unit()) || (!measured_unit().empty() && gives("force-constant"))),
-             missing);
-        axis_log behind = *record_;
-        if (!behind.effort.empty()) behind.command = behind.effort;
-        const axis_regression found = regress(behind, text_.period());
-        for (std::size_t k = behind.command.size() - 1; k > 0; --k)
-            behind.command[k] = (behind.command[k] + behind.command[k - 1]) / 2;
-        const double earlier = regress(behind, text_.period()).acceleration.value; // by half a row
-        const regressed& a = found.acceleration;
-        need(a.sure() && a.value > 0, "--mass is missing, and the log is not sure of it: record faster motion");
-        const double constant = is_force(measured_unit()) ? 1 : *asked("force-constant");
-        const double half = 2 * a.spread + std::abs(earlier - a.value); // nor is it known when it was read
-        const identified_number mass{"plant.mass_kg", rounded(a.value * constant), (a.value - half) * constant,
-                                     (a.value + half) * constant};
-        put(field("mass"), "mass_kg", mass.value,
-            fmt::format("what was measured behind the drive, below {:.3g} Hz; 95 % interval {:.4g} to {:.4g}",
-                        found.band_Hz, mass.low, mass.high));
-        put_tolerance(mass);
-    }
     bool gives(std::string_view option) const { return asked(std::string(option)).has_value(); }
     void need(bool there, std::string_view what) const {
         if (!there) throw bad_input("init", fmt::format("axis {}: {}", axis_, text_of(what, kind_)));
@@ -131,7 +108,6 @@ private:
             for (std::size_t i = 0;
                  i < (fields == init_fields.data() ? init_fields.size() : drive_init_fields.size()); ++i)
                 if (gives(fields[i].option)) known.insert(fmt::format("{}.{}", fields[i].box, fields[i].key));
-        if (ask_.drive != drive_kind::position_servo) known.insert("plant.mass_kg"); // given, or by take_mass()
         const double period = text_.period();
         const drive_estimate found =
             estimate_drive(description, with_drive(description, log, period), period, known);

@@ -10,6 +10,8 @@
 /// Signal arithmetic of the diagnosis, off line and in plain SI numbers.
 namespace quadrant::inline v0::diagnosis {
 
+inline double square(double x) { return x * x; }
+
 /// Root of the mean square; 0 of nothing.
 inline double rms(std::span<const double> x) {
     double sum = 0;

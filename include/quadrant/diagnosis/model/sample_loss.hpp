@@ -74,7 +74,6 @@ private:
                   const std::vector<double>& response, std::size_t delay_rows, double reading_noise,
                   const loss_assumption& a);
 
-    static double square(double x) { return x * x; }
     /// Of a normal, from the median of its square.
     static std::vector<double> neighbourhood(std::span<const double> e, double least);
     static double log_density(double x);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../log/signals.hpp"
 #include "../text/axis_words.hpp"
 #include "../where/places.hpp"
 #include "../which/axis_case.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../log/signals.hpp"
 #include "../which/causes.hpp"
 #include "../which/turning_inertia.hpp"
 

@@ -61,20 +61,18 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_stretch(const controller_desc
     };
     const std::size_t forgotten = pass(0);
     if (!fresh->remembers()) return out;
-    std::vector<double> offset(out.size()), best;
+    std::vector<double> offset(out.size());
     for (std::size_t k = 0; k < out.size(); ++k) offset[k] = log.command[k] - out[k];
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t rows : {forgotten, out.size()}) {
-        if (rows == 0 || (rows == forgotten && !best.empty())) continue;
+    const auto with_offset_of = [&](std::size_t rows) { // the replay, and the square of what it leaves
         pass(quantile({offset.begin(), offset.begin() + static_cast<std::ptrdiff_t>(rows)}, 0.5));
         double sum = 0;
-        for (std::size_t k = 0; k < out.size(); ++k)
-            sum += (log.command[k] - out[k]) * (log.command[k] - out[k]);
-        if (!(sum < least) && !best.empty()) continue;
-        least = sum;
-        best = out;
-    }
-    return best;
+        for (std::size_t k = 0; k < out.size(); ++k) sum += square(log.command[k] - out[k]);
+        return std::pair(out, sum);
+    };
+    auto by_all = with_offset_of(out.size());
+    if (forgotten == 0 || forgotten == out.size()) return std::move(by_all.first);
+    auto until_then = with_offset_of(forgotten);
+    return std::move(by_all.second < until_then.second ? by_all.first : until_then.first);
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double> replay_controller(const controller_description& c,

@@ -2,6 +2,7 @@
 #pragma once
 #include "../../base/version.hpp"
 #include "../effect/rules.hpp"
+#include "../log/signals.hpp"
 #include "candidate.hpp"
 
 #include <array>
@@ -76,7 +77,6 @@ protected:
     }
     /// Residual force without what a drive made otherwise than measured: what effects of the mechanics look at.
     std::vector<double> residual_behind_drive(const candidate& c) const;
-    static double square(double x) { return x * x; }
     static double mean_of(const std::vector<double>& x);
     static constexpr std::size_t least_segments = 4; ///< of which one may be set apart
     /// Energy of the residual force on held-out motion in each segment [N^2, times rows].

@@ -9,7 +9,6 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c) {
     const auto energy = [&](const std::vector<double>& x) {
         return segment_energy(x, c.record.segment, c.record.segments, c.record.score.skip);
     };
-    const auto square = [](double x) { return x * x; };
     const auto residual = c.models.residual(c.models.given());
     const auto command = c.controller_differs() ? c.command_difference(c.log, *c.axis.controller)
                                                 : std::vector<double>(residual.size(), 0.0);

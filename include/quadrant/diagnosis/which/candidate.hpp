@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -34,13 +35,23 @@ struct candidate {
     std::shared_ptr<std::optional<on_holdout>> holdout = std::make_shared<std::optional<on_holdout>>();
     bool missed = false; ///< the time was up before it was looked at
 
-    /// Whether this number of the machine file, calibrated inside the owner's tolerance, ends at its end.
-    bool stops_at_its_tolerance(std::size_t i) const {
+    /// Whether a number ends where its search ends.
+    bool ends_at_a_bound(std::size_t i) const {
         const parameter& p = fit.parameters[i];
         const double x = fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low), high = p.to_fit(p.high);
         const double hair = 1e-6 * (high - low);
-        return p.spread > 0 && !is_of_record(p) && p.key != "presliding_length_m" &&
-               (x <= low + hair || x >= high - hair);
+        return x <= low + hair || x >= high - hair;
+    }
+    /// Whether one of the numbers with this key does.
+    bool ends_at_a_bound(std::string_view key) const {
+        for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+            if (fit.parameters[i].key == key && ends_at_a_bound(i)) return true;
+        return false;
+    }
+    /// Whether this number of the machine file, calibrated inside the owner's tolerance, ends at its end.
+    bool stops_at_its_tolerance(std::size_t i) const {
+        const parameter& p = fit.parameters[i];
+        return p.spread > 0 && !is_of_record(p) && p.key != "presliding_length_m" && ends_at_a_bound(i);
     }
     /// The same for any of them.
     bool stops_at_a_tolerance() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../log/signals.hpp"
 #include "../result/result.hpp"
 #include "axis_case.hpp"
 #include "rivals.hpp"

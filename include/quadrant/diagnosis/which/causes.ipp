@@ -17,9 +17,7 @@ inline bool is_as_described(const cause& found, const effect& e, const plant_mod
 /// Whether a number of the file was found only as far from it as is searched: another effect drives a fit that
 /// far, too.
 inline bool lies_beyond(const cause& found, const candidate& best) {
-    std::vector<parameter_estimate> numbers = found.parameters;
-    mark_bounds(best, numbers);
-    return found.described && numbers.front().on_bound;
+    return found.described && best.ends_at_a_bound(found.parameters.front().key);
 }
 
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {

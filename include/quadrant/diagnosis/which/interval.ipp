@@ -52,13 +52,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> estimates(const candidat
 }
 
 QUADRANT_DIAGNOSIS_DECL void mark_bounds(const candidate& c, std::vector<parameter_estimate>& estimates) {
-    for (std::size_t i = 0; i < c.fit.parameters.size(); ++i) {
-        const parameter& p = c.fit.parameters[i];
-        const double x = c.fit.x[static_cast<Eigen::Index>(i)], low = p.to_fit(p.low), high = p.to_fit(p.high);
-        const bool at_end = x <= low + 1e-6 * (high - low) || x >= high - 1e-6 * (high - low);
-        for (parameter_estimate& e : estimates)
-            if (at_end && e.key == p.key) e.on_bound = true;
-    }
+    for (parameter_estimate& e : estimates)
+        if (c.ends_at_a_bound(e.key)) e.on_bound = true;
 }
 
 } // namespace quadrant::inline v0::diagnosis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../log/signals.hpp"
 #include "../result/resample.hpp"
 #include "axis_case.hpp"
 
@@ -19,8 +20,6 @@ struct rival {
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
 };
-
-inline double square(double x) { return x * x; }
 
 /// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides
 /// the motor's motion, and an error of the reading is no force.
