@@ -143,7 +143,7 @@ struct springs_machine {
     }
 };
 
-/// What controls the stage: filter, predictive law and compensation of the friction, with what they think of it.
+/// What controls the stage: filter, predictive law and compensation of the friction.
 template <class Compensation> class controller {
 public:
     controller(const machine& thought, const tuning& t)
