@@ -16,7 +16,7 @@ namespace quadrant::inline v0 {
 ///   w' = 2 pi filter (v - w)                       velocity filter, exact over the step; none: w = v
 ///   e  = asked - w
 ///   I' = integral e,  |I| <= limit
-///   F  = gain e + I,  |F| <= limit
+///   F  = gain e + I,  |F| <= limit                 mean over the step: I as in its middle
 /// Source: docs/formats.md, `drive.kind` `velocity`; [Franklin1998] ch. 4 for P and PI.
 /// Ports: loop(state, asked, velocity) once a step h: asked and measured velocity of the motor in [m/s] or
 /// [rad/s], force out [N] or [N m].
@@ -47,7 +47,7 @@ public:
 
     velocity_loop(const parameters& p, Real h) : velocity_loop(checked(p, h), h, already_checked()) {}
     velocity_loop(const parameters& p, Real h, already_checked) noexcept
-        : gain_(p.gain), integral_(h * Real(p.integral)), limit_(p.limit) {
+        : gain_(p.gain), half_integral_(Real(0.5) * h * Real(p.integral)), limit_(p.limit) {
         using std::exp;
         follow_ = Real(1) - exp(-(Real(2 * std::numbers::pi) * h * Real(p.filter_Hz)));
     }
@@ -55,8 +55,9 @@ public:
     Real operator()(state& s, Real asked, Real velocity) const noexcept {
         s.filtered = s.filtered + follow_ * (velocity - s.filtered);
         const Real e = asked - s.filtered;
-        s.integral = limited_to(s.integral + integral_ * e, limit_);
-        return limited_to(gain_ * e + s.integral, limit_);
+        const Real half = half_integral_ * e, in_the_middle = s.integral + half;
+        s.integral = limited_to(in_the_middle + half, limit_);
+        return limited_to(gain_ * e + in_the_middle, limit_);
     }
 
 private:
@@ -73,7 +74,7 @@ private:
         return p;
     }
 
-    Real gain_, integral_, limit_, follow_{1};
+    Real gain_, half_integral_, limit_, follow_{1};
 };
 
 } // namespace quadrant::inline v0

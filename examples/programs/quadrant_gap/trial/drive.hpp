@@ -18,13 +18,14 @@ public:
     }
     /// Force over [t, t + h] with the motor at x and v in the middle of it.
     double force(double t, double h, double x, double v) {
-        const double r = followed(t + h / 2);
+        const double r = followed(t, t + h);
         if (d_.kind == drive_kind::position_servo) return servo(r, h, x);
         const double asked =
             d_.kind == drive_kind::velocity ? d_.velocity_per_V * r : d_.position_gain * (r - x);
         const double most = d_.force_limit > 0 ? d_.force_limit : HUGE_VAL;
-        integral_ = std::clamp(integral_ + h * d_.velocity_integral * (asked - v), -most, most);
-        return std::clamp(d_.velocity_gain * (asked - v) + integral_, -most, most);
+        const double half = h / 2 * d_.velocity_integral * (asked - v), now = integral_ + half;
+        integral_ = std::clamp(now + half, -most, most);
+        return std::clamp(d_.velocity_gain * (asked - v) + now, -most, most);
     }
     double duty() const { return duty_; }
 
@@ -42,6 +43,15 @@ private:
         if (!d_.linear) return newest;
         const double before = at_row(std::floor((tick - 1) * every + 1e-6));
         return before + (newest - before) * std::clamp(ticks - tick, 0.0, 1.0);
+    }
+    /// On average from one moment to another, with no more than one arrival between: those of a row are far
+    /// apart.
+    double followed(double from, double to) const {
+        const double row = period_ * (1 + d_.clock_slip);
+        const double arrival = std::floor((to - d_.delay) / row) * row + d_.delay;
+        if (arrival <= from || arrival >= to) return followed((from + to) / 2);
+        const double before = followed((from + arrival) / 2), after = followed((arrival + to) / 2);
+        return (before * (arrival - from) + after * (to - arrival)) / (to - from);
     }
     double servo(double r, double h, double x) {
         const double step = d_.rate_limit > 0 ? h * d_.rate_limit : HUGE_VAL;

@@ -348,10 +348,7 @@ private:
     }
     std::vector<double> force(const drive_model& d) const {
         std::vector<double> out(position.size() * parts, 0.0);
-        auto numbers = d.position_loop_numbers();
-        // The loop adds an error to its integral before it gives it: of a part's, half is too much on average.
-        numbers.velocity.gain =
-            std::max(0.0, numbers.velocity.gain - numbers.velocity.integral * period / parts / 2);
+        const auto numbers = d.position_loop_numbers();
         const position_loop<> law(numbers, period / parts, already_checked());
         const velocity_loop<> inner(numbers.velocity, period / parts, already_checked());
         const double scale = in_volts ? d.velocity_per_V : 1;

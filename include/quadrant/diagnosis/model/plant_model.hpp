@@ -45,8 +45,8 @@ struct plant_model {
         double coulomb_asymmetry = 0;                        ///< relative, signed
         double excess_asymmetry = 0, velocity_asymmetry = 0; ///< of excess and Stribeck velocity
         friction_contact contact;
-        harmonics along;                  ///< of the Coulomb level, relative, over position
-        double load = 0;                  ///< growth of the level with the transmitted force
+        harmonics along;                       ///< of the Coulomb level, relative, over position
+        double load = 0;                       ///< growth of the level with the transmitted force
         double drift_rate = 0, drift_time = 1; ///< Coulomb level times 1 + drift() (1 - exp(-t/drift_time))
         /// Where it ends. A log much shorter than drift_time tells the rate, and says little of the end.
         double drift() const { return std::max(-0.95, drift_rate * drift_time); }
@@ -95,7 +95,7 @@ struct plant_model {
     }
 
     plant_model() = default;
-    /// `give`: of a contact that is not described, record_scales::give() [m].
+    /// `give`: of a contact that is not described, or gives way by less, record_scales::give() [m].
     plant_model(const plant_description& d, double give) {
         axis_description a;
         a.plant = d;
@@ -127,8 +127,8 @@ struct plant_model {
                                friction.excess,
                            -1.0, 1.0);
         friction.contact.length = give;
-        if (d.presliding_length_m) friction.contact.exponential(*d.presliding_length_m);
-        if (!d.gms_weights.empty()) describe_contact(d);
+        if (d.presliding_length_m.value_or(0) > give) friction.contact.exponential(*d.presliding_length_m);
+        if (!d.gms_weights.empty()) describe_contact(d, give);
         friction.contact.attraction = d.gms_attraction_N_per_s.value_or(friction.contact.attraction);
         friction.contact.damping = d.presliding_damping_s.value_or(0);
         friction.along =
@@ -161,15 +161,22 @@ private:
         if (!size) return {};
         return {period.value_or(0), {*size}, {phase.value_or(0)}};
     }
-    void describe_contact(const plant_description& d) {
+    void describe_contact(const plant_description& d, double give) {
         const double level = friction.coulomb + friction.excess;
         if (!(level > 0)) return; // no friction that could give way
+        const std::size_t elements = std::min(d.gms_weights.size(), friction_contact::most);
+        const auto length = [&](std::size_t i) {
+            return d.gms_weights[i] * level / d.gms_stiffness_N_per_m[i];
+        };
+        double longest = 0;
+        for (std::size_t i = 0; i < elements; ++i) longest = std::max(longest, length(i));
+        if (longest <= give) return; // no record shows it
         auto& c = friction.contact;
-        c.elements = std::min(d.gms_weights.size(), friction_contact::most);
+        c.elements = elements;
         double logarithm = 0;
         for (std::size_t i = 0; i < c.elements; ++i) {
             c.weights[i] = d.gms_weights[i];
-            c.lengths_as_described[i] = d.gms_weights[i] * level / d.gms_stiffness_N_per_m[i];
+            c.lengths_as_described[i] = length(i);
             logarithm += std::log(c.lengths_as_described[i]) / static_cast<double>(c.elements);
         }
         c.length = std::exp(logarithm);
