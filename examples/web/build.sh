@@ -29,8 +29,11 @@ flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_
     -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
 # A file for each folder of the diagnosis, and for each call with the folder of its parts.
 rm -f "$build"/part_*
-for part in $(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort); do
-    printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$part" "$part" >>"$build/part_${part%%/*}.cpp"
+parts=$(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort)
+for suffix in hpp ipp; do # all that a file declares stands before what it makes
+    for part in $parts; do
+        printf '#include <quadrant/diagnosis/%s.%s>\n' "$part" $suffix >>"$build/part_${part%%/*}.cpp"
+    done
 done
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"
