@@ -23,7 +23,8 @@ cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
     "-DFILES=$root/examples/programs/quadrant_gap/report_template.html;$root/examples/programs/quadrant_gap/report.css;$root/examples/programs/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
     -P "$root/examples/programs/page/embed.cmake"
 
-# One file each, as many at once as there are cores.
+# One file each, as many at once as there are cores; what did not change comes from the compiler cache, where there is one.
+! command -v ccache >/dev/null || export EM_COMPILER_WRAPPER="${EM_COMPILER_WRAPPER-ccache}"
 version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
 flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
     -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
