@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSL-1.0
 # usage: compile_cost.sh >docs/compile_cost.md     what it costs to include each header, and to compile a full loop
 #        compile_cost.sh check                     fails when the headers read a tenth more lines than the page says
-#        compile_cost.sh files [BUILD]             fails when a file of the diagnosis takes more than 15 s or 600 MB
+#        compile_cost.sh files [BUILD]             fails when a file of the diagnosis takes more than 15 s or 600 MB, also
+#                                                  beside a reference that is compiled in the same minute (compile_files.py)
 # Environment: RUNS   compilations of each, of which the fastest counts (default 3)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)

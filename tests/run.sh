@@ -31,6 +31,7 @@ all)
 esac
 
 passed=0 failed=0 skipped=0
+packages= # the process that installs what only tests run
 count() { # PASSED FAILED SKIPPED
     passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
 }
@@ -45,6 +46,12 @@ broken() { # MESSAGE LOG
 left_out() {
     printf 'SKIPPED: %s\n' "$1"
     count 0 0 1
+}
+
+# The packages that only tests run are there (below).
+installed() {
+    [ -z "$packages" ] || wait "$packages" || { echo "FAILED: packages for the tests were not installed"; exit 1; }
+    packages=
 }
 
 # Configures and builds a preset in $build/PRESET: build_preset PRESET TARGET...
@@ -90,6 +97,7 @@ tally() { # LOG
         END { print p + 0, f + 0, s + 0 }' "$1"
 }
 run_ctest() { # PRESET CTEST-ARGUMENTS...
+    installed
     preset=$1
     shift
     log=$logs/$preset-ctest.txt
@@ -117,6 +125,7 @@ thread() { # Clang, thread sanitizer: diagnoses side by side, each on all cores
 }
 fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the reader
     build_preset sanitize fuzz || return
+    installed # a seed is written by a script
     set -- "$build"/sanitize/tests/fuzz_*
     [ -x "$1" ] || { left_out "fuzz: no fuzzers"; return; }
     for fuzzer; do
@@ -157,6 +166,7 @@ fuzz() { # libFuzzer on the file readers; the first byte of an input chooses the
     done
 }
 callgrind() { # the typed axis loop needs no more instructions than the hand-written one; the compilers side by side
+    installed
     for compiler in g++ clang++; do
         { QUADRANT_BUILD="$build" COMPILERS=$compiler sh benchmarks/callgrind.sh; echo $? >"$logs/callgrind-$compiler.code"; } \
             >"$logs/callgrind-$compiler.txt" 2>&1 &
@@ -171,13 +181,18 @@ callgrind() { # the typed axis loop needs no more instructions than the hand-wri
     done
 }
 tidy() { # clang-tidy over every header
+    installed
     build_preset tidy quadrant_headers quadrant_tidy && count 1 0 0
 }
 
 sh examples/install.sh g++ cmake ninja-build ccache libboost-dev libeigen3-dev nlohmann-json3-dev libfmt-dev \
-    libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev clang-tidy valgrind chromium \
-    chromium-driver pkg-config dpkg-dev python3 python3-selenium python3-jsonschema gnuplot-nox libnlopt-dev libnlopt-cxx-dev doxygen libxsimd-dev poppler-utils strace \
-    python3-dev python3-pybind11 python3-numpy python3-pandas python3-setuptools python3-wheel python3-venv python3-pytest python3-build || exit 1
+    libcli11-dev libssl-dev libjs-dygraphs doctest-dev libbenchmark-dev clang libclang-rt-14-dev pkg-config dpkg-dev python3 \
+    libnlopt-dev libnlopt-cxx-dev libxsimd-dev python3-dev python3-pybind11 || exit 1
+# What only the tests run is unpacked while the first build compiles; "installed" waits for it.
+sh examples/install.sh clang-tidy valgrind chromium chromium-driver python3-selenium python3-jsonschema gnuplot-nox doxygen \
+    poppler-utils strace python3-numpy python3-pandas python3-setuptools python3-wheel python3-venv python3-pytest python3-build &
+packages=$!
+[ "$tests" != all ] || installed # one apt-get at a time
 [ "$tests" != all ] || sh examples/install.sh gcc-arm-none-eabi libnewlib-arm-none-eabi \
     libstdc++-arm-none-eabi-newlib qemu-system-arm linuxcnc-uspace linuxcnc-uspace-dev python3-pyqt5.qtwebengine xvfb ||
     echo "going on without: microcontroller.qemu and linuxcnc.machine will be skipped"
@@ -202,6 +217,7 @@ for phase; do
     printf -- '-- %s: %s passed, %s failed, %s skipped in %s s\n' "$phase" $((passed - p)) $((failed - f)) \
         $((skipped - s)) $(($(date +%s) - began))
 done
+installed
 echo
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]

@@ -23,14 +23,18 @@ cmake "-DOUT=$build/include/report_files.hpp" -DNAMESPACE=quadrant_gap \
     "-DFILES=$root/examples/programs/quadrant_gap/report_template.html;$root/examples/programs/quadrant_gap/report.css;$root/examples/programs/quadrant_gap/report.js;$dygraphs/dygraph.min.js;$dygraphs/dygraph.min.css" \
     -P "$root/examples/programs/page/embed.cmake"
 
-# One file each, as many at once as there are cores.
+# One file each, as many at once as there are cores; what did not change comes from the compiler cache, where there is one.
+! command -v ccache >/dev/null || export EM_COMPILER_WRAPPER="${EM_COMPILER_WRAPPER-ccache}"
 version=$(awk '/^#define QUADRANT_VERSION_/ { v = v (v == "" ? "" : ".") $3 } END { print v }' "$root/include/quadrant/base/version.hpp")
 flags="-std=c++20 -O2 -fwasm-exceptions -ffp-contract=off -DNDEBUG -DFMT_HEADER_ONLY -DQUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
     -DQUADRANT_VERSION=\"$version\" -I$root/include -I$root/examples -I$root/examples/programs -I$build/include"
 # A file for each folder of the diagnosis, and for each call with the folder of its parts.
 rm -f "$build"/part_*
-for part in $(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort); do
-    printf '#include <quadrant/diagnosis/%s.hpp>\n#include <quadrant/diagnosis/%s.ipp>\n' "$part" "$part" >>"$build/part_${part%%/*}.cpp"
+parts=$(cd "$root/include/quadrant/diagnosis" && find . -name '*.ipp' | sed 's|^\./||; s|\.ipp$||' | sort)
+for suffix in hpp ipp; do # all that a file declares stands before what it makes
+    for part in $parts; do
+        printf '#include <quadrant/diagnosis/%s.%s>\n' "$part" $suffix >>"$build/part_${part%%/*}.cpp"
+    done
 done
 cp "$here/binding.cpp" "$build/binding.cpp"
 sed -i "s|\"session.hpp\"|\"web/session.hpp\"|" "$build/binding.cpp"

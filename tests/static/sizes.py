@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSL-1.0
 """usage: sizes.py ROOT: no function is longer than 60 lines, and no file than 250, without a reason in its head.
 
-Files that were too long when this test came are listed in it and are still to be split: the list only gets shorter.
-
 Looks at include/ and examples/. A function is counted from the line of its opening brace to that of its closing one. The reason
 stands among the first 12 lines of the file, in a comment line of its own:
 
@@ -20,9 +18,6 @@ import sys
 
 root = pathlib.Path(sys.argv[1]).resolve()
 FUNCTION, FILE = 60, 250
-
-# Still to be split by meaning.
-long_files = {"include/quadrant/diagnosis/fit/fit.ipp", "include/quadrant/diagnosis/fit/predictor.ipp"}
 strings = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"|(?<![0-9a-fA-F])\'(?:[^\'\\\n]|\\.)+\'', re.S)
 control = re.compile(r"^(?:else\s+)?(?:if|for|while|switch|do|else|try|catch|return|case|default)\b")
 no_function = re.compile(r"\b(?:namespace|struct|class|enum|union)\b(?![^(]*\()|[=,(]\s*$|\breturn\b\s*$|^\s*$")
@@ -54,7 +49,7 @@ def functions(text):
 
 
 names = subprocess.run(["git", "-C", root, "ls-files", "include", "examples"], capture_output=True, text=True, check=True).stdout.split()
-faults, left, seen = [], set(), 0
+faults, seen = [], 0
 for name in names:
     path = root / name
     if path.suffix not in (".hpp", ".ipp", ".cpp", ".cc", ".h") or not path.is_file():
@@ -70,15 +65,11 @@ for name in names:
             continue
         if length > FUNCTION:
             faults.append((length, f"{name}:{begin}: a function of {length} lines, {FUNCTION} at most"))
-    if len(lines) > FILE and name in long_files:
-        left.add(name)
-    elif len(lines) > FILE and not reason:
+    if len(lines) > FILE and not reason:
         faults.append((len(lines), f"{name}: {len(lines)} lines, {FILE} at most without '// Long: ...' in its head"))
 for _, fault in sorted(faults, reverse=True):
     print(fault)
 if seen < 1000:
     sys.exit(f"only {seen} functions were found")
-for name in sorted(long_files - left):
-    print(f"{name}: is short now; take it off the list of sizes.py")
-print(f"{seen} functions, {len(faults)} faults, {len(left)} files still to be split")
+print(f"{seen} functions, {len(faults)} faults")
 sys.exit(bool(faults))

@@ -5,6 +5,7 @@
 #include "../model/as_reading.hpp"
 #include "../model/driven_motion.hpp"
 #include "../model/sample_loss.hpp"
+#include "led_motion.hpp"
 #include "pass.hpp"
 
 #include <array>
@@ -25,14 +26,6 @@ QUADRANT_DIAGNOSIS_DECL const pass_table& passes();
 QUADRANT_DIAGNOSIS_DECL std::vector<double> acceleration_of(const plant_model& plant,
                                                             std::span<const double> position, double period);
 
-/// A motion that plants are led along instead of being corrected by its readings: what an expert's regression
-/// does.
-struct led_motion {
-    std::vector<double> way;           ///< smoothed without phase at the corner [m]
-    std::vector<unsigned char> counts; ///< of every row: 1 where the axis surely moves
-    double mass, force_constant;       ///< of the machine file: forces are compared in units of the command
-};
-
 /// The plant inside an observer: driven by the logged command, corrected by the logged position, evaluated on
 /// what the correction had to be. One pass, no drift of the double integrator, and a right model leaves only
 /// the encoder's
@@ -49,7 +42,7 @@ struct predictor {
     static constexpr std::size_t in_a_group = 8;
     /// Plants in one pass: two groups that take turns. One alone waits most of its time for its own last step.
     static constexpr std::size_t abreast = 2 * in_a_group;
-    double period;                            ///< T [s]
+    double period;    ///< T [s]
     double corner_Hz; ///< lower: more sensitive to slow forces; higher: friction's sign is surer at creep
     std::span<const double> position, command;
     std::span<const double> other_acceleration{}; ///< of the axis that may be coupled [m/s^2]; empty: none
@@ -143,5 +136,7 @@ private:
 } // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "closed_pass.ipp"
+#    include "led_motion.ipp"
 #    include "predictor.ipp"
 #endif

@@ -10,6 +10,7 @@
 /// Signal arithmetic of the diagnosis, off line and in plain SI numbers.
 namespace quadrant::inline v0::diagnosis {
 
+/// The product with itself.
 inline double square(double x) { return x * x; }
 
 /// Root of the mean square; 0 of nothing.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../../base/version.hpp"
+
+#include <vector>
+
+namespace quadrant::inline v0::diagnosis {
+
+/// A motion that plants are led along instead of being corrected by its readings: what an expert's regression
+/// does.
+struct led_motion {
+    std::vector<double> way;           ///< smoothed without phase at the corner [m]
+    std::vector<unsigned char> counts; ///< of every row: 1 where the axis surely moves
+    double mass, force_constant;       ///< of the machine file: forces are compared in units of the command
+};
+
+} // namespace quadrant::inline v0::diagnosis
