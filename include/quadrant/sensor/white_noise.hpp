@@ -46,7 +46,7 @@ public:
     value operator()() noexcept {
         const std::uint64_t k = state_.k++;
         if (!(deviation_ > value())) return value();
-        const std::uint64_t at = mixed(given_.seed) + 2 * k;
+        const std::uint64_t at = first_ + 2 * k;
         const double u = uniform(at), v = uniform(at + 1);
         return deviation_ * Real(std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v));
     }
@@ -70,6 +70,7 @@ private:
 
     parameters given_;
     value deviation_;
+    std::uint64_t first_ = mixed(given_.seed);
     duration period_;
     state state_;
 };
