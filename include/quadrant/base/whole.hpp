@@ -7,8 +7,8 @@
 namespace quadrant::inline v0::detail {
 
 /// std::round, bit for bit: the nearest whole number, halves away from zero. On x86 that is a call of the C
-/// library, which takes 40 instructions; here it is a conversion to an integer and back. Other number types bring
-/// their own `round`.
+/// library, which takes 40 instructions; here it is a conversion to an integer and back. Other number types
+/// bring their own `round`.
 template <class Real> Real whole(const Real& x) noexcept {
     using std::round;
 #if defined(__x86_64__) || defined(__i386__)
