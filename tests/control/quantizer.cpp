@@ -5,7 +5,11 @@
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
 
 using namespace quadrant;
 using namespace quadrant::literals;
@@ -46,4 +50,21 @@ TEST_CASE("quantizer: a derivative passes as if the steps were seen from afar") 
 TEST_CASE("quantizer: refuses a negative step") {
     CHECK_THROWS_WITH_AS((dac{{.step = -1_V}, 1_ms}), "quantizer.step = -1 V: must be finite and not below 0",
                          invalid_parameter);
+}
+TEST_CASE("quantizer: the nearest whole number is std::round bit for bit, for any bits and beside every half") {
+    std::mt19937_64 random(3);
+    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+    int off = 0;
+    const auto look = [&](double x) {
+        off += bits(quadrant::detail::whole(x)) != bits(std::round(x)) && !std::isnan(x);
+    };
+    for (int k = 0; k < 1'000'000; ++k) {
+        look(std::bit_cast<double>(random()));
+        const double half = std::ldexp(double(random() >> 12), -int(random() % 54)); // and whole ones
+        for (const double x : {half, half + 0.5})
+            for (const double y : {x, std::nextafter(x, 0.0), std::nextafter(x, 1e300)}) look(y), look(-y);
+    }
+    for (const double x : {0.0, 0.5, 0x1p52, 0x1p53, 1e308, std::numeric_limits<double>::infinity()})
+        look(x), look(-x), look(std::nextafter(x, 0.0)), look(-std::nextafter(x, 0.0));
+    CHECK(off == 0);
 }

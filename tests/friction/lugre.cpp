@@ -329,6 +329,10 @@ TEST_CASE("lugre: refuses what no contact has, in the name of the box that minds
           "lugre.damping = -1 N s/m: must be finite and not below 0");
     CHECK(says([](P& p) { p.damping_velocity = -1_mps; }) ==
           "lugre.damping_velocity = -1 m/s: must be finite and not below 0");
+    CHECK(says([](P& p) { p.stiffness = per_um(1e-166); }) == // its step, and that over the damping velocity
+          "lugre.stiffness = 1e-160 N/m: must leave coefficients that this number type can hold");
+    CHECK(says([](P& p) { p.damping_velocity = 1e-160 * 1_mps; }) ==
+          "lugre.damping_velocity = 1e-160 m/s: must leave coefficients that this number type can hold");
     CHECK(says([](P& p) { p.curve.coulomb = 0_N; }) == "lugre.curve.coulomb = 0 N: must be finite and above 0");
     CHECK(says([](P& p) { p.curve.static_level = 7_N; }) ==
           "stribeck.static_level = 7 N: must not be below coulomb (8 N)");

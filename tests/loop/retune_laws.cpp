@@ -3,6 +3,7 @@
 // the coming command is off by the formula in the block's doc comment.
 #include "retuned.hpp"
 
+#include <quadrant/control/acceleration_feedback.hpp>
 #include <quadrant/control/gain_schedule.hpp>
 #include <quadrant/control/lead_lag.hpp>
 #include <quadrant/control/linuxcnc_pid.hpp>
@@ -137,6 +138,36 @@ TEST_CASE("retune: pid starts from the command that it is given; the next one is
                    p.gain.value() * std::abs(p.position_weight - 1) *
                        moved([](const sample& s) { return s.r.position.value(); }, last, now) +
                    p.derivative_gain.value() * std::abs((after.now().q - before.now().q).value());
+        },
+        1e6);
+    CHECK(said.broken == 0);
+    CHECK(said.most > 0.99);
+}
+
+TEST_CASE(
+    "retune: acceleration_feedback starts from the command that it is given, and its law takes what the gain "
+    "changes") {
+    using inner = pid<double, signal::voltage, integral_clamp>;
+    struct law : acceleration_feedback<inner> { // on an axis that accelerates a third of what it is asked
+        using acceleration_feedback::acceleration_feedback;
+        auto operator()(const axis_motion<>& r, position x, velocity v) noexcept {
+            return acceleration_feedback::operator()(r, x, v, r.acceleration / 3.0);
+        }
+    };
+    const auto said = after_retune<law>(
+        [](auto& r) {
+            return law({.law = {.gain = v_per_m::from_value(r.decades(10, 1e4)),
+                                .integral_gain = v_per_ms::from_value(r.decades(1, 1e6))},
+                        .gain = v_per_mps2::from_value(r.decades(1e-3, 1)),
+                        .corner = r.decades(1, 900) * 1_Hz},
+                       T);
+        },
+        [](const law& next, const law& before, const law& after, const sample& last, const sample& now,
+           double) {
+            const auto& p = next.given().law;
+            return p.gain.value() * moved(error_of, last, now) +
+                   p.integral_gain.value() * T.value() * std::abs(error_of(now)) +
+                   std::abs((after.added() - before.added()).value());
         },
         1e6);
     CHECK(said.broken == 0);

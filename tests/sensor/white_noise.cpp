@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -62,11 +63,14 @@ TEST_CASE("white_noise: seed 1 begins as splitmix64 by hand says, so a run is th
     const auto uniform = [&](std::uint64_t n) {
         return double((next(n * golden) >> 11) + 1) * std::pow(2.0, -53);
     };
-    const auto y = drawn(1, 4);
-    for (std::uint64_t k = 0; k < 4; ++k) { // two numbers for each sample
+    constexpr std::size_t samples = 1'000'000;
+    const auto y = drawn(1, samples);
+    double most = 0;
+    for (std::uint64_t k = 0; k < samples; ++k) { // two numbers for each sample
         const double u = uniform(first + 2 * k), v = uniform(first + 2 * k + 1);
-        CHECK(std::abs(y[k] - std::sqrt(-2 * std::log(u)) * std::cos(8 * std::atan(1.0) * v)) < 1e-12);
+        most = std::max(most, std::abs(y[k] - std::sqrt(-2 * std::log(u)) * std::cos(8 * std::atan(1.0) * v)));
     }
+    CHECK(most < 8.6 * 1e-15); // the cosine's angle alone is rounded by 4e-16
 }
 TEST_CASE("white_noise: without a deviation it is silent; a negative one is refused") {
     noise n{{}, 1_ms};

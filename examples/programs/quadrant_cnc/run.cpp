@@ -54,7 +54,9 @@ void run(const run_options& o) {
     std::unique_ptr<log_writer> log;
     if (!o.log.empty()) log = std::make_unique<log_writer>(o.log, log_header(cnc));
     progress_line line(o.quiet);
-    run_outcome out = simulate(cnc, o.path, log.get(), [&](const progress& p) { line(p); });
+    const kept_for what = o.report.empty() ? kept_for::figures : kept_for::pages;
+    run_outcome out = simulate(
+        cnc, o.path, log.get(), [&](const progress& p) { line(p); }, what);
     line.clear();
     if (log) log->finish();
     if (!o.machine.empty())

@@ -48,7 +48,8 @@ struct run_outcome {
     std::vector<std::string> notes;
     double wall_time = 0, cpu_time = 0; ///< of computing [s]
 
-    /// The contour error, then for each axis: error, velocity, acceleration, jerk, effort.
+    /// For a page only (`kept_for::pages`). The contour error, then for each axis: error, velocity,
+    /// acceleration, jerk, effort.
     decimated signals{1};
     static constexpr std::size_t of_axis = 5;
     heaviest<contour_sample> contour_plot{6000};

@@ -20,10 +20,11 @@ using clock = std::chrono::steady_clock;
 
 class run {
 public:
-    run(const cnc_description& cnc, const std::string& path_file, log_writer* log)
-        : cnc_(cnc), program_(cnc, path_file), log_(log), period_(cnc.servo_period_s), drive_(make_drive(cnc)),
-          waiting_(0), cuts_(std::any_of(cnc.axes.begin(), cnc.axes.end(),
-                                         [](const axis_description& a) { return a.load.has_value(); })) {
+    run(const cnc_description& cnc, const std::string& path_file, log_writer* log, kept_for what)
+        : cnc_(cnc), program_(cnc, path_file), log_(log), drawn_(what == kept_for::pages),
+          period_(cnc.servo_period_s), drive_(make_drive(cnc)), waiting_(0),
+          cuts_(std::any_of(cnc.axes.begin(), cnc.axes.end(),
+                            [](const axis_description& a) { return a.load.has_value(); })) {
         std::size_t most_lead = 0;
         for (const axis_description& a : cnc.axes) {
             try {
@@ -151,14 +152,16 @@ private:
         contour_.follow(asked, line_, due.speed * period_);
         const contour::deviation off = contour_(place);
         const double distance = off.distance();
-        const contour_sample sample{contour_.path_place(), off.foot, off.off};
         const bool worst = distance > out_.contour.most;
         out_.contour.add(distance, t, line_);
         if (worst) out_.worst_place = off.foot;
-        values_[0] = distance;
-        out_.signals.add(values_.data());
-        out_.contour_plot.add(sample, distance);
-        close_up_.add(sample, worst);
+        if (drawn_) {
+            const contour_sample sample{contour_.path_place(), off.foot, off.off};
+            values_[0] = distance;
+            out_.signals.add(values_.data());
+            out_.contour_plot.add(sample, distance);
+            close_up_.add(sample, worst);
+        }
         ++out_.samples;
     }
     /// The tool is in the cut in feed moves, until the path is over.
@@ -184,6 +187,7 @@ private:
     const cnc_description& cnc_;
     quadrant_cnc::program program_;
     log_writer* log_;
+    bool drawn_; ///< somebody asked for a page
     double period_;
     std::unique_ptr<interpolator> drive_;
     std::vector<one> axes_;
@@ -205,8 +209,8 @@ private:
 } // namespace
 
 run_outcome simulate(const cnc_description& cnc, const std::string& path_file, log_writer* log,
-                     const std::function<void(const progress&)>& tell) {
-    return run(cnc, path_file, log)(tell);
+                     const std::function<void(const progress&)>& tell, kept_for what) {
+    return run(cnc, path_file, log, what)(tell);
 }
 
 std::string log_header(const cnc_description& cnc) {

@@ -15,9 +15,12 @@ struct progress {
     std::size_t line = 0;
 };
 
+/// What the outcome of a run is for: what a page draws (signals, contour_plot, worst) is a tenth of the work.
+enum class kept_for { figures, pages };
+
 /// With a log unless `log` is null. Throws bad_input, bad_program.
 run_outcome simulate(const cnc_description& cnc, const std::string& path_file, log_writer* log,
-                     const std::function<void(const progress&)>& tell);
+                     const std::function<void(const progress&)>& tell, kept_for what = kept_for::pages);
 
 /// The first line of the log of this machine.
 std::string log_header(const cnc_description& cnc);

@@ -159,9 +159,9 @@ void require_not_negative(const detail::field_name& field, const Value& value) {
 /// none may exceed the root of the largest one.
 template <class Real, class Value, class... Coefficients>
 void require_coefficients(const detail::field_name& field, const Value& of, const Coefficients&... each) {
-    const auto held = [](double c) {
-        return detail::is_finite(c) && c / detail::range_of<Real>().most * c <= 1;
-    };
+    // No product or quotient: under -ffast-math that is one with 1 / largest, which is subnormal.
+    constexpr double root = detail::range_of<Real>().most < 1e300 ? 0x1p64 : 0x1p512;
+    const auto held = [](double c) { return detail::is_finite(c) && c < root && c > -root; };
     for (std::size_t i = 0; i < lane_count<Real>; ++i)
         require((held(detail::plain(lane(each, i))) && ...), field, lane(of, i),
                 "must leave coefficients that this number type can hold");

@@ -27,6 +27,9 @@ concept law_without_lead = axis_law<L> && !requires {
 /// Ports: those of a control law; the fourth argument is the measured acceleration. `feed_control` hands it
 /// over; asked with three arguments, the law takes the axis to accelerate as it is asked to.
 /// State: that of the law and of the filter. `reset`: both as new; `settle(x, u)`: at rest at x, held by u.
+/// `retune(next, reference, x, v, u)`: as `retunable_law` has it, where the law does; the law takes what the
+/// new gain changes. |u'[k] - u| is at most what the law says of its own, and gain' times the step of the
+/// filter's output.
 /// Range: gain >= 0. The measured acceleration is the mean of the last period, half a period late: with the
 /// filter's lag it bounds the gain. Without any lag of the filter the inner loop needs gain B < 1.
 /// NaN and infinities in any input: holds the last command, keeps the state, raises faulted().
@@ -51,14 +54,16 @@ public:
     };
 
     acceleration_feedback(const parameters& p, duration period)
-        : given_(p), law_(p.law, period), filter_({p.corner}, period), gain_(in_real<real>(p.gain)) {
+        : given_(p), period_(period), law_(p.law, period), filter_({p.corner}, period),
+          gain_(in_real<real>(p.gain)) {
         require_not_negative<real>("acceleration_feedback.gain", p.gain);
     }
 
     value operator()(const axis_motion<real>& reference, position x, velocity v, acceleration a) noexcept {
         if (!finite(reference.position, reference.velocity, reference.acceleration, x, v, a))
             return out_.hold();
-        added_ = gain_ * filter_(reference.acceleration - a);
+        filtered_ = filter_(reference.acceleration - a);
+        added_ = gain_ * filtered_;
         of_law_ = law_(reference, x, v);
         const value u = of_law_ + added_;
         return finite(u) ? out_.keep(u) : out_.hold();
@@ -74,6 +79,7 @@ public:
     void reset() noexcept {
         law_.reset();
         filter_.reset();
+        filtered_ = {};
         added_ = of_law_ = {};
         out_.reset();
     }
@@ -81,9 +87,19 @@ public:
         if (!finite(x, hold)) return out_.raise();
         law_.settle(x, hold);
         filter_.settle({});
+        filtered_ = {};
         added_ = {};
         of_law_ = hold;
         out_.reset(hold);
+    }
+    void retune(const acceleration_feedback& next, const axis_motion<real>& reference, position x, velocity v,
+                value u) noexcept requires retunable_law<Law> {
+        if (next.period_ != period_) return out_.raise();
+        added_ = next.gain_ * filtered_;
+        law_.retune(next.law_, reference, x, v, u - added_);
+        filter_.retune(next.filter_);
+        gain_ = next.gain_;
+        given_ = next.given_;
     }
 
     /// Eq. (19), where the law has it.
@@ -95,7 +111,7 @@ public:
         r.from_acceleration += h;
         return r;
     }
-    value added() const noexcept { return added_; } ///< by the accelerometer to the last command
+    value added() const noexcept { return added_; } ///< for the accelerometer's last sample, by the gain in use
     bool faulted() const noexcept {
         return out_.faulted() || detail::is_faulted(law_) || detail::is_faulted(filter_);
     }
@@ -104,9 +120,11 @@ public:
 
 private:
     parameters given_;
+    duration period_;
     Law law_;
     filter filter_;
     gain_of<output, signal::acceleration, real> gain_;
+    acceleration filtered_{};
     value added_{}, of_law_{}; ///< the parts of the last command
     held_output<value> out_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
+#include "../base/whole.hpp"
 
 #include <cmath>
 
@@ -61,7 +62,6 @@ public:
 
 private:
     value rounded(value x) const noexcept {
-        using std::round;
         if constexpr (!multi_lane<Real>) // in lanes the division is done for nothing
             if (none(rounds_)) return x;
         // Off by a step where a division would meet the middle between two of them.
@@ -69,7 +69,7 @@ private:
             const Real whole = nearest(Real(x * inverse_step_));
             return select(rounds_, value(whole * step_), x);
         } else
-            return select(rounds_, value(Real(round(Real(x / step_))) * step_), x);
+            return select(rounds_, value(detail::whole(Real(x / step_)) * step_), x);
     }
 
     parameters given_;

@@ -20,7 +20,8 @@ namespace quadrant::inline v0 {
 /// what is beyond the new Fs. Jump <= (K + K' + |viscous' - viscous|) |v| + (|stiffness z| - Fs' or 0), K =
 /// (1 + Fs/Fc) (stiffness T + damping): the step of each.
 /// Range: 0 < coulomb <= static_level and the rest of `stribeck`, stiffness > 0, damping >= 0, damping_velocity
-/// >= 0 (0: the damping does not fall). Stable at any step. passive(p) says whether no motion can get energy
+/// >= 0 (0: the damping does not fall); 1/(stiffness T) and 1/damping_velocity at most the root of the largest
+/// number (1.8e19 in float). Stable at any step. passive(p) says whether no motion can get energy
 /// out of it; with constant damping that needs viscous >= damping (Fs - Fc)/Fc [Barahanov2000].
 /// Does not remember inner loops: they drift. Breakaway falls with the rate of the pull.
 /// NaN and infinities: holds the last output, keeps the state, raises faulted().
@@ -55,8 +56,13 @@ public:
           period_(time::from_value(Real(period.value()))) {
         require_positive<Real>("lugre.curve.coulomb", p.curve.coulomb);
         require_positive<Real>("lugre.stiffness", p.stiffness);
+        require_coefficients<Real>("lugre.stiffness", p.stiffness,
+                                   Real(1) / Real((stiffness_ * period_).value()));
         require_not_negative<Real>("lugre.damping", p.damping);
         require_not_negative<Real>("lugre.damping_velocity", p.damping_velocity);
+        if (damping_velocity_ > argument())
+            require_coefficients<Real>("lugre.damping_velocity", p.damping_velocity,
+                                       Real(1) / Real(damping_velocity_.value()));
     }
 
     value operator()(argument v) noexcept { return memory_.step(v, after(v, period_)); }

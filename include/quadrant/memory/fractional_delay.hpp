@@ -60,6 +60,7 @@ public:
     fractional_delay(const parameters& p, duration period) : given_(p), period_(period) {
         require_positive<Real>("fractional_delay.period", period);
         delay(p.delay);
+        at_start_ = reads_;
         require(!limited_ && !out_.faulted(), "fractional_delay.delay", p.delay,
                 "must lie between " + detail::shortest(least * period) + " and " +
                     detail::shortest(double(Capacity) * period) + " (capacity)");
@@ -69,10 +70,10 @@ public:
         if (none(finite(x))) return out_.hold();
         const std::size_t now = state_.next;
         state_.x[now] = x;
-        std::size_t at = now >= first_ ? now - first_ : now + size - first_;
+        std::size_t at = now >= reads_.first ? now - reads_.first : now + size - reads_.first;
         value y{};
         for (std::size_t i = 0; i <= Order; ++i) {
-            y += weight_[i] * state_.x[at];
+            y += reads_.weight[i] * state_.x[at];
             at = at == 0 ? size - 1 : at - 1;
         }
         if (none(finite(y))) return out_.hold(); // the next sample takes the same place
@@ -80,7 +81,8 @@ public:
         return out_.keep(y);
     }
     void reset() noexcept {
-        delay(given_.delay);
+        reads_ = at_start_; // not made again, which under -ffast-math need not give the same bits
+        limited_ = false;
         settle(value());
     }
     void settle(value x) noexcept {
@@ -98,8 +100,8 @@ public:
 
     void retune(const fractional_delay& next) noexcept {
         if (next.period_ != period_) return out_.raise();
-        weight_ = next.weight_;
-        first_ = next.first_;
+        reads_ = next.reads_;
+        at_start_ = next.at_start_;
         limited_ = next.limited_;
         given_ = next.given_;
     }
@@ -110,13 +112,13 @@ public:
         limited_ = plain < least || plain > double(Capacity);
         if (limited_) periods = plain < least ? number(least) : number(double(Capacity));
         const double whole = std::floor(detail::plain(periods));
-        first_ = std::size_t(whole - least);
+        reads_.first = std::size_t(whole - least);
         const number u = periods - number(whole); // 0 ... 1 between the two samples around the instant
         if constexpr (Order == 1)
-            weight_ = {Real(1 - u), Real(u)};
+            reads_.weight = {Real(1 - u), Real(u)};
         else {
             const auto cubic = detail::cubic_weights(u);
-            for (std::size_t i = 0; i <= Order; ++i) weight_[i] = Real(cubic[i]);
+            for (std::size_t i = 0; i <= Order; ++i) reads_.weight[i] = Real(cubic[i]);
         }
     }
 
@@ -124,7 +126,7 @@ public:
         const double angle = -2 * std::numbers::pi * f.value() * period_.value();
         std::complex<double> sum = 0;
         for (std::size_t i = 0; i <= Order; ++i)
-            sum += detail::plain(weight_[i]) * std::polar(1.0, angle * double(first_ + i));
+            sum += detail::plain(reads_.weight[i]) * std::polar(1.0, angle * double(reads_.first + i));
         return sum;
     }
     bool limited() const noexcept { return limited_; } ///< the last delay(d) lay outside the range
@@ -136,10 +138,14 @@ private:
     static constexpr double least = Order == 3 ? 1 : 0;
     static constexpr std::size_t size = Capacity + Order + 1;
 
+    struct polynomial {
+        std::array<Real, Order + 1> weight{};
+        std::size_t first = 0; ///< age of the youngest sample
+    };
+
     parameters given_;
     duration period_;
-    std::array<Real, Order + 1> weight_{};
-    std::size_t first_ = 0; ///< age of the youngest sample of the polynomial
+    polynomial reads_, at_start_; ///< of the delay in use; of that of the parameters
     bool limited_ = false;
     state state_;
     held_output<value> out_;

@@ -26,6 +26,13 @@ constexpr auto breakaway(const Friction& friction, bool forward) noexcept {
     else
         return friction.breakaway();
 }
+/// What a drive steps in the sub-steps of one period: the law's own form for that, if it has one, or the law.
+template <class Friction> decltype(auto) in_held_steps(const Friction& law) noexcept {
+    if constexpr (requires { law.in_held_steps(); })
+        return law.in_held_steps();
+    else
+        return (law);
+}
 } // namespace detail
 
 /// A friction law that a rotary drive can take: `asymmetric_stribeck`, `stribeck`, `coulomb_viscous` from
@@ -121,10 +128,12 @@ public:
                 friction_.become(memory);
                 return out_.hold();
             }
-        } else
+        } else {
+            auto&& law = detail::in_held_steps(friction_);
             for (std::size_t n = 0; n < given_.substeps; ++n)
-                if (!advance(w, turned, applied))
+                if (!advance(law, w, turned, applied))
                     break; // at rest, and so it stays: what is applied does not change
+        }
         const state next{state_.x + travel_ * turned, unless_died_out(velocity(travel_ * w))};
         if (!finite(applied, next.x, next.v)) return out_.hold();
         state_ = next;
@@ -177,10 +186,11 @@ private:
         w = to.v;
     }
     /// One sub-step; false when it ends at rest.
-    bool advance(angular_velocity& w, angle& turned, torque applied) const noexcept {
+    template <class Law>
+    bool advance(Law& law, angular_velocity& w, angle& turned, torque applied) const noexcept {
         if (w == angular_velocity()) return leave(w, turned, applied, Real(1));
         const bool forward = w > angular_velocity();
-        const torque slip = friction_.slip(w), t = applied - (forward ? slip : -slip);
+        const torque slip = law.slip(w), t = applied - (forward ? slip : -slip);
         const angular_velocity next = kept_ * w + gained_ * t;
         if (forward ? next < angular_velocity()
                     : next > angular_velocity()) { // stops on the way, evenly slower

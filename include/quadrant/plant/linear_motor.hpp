@@ -3,6 +3,7 @@
 #include "../base/error.hpp"
 #include "../base/finite.hpp"
 #include "../base/standstill.hpp"
+#include "../base/whole.hpp"
 #include "../friction/coulomb_viscous.hpp"
 #include "../friction/presliding.hpp"
 #include "../friction/stick_slip.hpp"
@@ -180,9 +181,8 @@ private:
             return false;
     }
     template <class Quantity> static Quantity rounded(Quantity x, Quantity step) noexcept {
-        using std::round;
         if (!(step > Quantity())) return x;
-        return step * Real(round(Real(x / step)));
+        return step * detail::whole(Real(x / step));
     }
 
     parameters given_;

@@ -19,7 +19,8 @@ namespace quadrant::inline v0 {
 /// Range: deviation >= 0; 0: none. Give every wire another seed, or their noise is the same.
 /// NaN: no input, so none; finite for ever.
 /// Throws "white_noise.deviation = ...: must be finite and not below 0", and for the period.
-/// Cost: one logarithm, one root, one cosine, 6 integer multiplications; nothing with deviation 0.
+/// Cost: one logarithm, one root, one cosine (a sum of 9 terms), 6 integer multiplications; nothing with
+/// deviation 0.
 template <signal_tag Signal, class Real = double> class white_noise {
 public:
     using output = Signal;
@@ -46,9 +47,9 @@ public:
     value operator()() noexcept {
         const std::uint64_t k = state_.k++;
         if (!(deviation_ > value())) return value();
-        const std::uint64_t at = mixed(given_.seed) + 2 * k;
+        const std::uint64_t at = first_ + 2 * k;
         const double u = uniform(at), v = uniform(at + 1);
-        return deviation_ * Real(std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v));
+        return deviation_ * Real(std::sqrt(-2 * std::log(u)) * cosine(v));
     }
     void reset() noexcept { state_ = {}; }
     void settle(duration t) noexcept {
@@ -68,8 +69,26 @@ private:
     /// 2^-53 ... 1: its logarithm is finite.
     static double uniform(std::uint64_t n) noexcept { return double((mixed(n) >> 11) + 1) * 0x1p-53; }
 
+    /// cos(2 pi v), 0 <= v <= 1, to 3e-16: Taylor's sum of the cosine or the sine around the nearest quarter
+    /// turn. Without a branch, which random numbers would mislead.
+    static double cosine(double v) noexcept {
+        static constexpr double sums[2][9] = {{1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800,
+                                               1.0 / 479001600, -1.0 / 87178291200, 1.0 / 20922789888000},
+                                              {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880,
+                                               -1.0 / 39916800, 1.0 / 6227020800, -1.0 / 1307674368000,
+                                               1.0 / 355687428096000}};
+        static constexpr double of_one[5] = {1, 0, -1, 0, 1}, of_angle[5] = {0, -1, 0, 1, 0};
+        const int quarter = int(4 * v + 0.5);
+        const double angle = 2 * std::numbers::pi * (v - 0.25 * quarter), x = angle * angle, x2 = x * x;
+        const double* const s = sums[quarter & 1];
+        const double low = (s[0] + s[1] * x) + x2 * (s[2] + s[3] * x),
+                     high = (s[4] + s[5] * x) + x2 * ((s[6] + s[7] * x) + x2 * s[8]);
+        return (of_one[quarter] + of_angle[quarter] * angle) * (low + x2 * x2 * high);
+    }
+
     parameters given_;
     value deviation_;
+    std::uint64_t first_ = mixed(given_.seed);
     duration period_;
     state state_;
 };

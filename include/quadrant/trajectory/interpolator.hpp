@@ -165,6 +165,10 @@ private:
     };
     static moved on(const typename look_ahead<Window>::place& at, const along& y) noexcept {
         const path::segment& path = *at.path;
+        if (const auto* straight = std::get_if<path::line>(&path.shape())) { // what the sums below are, sooner
+            const path::point t = straight->tangent(at.s);
+            return {straight->position(at.s), y.v * t, y.a * t, y.j * t};
+        }
         const path::point t = path.tangent(at.s), k = path.curvature(at.s), d = third_derivative(path, at.s);
         return {path.position(at.s), y.v * t, y.a * t + y.v * y.v * k,
                 y.j * t + 3 * y.v * y.a * k + y.v * y.v * y.v * d};
