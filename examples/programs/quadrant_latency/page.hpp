@@ -7,7 +7,7 @@
 /// The result as one HTML file that needs no network and no script.
 namespace quadrant_latency {
 
-/// Share of the calls per step of a factor 2^(1/8), as a staircase; it goes down to half a call where a step has none.
+/// Share of the calls per step of a factor 2^(1/8), as a staircase. No call is drawn as half a call.
 inline quadrant_page::line histogram(const durations& d) {
     constexpr double steps = 8;
     quadrant_page::line l{d.name, {}, {}};
