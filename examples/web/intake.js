@@ -14,7 +14,7 @@ const known_as = {
 
 function list_files() {
     the('dropped').replaceChildren(...[...dropped].map(([name, f]) => {
-        const item = make('li', {className: f.error ? 'bad' : ''}, make('b', {textContent: name}), known_as[f.kind](f));
+        const item = make('li', {className: f.error ? 'bad' : ''}, make('b', {textContent: name}), ' ', known_as[f.kind](f));
         for (const note of f.error ? [f.error].filter(() => f.kind !== 'table') : f.notes || []) item.append(make('small', {textContent: note}));
         return item;
     }));

@@ -48,11 +48,20 @@ function gap_table(title, before, after) {
 
 const tint = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 
+// The scale of the machine file's curve, so that it stays while sliders move: where its largest value is far beyond
+// nearly all others, the curve shows those. Second: how far anything goes beyond the scale, or 0.
+function scale_of(before, after) {
+    const sizes = before.flat().map(Math.abs).sort((a, b) => a - b), usual = sizes[Math.floor(0.995 * (sizes.length - 1))];
+    const size = Math.max(sizes.at(-1) > 2.5 * usual && usual > 0 ? 1.3 * usual : sizes.at(-1), 1e-300);
+    const most = [...sizes.slice(-1), ...after.flat()].reduce((a, v) => Math.max(a, Math.abs(v)), 0);
+    return [size, most > 1.001 * size ? most : 0];
+}
+
 function draw_curve(canvas, unit, seconds, before, after) {
     const w = canvas.clientWidth, h = canvas.clientHeight, dpr = devicePixelRatio || 1, pen = canvas.getContext('2d');
     Object.assign(canvas, {width: w * dpr, height: h * dpr});
     pen.scale(dpr, dpr);
-    const size = Math.max(...before[1].map(Math.abs), ...before[0].map(Math.abs), 1e-300);
+    const [size, beyond] = scale_of(before, after);
     const [factor, prefix] = [[1, ''], [1e3, 'm'], [1e6, 'µ'], [1e9, 'n']].find(([f]) => size * f >= 1) || [1e9, 'n'];
     const left = 74, bottom = h - 20, y = v => 6 + (bottom - 6) * (1 - (Math.max(-1, Math.min(1, v / size)) + 1) / 2);
     pen.font = '12px ' + getComputedStyle(document.body).fontFamily;
@@ -69,6 +78,11 @@ function draw_curve(canvas, unit, seconds, before, after) {
     pen.fillText(`${in_digits(seconds)} s`, w, h - 4);
     pen.textAlign = 'left';
     pen.fillText('0 s', left, h - 4);
+    if (beyond) {
+        pen.textAlign = 'center';
+        pen.fillText(`spikes up to ${in_digits(beyond * factor)} ${prefix}${unit} go beyond the curve`, (left + w) / 2, h - 4);
+        pen.textAlign = 'left';
+    }
     for (const [[low, high], name] of [[before, 'before'], [after, 'after']]) {
         pen.strokeStyle = tint(name);
         pen.lineWidth = Math.max(1, (w - left) / low.length);

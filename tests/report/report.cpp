@@ -39,12 +39,15 @@ TEST_CASE("words: a number has the digits that its interval leaves, and the unit
     CHECK(percent(estimate{0.81, 0.79, 0.83}) == "81 % (79 to 83)");
     CHECK(probability(0.9999) == "> 99 %");
     CHECK(lines_of(parameter_estimate{"stribeck_velocity_m_per_s", {{0.0022, 0.0022, 0.0022}}})[0] ==
-          "stribeck velocity: 2.2 mm/s");
+          "Stribeck velocity: 2.2 mm/s");
+    CHECK(lines_of(parameter_estimate{"static_N", {{3, 3, 3}}})[0] == "static friction: 3.0 N");
+    CHECK(lines_of(parameter_estimate{"coulomb_N", {{3, 3, 3}}})[0] == "Coulomb friction: 3.0 N");
     CHECK(lines_of(parameter_estimate{"cogging_N", {{3, 3, 3}, {1, 1, 1}}}) ==
           std::vector<std::string>{"cogging 1: 3.0 N", "cogging 2: 1.0 N"});
     CHECK(lines_of(parameter_estimate{"cogging_phase_rad", {{1, 1, 1}}})[0] == "cogging phase: 57.3 deg");
     CHECK(lines_of(parameter_estimate{"backlash_rad", {{2e-5, 2e-5, 2e-5}}})[0] == "backlash: 20.0 µrad");
-    CHECK(lines_of(parameter_estimate{"viscous_Nm_s_per_rad", {{2, 2, 2}}})[0] == "viscous: 2.0 N m s/rad");
+    CHECK(lines_of(parameter_estimate{"viscous_Nm_s_per_rad", {{2, 2, 2}}})[0] ==
+          "viscous friction: 2.0 N m s/rad");
     CHECK(lines_of(parameter_estimate{"velocity_gain_V_s_per_rad", {{2, 2, 2}}},
                    {axis_kind::rotary, "Nm"})[0] == "velocity gain: 2.0 N m s/rad");
     CHECK(lines_of(parameter_estimate{"viscous_asymmetry", {{0.1, 0.08, 0.12}}})[0] ==
@@ -102,7 +105,7 @@ TEST_CASE("report: says the verdict, the causes with their intervals, the altern
     const std::string html = html_report(sample::explained());
     for (const char* part :
          {"Coulomb friction and constant force", ">explained</span>", "20.4 N (19.9 to 20.8)",
-          "cannot be distinguished from friction that differs by direction", "coulomb asymmetry",
+          "cannot be distinguished from friction that differs by direction", "Coulomb asymmetry",
           "20.7 → 3.9 N", "81 % (79 to 83)", "mechanics (95 % of the gap)", "Reverse slowly ten times",
           "odds of 66.7 to 1", "<p>Simulated beforehand.</p>", "emps_run2.csv", "5 % is assumed", "MIT licence",
           "Dan Vanderkam"})
@@ -224,7 +227,7 @@ TEST_CASE("summary: lines of at most 100 columns, no control characters, whateve
 TEST_CASE("summary: says what the report says") {
     const std::string text = summary(sample::explained());
     for (const char* part :
-         {"Explained: emps_run1.csv", "Coulomb friction, axis x: probability > 99 %", "coulomb: 20.4 N",
+         {"Explained: emps_run1.csv", "Coulomb friction, axis x: probability > 99 %", "Coulomb friction: 20.4 N",
           "95 % (93 to 97)", "a suspect, not a claim", "Next experiment", "Note: "})
         CHECK_MESSAGE(has(text, part), part);
 }

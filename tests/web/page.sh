@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # usage: page.sh STAGE quadrant-gap SOURCE_DIR BUILD_DIR SHARED
-# STAGE: build (the page), verdicts (asks it in node), browser (uses it; times are measured)
+# STAGE: build (the page), verdicts (drops the practice logs into it), browser (uses it; times are measured)
 # Exit code 77 (skipped) where emscripten or the browser is missing.
 set -u
 stage=$1 program=$2 source=$3 build=$4 shared=$5
@@ -31,4 +31,4 @@ else
     echo "SKIPPED: npm gives no axe-core: the accessibility of the page is not checked"
 fi
 exec /usr/bin/python3 "$(dirname "$0")/page_test.py" "$build/quadrant.html" "$program" "$source" \
-    --shots "$build/reports" --shared "$shared" $with_axe
+    --shots "$build/reports" $with_axe

@@ -1,23 +1,27 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSL-1.0
 """The page gives the same verdict as the program: on the practice logs, and on the records of a real position servo.
 usage: verdicts.py QUADRANT.html PROGRAM SHARED     three of them, with QUADRANT_TESTS=all every one
-The module of the page runs in node (verdicts.js). The verdict, the claims in their order and each probability to 0.02 are
-compared. Exit code 77: no node, or no logs."""
+The files of each are dropped into the page in headless Chromium. The verdict, the claims in their order and each probability
+to 0.02 are compared. Exit code 77: no logs."""
 import concurrent.futures
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "report"))
+from browser_test import show, start  # noqa: E402
+
 SHORT = {"practice/001", "practice/009", "servo_pendulum/001"}
 APART = 0.02  # of a probability: the sums of two compilers round differently
+LIMIT_S = 900
 # A path that sticks and slips is rough: where the sums round differently, its fit ends elsewhere.
 NOT_YET = {}  # name of a case: how the page differs from the program
+FILES = ("machine.json", "log.csv", "holdout.csv")
 
 
 def said(diagnosis):
@@ -48,24 +52,32 @@ def of_program(program, folder):
 
 
 def of_page(page, folder):
-    script = pathlib.Path(__file__).with_name("verdicts.js")
-    done = subprocess.run(["node", str(script), str(page), str(folder)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    if done.returncode != 0:
-        return {"error": done.stderr.strip()}
-    return json.loads(done.stdout)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        driver = start(profile)
+        try:
+            show(driver, pathlib.Path(page).resolve().as_uri(), 1200, "light")
+            driver.find_element("css selector", "#files").send_keys("\n".join(str(folder / f) for f in FILES if (folder / f).exists()))
+            end = time.monotonic() + LIMIT_S
+            while time.monotonic() < end:
+                fault = driver.execute_script("return [...document.querySelectorAll('#start .fault, #dropped .bad small')].map(e => e.textContent).join('')")
+                if fault:
+                    return {"error": fault}
+                if driver.execute_script("return result !== null"):
+                    return json.loads(driver.execute_script("return result.diagnosis"))
+                time.sleep(0.2)
+            return {"error": f"no verdict within {LIMIT_S} s"}
+        finally:
+            driver.quit()
 
 
 def compared(page, program, folder):
     began = time.monotonic()
     found = of_page(page, folder)
     took = time.monotonic() - began
-    return took, found["error"] if "error" in found else alike(found["diagnosis"], of_program(program, folder))
+    return took, found["error"] if "error" in found else alike(found, of_program(program, folder))
 
 
 def main(page, program, shared):
-    if not shutil.which("node"):
-        print("SKIPPED: no node: the page is not asked")
-        return 77
     groups = {"practice": pathlib.Path(shared) / "gap/practice", "servo_pendulum": pathlib.Path(shared) / "data/servo_pendulum"}
     cases = {f"{group}/{folder.name}": folder for group, at in groups.items() if at.is_dir()
              for folder in sorted(at.iterdir()) if (folder / "machine.json").exists()}

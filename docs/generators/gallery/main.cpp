@@ -2,17 +2,23 @@
 // usage: gallery FOLDER
 // Writes the pictures of docs/gallery.md, one an effect: an axis of the library's own plant that has the
 // effect, in closed loop, beside a machine file that does not have it. Three panels: the residual force in
-// time, over velocity and over position.
+// time, over velocity and over position, each with that of a machine as described behind it. And motion.svg:
+// what all of them do.
 #include "block_pictures/svg_file.hpp"
 
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/simulate.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -33,6 +39,7 @@ constexpr const char* described = R"({"schema": "quadrant.machine/1", "sample_pe
 struct sight {
     const char *name, *title;
     void (*change)(axis_description&); ///< what the machine has and the file has not; null: nothing
+    double fastest = 270;              ///< of the panel over velocity [mm/s]
 };
 
 const sight sights[] = {
@@ -42,7 +49,8 @@ const sight sights[] = {
      [](auto& a) {
          a.plant.static_N = 140;
          a.plant.stribeck_velocity_m_per_s = 0.004;
-     }},
+     },
+     30},
     {"cogging", "cogging",
      [](auto& a) {
          a.plant.cogging_period_m = 0.024;
@@ -94,7 +102,11 @@ std::vector<double> motion() {
     return x;
 }
 
-block_pictures::picture drawn(const sight& s) {
+/// What a machine with this effect does, and the residual force beside the file that does not have it.
+struct record {
+    std::vector<double> position, velocity, force; ///< [mm], [mm/s], [N]
+};
+record recorded(const sight& s) {
     const machine_description file = read_machine(described, "gallery");
     machine_description machine = file;
     if (s.change) s.change(machine.axes[0]);
@@ -118,49 +130,108 @@ block_pictures::picture drawn(const sight& s) {
     axis.position = std::move(run.position);
     axis.command = std::move(run.command);
     log.axes.push_back(axis);
-    const auto found = simulate(file, log).axes.at(0);
-    const auto velocity = derivative(zero_phase(axis.position, 60, period), period);
+    record r{axis.position, derivative(zero_phase(axis.position, 60, period), period),
+             simulate(file, log).axes.at(0).force};
+    for (auto* in_metres : {&r.position, &r.velocity})
+        for (double& v : *in_metres) v *= 1e3;
+    return r;
+}
 
-    const auto& force = found.force;
-    constexpr std::size_t ends = 200, buckets = 320, dots = 100; // the observer settles; per panel
-    const auto bucket = [&](std::size_t i, std::size_t of) {
-        const std::size_t rows = log.samples - 2 * ends, from = ends + rows * i / of;
-        return std::pair{from, ends + rows * (i + 1) / of};
-    };
-    curve in_time(""), over_velocity("", block_pictures::points), over_position("", block_pictures::points);
-    for (std::size_t i = 0; i < buckets; ++i) { // no peak is lost
-        const auto [from, to] = bucket(i, buckets);
-        const auto at = force.begin();
+constexpr std::size_t ends = 200; // rows: the observer settles
+constexpr double least_position = -5, most_position = 125;
+
+/// The smallest and the largest force of each piece of time: no peak is lost.
+curve in_time(const std::string& name, const record& r, std::size_t pieces) {
+    curve c(name);
+    const std::size_t rows = r.force.size() - 2 * ends;
+    for (std::size_t i = 0; i < pieces; ++i) {
+        const auto at = r.force.begin();
         const auto [least, most] =
-            std::minmax_element(at + static_cast<std::ptrdiff_t>(from), at + static_cast<std::ptrdiff_t>(to));
+            std::minmax_element(at + static_cast<std::ptrdiff_t>(ends + rows * i / pieces),
+                                at + static_cast<std::ptrdiff_t>(ends + rows * (i + 1) / pieces));
         for (const auto one : {std::min(least, most), std::max(least, most)})
-            in_time.add(static_cast<double>(one - at) * period, *one);
+            c.add(static_cast<double>(one - at) * period, *one);
     }
-    for (std::size_t i = 0; i < dots; ++i) { // of every piece of time one row and the row of the largest force
-        const auto [from, to] = bucket(i, dots);
-        std::size_t largest = from;
-        for (std::size_t k = from; k < to; ++k)
-            if (std::abs(force[k]) > std::abs(force[largest])) largest = k;
-        for (const std::size_t k : {(from + to) / 2, largest}) {
-            over_velocity.add(1e3 * velocity[k], force[k]);
-            over_position.add(1e3 * axis.position[k], force[k]);
-        }
+    return c;
+}
+
+/// Of every step of x some rows, evenly over those that are in it, and the one of the largest force: slow and
+/// fast motion, short and long, have as many.
+curve dots_over(const std::string& name, const record& r, const std::vector<double>& x, double low, double high,
+                std::size_t each) {
+    constexpr std::size_t steps = 60;
+    std::vector<std::vector<std::size_t>> rows(steps);
+    for (std::size_t k = ends; k + ends < x.size(); ++k)
+        if (x[k] > low && x[k] < high)
+            rows[static_cast<std::size_t>(static_cast<double>(steps) * (x[k] - low) / (high - low))].push_back(
+                k);
+    curve c(name, block_pictures::points);
+    const auto size = [&](std::size_t k) { return std::abs(r.force[k]); };
+    for (const auto& in : rows) {
+        if (in.empty()) continue;
+        std::vector<std::size_t> some{*std::max_element(
+            in.begin(), in.end(), [&](std::size_t a, std::size_t b) { return size(a) < size(b); })};
+        for (std::size_t i = 0; i < each; ++i) some.push_back(in[(2 * i + 1) * in.size() / (2 * each)]);
+        std::sort(some.begin(), some.end());
+        some.erase(std::unique(some.begin(), some.end()), some.end());
+        for (const std::size_t k : some) c.add(x[k], r.force[k]);
     }
-    std::vector<double> sizes;
-    for (std::size_t k = ends; k + ends < log.samples; ++k) sizes.push_back(std::abs(force[k]));
-    double most = 20; // one tick above and one below zero
-    for (const double round : {50.0, 100.0, 200.0, 500.0, 1000.0})
-        if (most < quantile(sizes, 0.998)) most = round;
-    const auto panel = [&](const char* below, curve c, double low, double high) {
-        auto p = block_pictures::between(block_pictures::over(below, "force [N]", {std::move(c)}), -1.05 * most,
-                                         1.05 * most);
+    return c;
+}
+
+block_pictures::picture drawn(const sight& s, const record& good) {
+    const record bad = s.change ? recorded(s) : good;
+    double largest = 0;
+    for (std::size_t k = ends; k + ends < bad.force.size(); ++k)
+        largest = std::max(largest, std::abs(bad.force[k]));
+    const double most = std::max(1.08 * largest, 20.0);
+    const auto panel = [&](const char* below, std::vector<block_pictures::line> lines, double low,
+                           double high) {
+        auto p =
+            block_pictures::between(block_pictures::over(below, "force [N]", std::move(lines)), -most, most);
         p.x_range = std::pair{low, high};
         return p;
     };
-    return block_pictures::of(std::string("Residual force of ") + s.title,
-                              {panel("time [s]", in_time, 0, static_cast<double>(log.samples) * period),
-                               panel("velocity [mm/s]", over_velocity, -270, 270),
-                               panel("position [mm]", over_position, -5, 125)});
+    const auto both = [&](const auto& draw) {
+        std::vector<block_pictures::line> lines{draw(s.change ? s.title : "", bad, 3)};
+        if (s.change) lines.push_back(draw("a machine as described", good, 1));
+        return lines;
+    };
+    const auto over = [&](std::vector<double> record::*x, double low, double high) {
+        return both([=](const std::string& name, const record& r, std::size_t each) {
+            return dots_over(name, r, r.*x, low, high, each);
+        });
+    };
+    return block_pictures::of(
+        std::string("Residual force of ") + s.title,
+        {panel("time [s]", both([](const std::string& name, const record& r, std::size_t each) {
+                   return in_time(name, r, 80 + 80 * each);
+               }),
+               0, static_cast<double>(good.force.size()) * period),
+         panel("velocity [mm/s]", over(&record::velocity, -s.fastest, s.fastest), -s.fastest, s.fastest),
+         panel("position [mm]", over(&record::position, least_position, most_position), least_position,
+               most_position)});
+}
+
+block_pictures::picture motion_of(const record& r) {
+    curve velocity(""), position("");
+    for (std::size_t k = 0; k < r.position.size(); k += 8) {
+        velocity.add(static_cast<double>(k) * period, r.velocity[k]);
+        position.add(static_cast<double>(k) * period, r.position[k]);
+    }
+    auto first = block_pictures::over("", "velocity [mm/s]", {velocity}),
+         second = block_pictures::over("time [s]", "position [mm]", {position});
+    for (auto* p : {&first, &second})
+        p->x_range = std::pair{0.0, static_cast<double>(r.position.size()) * period};
+    return block_pictures::of("The motion of all pictures of the gallery", {first, second});
+}
+
+bool write(const std::filesystem::path& path, const block_pictures::picture& p) {
+    std::ofstream file(path, std::ios::binary);
+    file << block_pictures::svg_file(p).text();
+    if (file.flush()) return true;
+    std::cerr << "cannot write " << path.string() << '\n';
+    return false;
 }
 
 } // namespace
@@ -172,13 +243,9 @@ int main(int count, char** words) {
     }
     const std::filesystem::path folder = words[1];
     std::filesystem::create_directories(folder);
-    for (const sight& s : sights) {
-        std::ofstream file(folder / (std::string(s.name) + ".svg"), std::ios::binary);
-        file << block_pictures::svg_file(drawn(s)).text();
-        if (!file.flush()) {
-            std::cerr << "cannot write into " << folder.string() << '\n';
-            return 1;
-        }
-    }
+    const record good = recorded(sights[0]);
+    if (!write(folder / "motion.svg", motion_of(good))) return 1;
+    for (const sight& s : sights)
+        if (!write(folder / (std::string(s.name) + ".svg"), drawn(s, good))) return 1;
     return 0;
 }

@@ -188,7 +188,7 @@ inline std::string html_report(const machine_analysis& m) {
                                 escape(f.name), escape(f.value), escape(f.says));
         sections += fmt::format(
             "<section id=\"axis-{0}\" data-axis-name=\"{0}\"><h2>Axis {0}</h2>\n<p>{1}: {2}.</p>\n<div "
-            "class=\"wide\"><table class=\"figures\"><tbody>\n{3}</tbody></table></div>\n<div "
+            "class=\"wide\"><table class=\"figures worded\"><tbody>\n{3}</tbody></table></div>\n<div "
             "class=\"pair\">{4}</div></section>\n",
             a.name, escape(a.law), escape(state_of(a)), rows, axis_pictures(a).figures());
     }

@@ -37,8 +37,8 @@ inline std::string claim(const difference& d) {
     return named(names, "or");
 }
 
-/// Of one value in both logs: "coulomb: 20.3 N (19.9 to 20.7) in the first, 24.1 N (23.8 to 24.4) in the
-/// second".
+/// Of one value in both logs: "Coulomb friction: 20.3 N (19.9 to 20.7) in the first, 24.1 N (23.8 to 24.4) in
+/// the second".
 inline std::vector<std::string> lines_of(const difference& d, const axis_voice& voice) {
     std::vector<std::string> out;
     const auto say = [&](const std::vector<parameter_estimate>& from, const std::string& key) {

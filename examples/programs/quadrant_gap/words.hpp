@@ -54,14 +54,24 @@ inline std::string named(const std::vector<std::string>& effects, std::string_vi
     return listed(names, last);
 }
 
-/// A machine key as label and SI unit: "stribeck_velocity_m_per_s" is {"stribeck velocity", "m/s"}.
+/// A machine key without its unit in words: names of people are capital, and a friction is called one.
+inline std::string words_of_stem(std::string_view stem) {
+    std::string text = spaced(stem);
+    for (const auto& [key, word] :
+         {std::pair{"stribeck", "Stribeck"}, {"coulomb", "Coulomb"}, {"gms ", "GMS "}})
+        if (text.starts_with(key)) text.replace(0, std::string_view(key).size(), word);
+    if (text == "Coulomb" || text == "static" || text == "viscous") text += " friction";
+    return text;
+}
+
+/// A machine key as label and SI unit: "stribeck_velocity_m_per_s" is {"Stribeck velocity", "m/s"}.
 inline std::pair<std::string, std::string> label_of(std::string_view key) {
     const auto [stem, unit] = parts_of(key);
     const machine_key* known = key_named(key);
     const std::string shown = known && known->percent   ? "%"
                               : stem.ends_with("phase") ? "phase"
                                                         : unit_text(unit);
-    return {spaced(stem), shown};
+    return {words_of_stem(stem), shown};
 }
 
 /// How a result speaks of one axis: in its own words, and in the unit of its command.
@@ -86,7 +96,7 @@ inline axis_voice voice_of(const diagnosis_result& d, const std::string& axis) {
     return {};
 }
 
-/// "coulomb: 20.3 N (19.9 to 20.7)"; one line a harmonic.
+/// "Coulomb friction: 20.3 N (19.9 to 20.7)"; one line a harmonic.
 inline std::vector<std::string> lines_of(const parameter_estimate& p, const axis_voice& voice = {}) {
     const auto [label, volts] = label_of(p.key);
     const std::string unit = voice.in_command_unit(volts);

@@ -7,7 +7,7 @@
 /// The result as one HTML file that needs no network and no script.
 namespace quadrant_latency {
 
-/// Share of the calls per step of a factor 2^(1/8), as a staircase.
+/// Share of the calls per step of a factor 2^(1/8), as a staircase. No call is drawn as half a call.
 inline quadrant_page::line histogram(const durations& d) {
     constexpr double steps = 8;
     quadrant_page::line l{d.name, {}, {}};
@@ -19,10 +19,17 @@ inline quadrant_page::line histogram(const durations& d) {
                                      d.us.begin());
         const double share = 100 * double(end - k) / double(d.us.size()),
                      none = 100 / (2 * double(d.us.size()));
-        for (const auto& [x, y] : {std::pair{from, none}, {from, share}, {to, share}, {to, none}}) {
+        const auto add = [&l](double x, double y) {
             l.x.push_back(x);
             l.y.push_back(y);
+        };
+        if (l.x.empty() || from > 1.001 * l.x.back()) {
+            if (!l.x.empty()) add(l.x.back(), none);
+            add(from, none);
         }
+        add(from, share);
+        add(to, share);
+        if (end == d.us.size()) add(to, none);
         k = end;
     }
     return l;
@@ -55,13 +62,13 @@ inline std::string page(const result& r, double period_us, bool can_draw) {
         "<header><p class=\"kind\">Cascade, notch, GMS friction, disturbance observer, repetitive memory with "
         "90 and 61 taps, both "
         "axes</p>\n<p class=\"title\">Does my loop fit my period?</p>\n<h1>{}</h1></header>\n<main>\n"
-        "<section><h2>Time of one call [µs]</h2>\n<table class=\"figures\"><thead><tr><th "
+        "<section><h2>Time of one call [µs]</h2>\n<table class=\"figures many\"><thead><tr><th "
         "scope=\"col\">Started</th><th "
         "scope=\"col\">calls</th><th scope=\"col\">median</th><th scope=\"col\">p99.9</th><th "
         "scope=\"col\">max</th>{}</tr></thead>"
         "\n<tbody>\n{}</tbody></table>\n<p class=\"hint\">Cold: {} MiB written before each call. Every {} µs: "
         "{} of {} calls ended "
-        "after the next tick.</p></section>\n<section><h2>How often how long</h2>\n<div "
+        "after the next tick.</p></section>\n<section><h2>How long, and how often</h2>\n<div "
         "class=\"pictures\"><figure><figcaption>Share "
         "of the calls in each step of 9 % in time; both scales logarithmic, so that a single outlier "
         "shows.</figcaption>{}</figure>"

@@ -7,6 +7,7 @@
 #include "match.hpp"
 
 #include <array>
+#include <utility>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -46,7 +47,10 @@ inline void name_differences(comparison_result& out, const std::array<beside::di
         beside::finding& f = found[k][way];
         beside::add_replayed(f.named, d, back, a.name);
         beside::add_replayed(f.named, back, d, a.name);
-        for (const beside::direction* one : {&d, &back}) beside::add_process(f.named, *one, a.name);
+        for (const beside::finding* one : {&std::as_const(f), &std::as_const(found[k][1 - way])}) {
+            f.named.insert(f.named.end(), one->process.begin(), one->process.end());
+            f.undecided.insert(f.undecided.end(), one->process_undecided.begin(), one->process_undecided.end());
+        }
         take_figures(a, f, d.found_in_second);
         a.likeness = likeness_of(f, d, found[k][1 - way], back, a.name, r);
         out.likeness = std::max(out.likeness, a.likeness);
@@ -116,7 +120,7 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         c.second = detail::named(out.second.axes, a.name)->calibrated;
         auto& f = found.emplace_back();
         if (axis.positions_only || axis.drive.closes()) {
-            for (std::size_t i = 0; i < 2; ++i) f[i] = beside::by_names(ways[i], a.name);
+            for (std::size_t i = 0; i < 2; ++i) f[i] = beside::by_names(ways[i], a.name, r);
         } else {
             tell("axis " + a.name + ": both ways", begun);
             beside::log_of_axis one(machine, axis, first, r), other(machine, axis, second, r);

@@ -44,6 +44,25 @@ inline double at_most_probable(const direction& d, const fit_of_log& reference, 
     return 1 - by_chance(all.names, rest / explained);
 }
 
+QUADRANT_DIAGNOSIS_DECL void find_process(finding& out, const direction& d, const std::string& axis,
+                                          const std::function<fit_of_log(const machine_description&)>& asked,
+                                          const rules& r) {
+    for (const cause& c : d.own->causes) {
+        if (c.axis != axis || !is_process(c.effect) || !is_claimed(c) || cause_in(*d.reference, axis, c.effect))
+            continue;
+        difference found = difference_of(d, c);
+        const auto with = with_some(d.of_reference, *d.own,
+                                    [&](const cause& x) { return x.axis == axis && is_process(x.effect); });
+        bool would_show = true;
+        if (asked && with) {
+            const fit_of_log joined = asked(*with);
+            found.loss = out.reference.total - joined.total;
+            would_show = found.loss >= r.margin && shrinks(out.reference, joined, r);
+        }
+        (would_show ? out.process : out.process_undecided).push_back(std::move(found));
+    }
+}
+
 QUADRANT_DIAGNOSIS_DECL finding by_scores(const direction& d, const std::string& axis, log_of_axis& reference,
                                           log_of_axis& own, const rules& r) {
     const auto of = [&](const machine_description& m) -> const axis_description& {
@@ -101,10 +120,12 @@ QUADRANT_DIAGNOSIS_DECL finding by_scores(const direction& d, const std::string&
         out.named.clear();
         out.score = score_with({});
     }
+    find_process(
+        out, d, axis, [&](const machine_description& m) { return reference.explained_by(of(m)); }, r);
     return out;
 }
 
-QUADRANT_DIAGNOSIS_DECL finding by_names(const direction& d, const std::string& axis) {
+QUADRANT_DIAGNOSIS_DECL finding by_names(const direction& d, const std::string& axis, const rules& r) {
     finding out;
     for (const cause& c : d.across.causes) {
         if (c.axis != axis || is_replayed(c.effect) || !is_claimed(c)) continue;
@@ -113,6 +134,7 @@ QUADRANT_DIAGNOSIS_DECL finding by_names(const direction& d, const std::string& 
         out.named.push_back(difference_of(d, c));
         out.score += out.named.back().probability;
     }
+    find_process(out, d, axis, {}, r);
     return out;
 }
 
@@ -131,13 +153,6 @@ QUADRANT_DIAGNOSIS_DECL void add_replayed(std::vector<difference>& to, const dir
         const auto has = [&](const difference& x) { return x.effect == c.effect; };
         if (std::none_of(to.begin(), to.end(), has)) to.push_back(difference_of(d, c));
     }
-}
-
-QUADRANT_DIAGNOSIS_DECL void add_process(std::vector<difference>& to, const direction& d,
-                                         const std::string& axis) {
-    for (const cause& c : d.own->causes)
-        if (c.axis == axis && is_process(c.effect) && is_claimed(c) && !cause_in(*d.reference, axis, c.effect))
-            to.push_back(difference_of(d, c));
 }
 
 inline verdict verdict_of(const diagnosis_result& d, const std::string& axis) {
