@@ -227,9 +227,8 @@ TEST_CASE("read_log: a wrong reading and a repeated one are left out, an impact 
     // The load stands still in the play until the motor meets it: 60 counts a sample from one sample to the next.
     for (const double after : {0.0, 0.3, 0.7})
         CHECK(count(logged([&](int k) {
-                  const double moved =
-                      std::max(0.0, 1.5e-5 * (k - 300 - after) + 1e-7 * std::pow(k - 300 - after, 2));
-                  return 2.5e-7 * std::round((k < 300 ? 0 : moved) / 2.5e-7);
+                  const double run = k < 300 ? 0 : std::max(0.0, k - 300 - after);
+                  return 2.5e-7 * std::round((1.5e-5 * run + 1e-7 * run * run) / 2.5e-7);
               })) == 0);
     CHECK(count(logged([](int k) { return 1e-4 * std::round(20 * std::sin(0.01 * k)); })) == 0); // coarse count
     CHECK(count(logged([](int k) { return 1e-3 * std::max(0.0, std::sin(0.02 * k)); })) == 0); // sticks at rest
