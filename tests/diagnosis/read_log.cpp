@@ -224,11 +224,11 @@ TEST_CASE("read_log: a wrong reading and a repeated one are left out, an impact 
     CHECK(count(stale) == 2);
     CHECK(stale.axes[0].left_out[331] == 1);
     CHECK(count(logged([&](int k) { return k < 300 ? 1e-4 * k : 0.03 - 8e-5 * (k - 300); })) == 0); // a bounce
-    // The load stands still in the play until the motor meets it: 60 counts a sample from one sample to the next.
-    for (const double after : {0.0, 0.3, 0.7})
+    // The load stands still in the play until the motor meets it: then 40 counts a sample at once.
+    for (const double after : {0.0, 0.1, 0.3})
         CHECK(count(logged([&](int k) {
                   const double run = k < 300 ? 0 : std::max(0.0, k - 300 - after);
-                  return 2.5e-7 * std::round((1.5e-5 * run + 1e-7 * run * run) / 2.5e-7);
+                  return 1e-6 * std::round(40.52 * run + 0.713 * run * run);
               })) == 0);
     CHECK(count(logged([](int k) { return 1e-4 * std::round(20 * std::sin(0.01 * k)); })) == 0); // coarse count
     CHECK(count(logged([](int k) { return 1e-3 * std::max(0.0, std::sin(0.02 * k)); })) == 0); // sticks at rest
