@@ -30,8 +30,9 @@ struct wrong_readings {
 
 /// Finds them. A reading is compared with the cubic through the two before it and the two after it. What motion
 /// and noise leave there is measured around it, robustly, so the limits follow from the record itself:
-/// - wrong: it departs by more than eight times that, and without it its neighbours agree with theirs (where
-///   the velocity jumps they do not);
+/// - wrong: it departs by more than eight times that, from the straight lines through the two before it and the
+///   two after it, too, and without it its neighbours agree with theirs (where the velocity jumps, the reading
+///   agrees with one of the lines, or its neighbours do not agree);
 /// - stale: it repeats the reading before it, the axis moved on by more than four times that and two counts,
 ///   and the next new reading makes up for it by a jump longer than the steps before and after.
 class reading_check {
@@ -130,7 +131,8 @@ private:
         for (std::size_t k = 2; k + 2 < n; ++k) {
             const double limit = 8 * std::max(usual[k], count_);
             const double here = off(k);
-            if (out_.bad[k] || !(std::abs(here) > limit) || beside_gap(k, span) || !largest_near(k, here))
+            if (out_.bad[k] || !(std::abs(here) > limit) || beside_gap(k, span) || !largest_near(k, here) ||
+                goes_on_from_one_side(k, limit))
                 continue;
             const double kept = x_[k];
             x_[k] -= here;
@@ -165,6 +167,15 @@ private:
         for (std::size_t j = std::max<std::size_t>(k, 4) - 2; j <= std::min(k + 2, n - 3); ++j)
             if (j != k && std::abs(off(j)) > std::abs(here)) return false;
         return true;
+    }
+
+    /// Whether the reading continues the motion before it, or leads to the motion after it: between the two the
+    /// velocity jumps, as where the motor meets the load across a play.
+    bool goes_on_from_one_side(std::size_t k, double limit) const {
+        const auto off_line = [&](std::size_t a, std::size_t b) {
+            return std::abs(x_[k] - x_[a] - (x_[b] - x_[a]) * (t_[k] - t_[a]) / (t_[b] - t_[a]));
+        };
+        return std::min(off_line(k - 1, k - 2), off_line(k + 1, k + 2)) < limit;
     }
 
     std::span<const double> t_;
