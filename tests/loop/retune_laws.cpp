@@ -157,7 +157,8 @@ TEST_CASE(
     const auto said = after_retune<law>(
         [](auto& r) {
             return law({.law = {.gain = v_per_m::from_value(r.decades(10, 1e4)),
-                                .integral_gain = v_per_ms::from_value(r.decades(1, 1e6))},
+                                .integral_gain = v_per_ms::from_value(r.decades(1, 1e6)),
+                                .derivative_gain = {}},
                         .gain = v_per_mps2::from_value(r.decades(1e-3, 1)),
                         .corner = r.decades(1, 900) * 1_Hz},
                        T);
