@@ -19,6 +19,7 @@ inline constexpr effect constant_force{
                          .rule = detail::rule::any_number,
                          .meaning = "added to the motor's force",
                          .at = member<&plant_description::constant_force_N>,
+                         .of = [](plant_model& p) -> double& { return p.constant_force; },
                          .tolerance = true}},
     .prior = {0.5, "gravity on a tilted axis and the offset of an amplifier are everyday"},
     .compensation = "a constant command",

@@ -34,25 +34,28 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> numbers_of_record(const plant_mod
 
 namespace detail {
 
-/// A number that moves by its tolerance, relative to its value; none where either is missing.
+/// A number that moves by its tolerance, relative to its value; none where either is missing. One that is not
+/// positive moves by sums, the others by ratios.
 struct within_tolerance {
     std::vector<parameter>& out;
     void operator()(std::string_view key, double& (*of)(plant_model&), double value, double relative) const {
-        if (!(value > 0) || !(relative > 0)) return;
+        if (value == 0 || !(relative > 0)) return;
         const double ratio = std::min(relative, 0.9);
         // Delay and gains of a drive's loops nearly stand for one another: what their slopes are wrong by must
         // be small beside what is left of them along that valley, or the fit stops where it reaches it.
         constexpr double of_loop = 1e-5;
-        out.push_back(
-            {.key = std::string(key),
-             .of = of,
-             .start = value,
-             .low = value * (1 - ratio),
-             .high = value * (1 + ratio),
-             .logarithmic = true,
-             .step = key.starts_with("drive.") ? of_loop : 1e-3,
-             .expected = std::log(value),
-             .spread = ratio / std::numbers::sqrt3}); // the standard deviation of a uniform inside the bounds
+        const double step = key.starts_with("drive.") ? of_loop : 1e-3, size = std::abs(value);
+        const bool by_ratio = value > 0;
+        out.push_back({.key = std::string(key),
+                       .of = of,
+                       .start = value,
+                       .low = value - ratio * size,
+                       .high = value + ratio * size,
+                       .logarithmic = by_ratio,
+                       .step = by_ratio ? step : step * size,
+                       .expected = by_ratio ? std::log(value) : value,
+                       // the standard deviation of a uniform inside the bounds
+                       .spread = (by_ratio ? ratio : ratio * size) / std::numbers::sqrt3});
     }
 };
 
