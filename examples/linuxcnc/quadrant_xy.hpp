@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-/// The whole loop of an xy-table for HAL: `xy_loop` with the boxes of `axis_parameters.hpp` on both axes, and the
-/// machine behind the pins as its table.
+/// The whole loop of an xy-table for HAL: `xy_loop` with the boxes of `axis_parameters.hpp` on both axes, and
+/// the machine behind the pins as its table.
 namespace hal {
 
 /// The table of an `xy_loop` that is a machine: its readings come in before the call, the commands are fetched
@@ -115,8 +115,8 @@ public:
 
     const wires& wire() const noexcept { return loop_.control(); }
 
-    /// The table is on when both axes are: one that has lost an encoder stops as a whole. Off: the loop goes along
-    /// and takes 0 for its last outputs, so that it begins without a bump, also on the move.
+    /// The table is on when both axes are: one that has lost an encoder stops as a whole. Off: the loop goes
+    /// along and takes 0 for its last outputs, so that it begins without a bump, also on the move.
     bool step(const pins& p) noexcept {
         const bool on = p.x.enable.get() && p.y.enable.get();
         fault_ = fault_ && on;
