@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// Maps from the headers that other programs write. Sources of the headers: ODrive's GUI (Plot.vue, exportCSV) and
-// its firmware's interface file; the manual of TwinCAT Scope (CSV export) and of its NC axis structure; LinuxCNC's
-// manual pages of halscope and halsampler.
+// Maps from the headers that other programs write. Sources of the headers: ODrive's GUI (Plot.vue, exportCSV)
+// and its firmware's interface file; the manual of TwinCAT Scope (CSV export) and of its NC axis structure;
+// LinuxCNC's manual pages of halscope and halsampler.
 #include <quadrant/diagnosis/import/propose_map.hpp>
 #include <quadrant/diagnosis/import/read_map.hpp>
 #include <quadrant/diagnosis/import_log.hpp>
@@ -88,8 +88,7 @@ TEST_CASE("propose_map: two columns that may be the same role are left to a pers
     CHECK(is_open(without, "which column is the command of axis0"));
 }
 
-TEST_CASE(
-    "propose_map: the shipped sample of ODrive is imported as its own map does it, but for the axis' name") {
+TEST_CASE("propose_map: ODrive's shipped sample is imported as by its own map, but for the axis' name") {
     const std::string text = shipped("odrive.csv");
     const auto guessed = import_log(read_import_map(propose_map(text, "a").map().dump(), "guess"), text, "a");
     const auto mapped = import_log(

@@ -7,8 +7,8 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// ODrive's GUI (Export): "time" [s], then property paths without the name of the board. Units by the firmware's
-/// interface: turns and N m, from 0.5 on (0.4 had counts).
+/// ODrive's GUI (Export): "time" [s], then property paths without the name of the board. Units by the
+/// firmware's interface: turns and N m, from 0.5 on (0.4 had counts).
 inline bool propose_odrive(proposed_map& out, std::string_view text, std::string_view file) {
     import_map::layout layout;
     foreign_lines lines(layout, text, file);

@@ -77,8 +77,8 @@ struct known_signal {
     bool is_measured = false;
 };
 
-/// Gives roles to the columns of one axis: of each role the first of the list that is there. `member` says which
-/// columns are of the axis.
+/// Gives roles to the columns of one axis: of each role the first of the list that is there. `member` says
+/// which columns are of the axis.
 template <class Member>
 void give_roles(proposed_map& out, std::string_view axis, std::span<const known_signal> known,
                 const Member& member) {
