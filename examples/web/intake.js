@@ -68,7 +68,7 @@ function ask_columns() {
     if (!name) return;
     const table = dropped.get(name);
     the('columns-why').textContent = table.tool
-        ? `${name} looks like a file of ${table.tool}. What its header says is filled in; it does not say: ${table.open.join('; ')}.`
+        ? `${name} looks like a file of ${table.tool}. What its header says is filled in${table.open.length ? `; it does not say: ${table.open.join('; ')}` : ''}.`
         : `${name} does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one.`;
     const option = (value, text = value.replaceAll('_', ' ')) => make('option', {value, textContent: text});
     the('columns').querySelector('tbody').replaceChildren(...table.columns.map((c, k) => {

@@ -107,7 +107,7 @@ TEST_CASE("propose_map: TwinCAT Scope: positions by the NC's names, units where 
     CHECK(of_role(p, "x", "reference")->number == 4);
     REQUIRE(p.open.size() == 1);
     CHECK(p.open[0] == "which column is the command of x, in V, A, N or Nm");
-    // With a reference a map can do without a command, where the drive takes positions: it is then read as it is.
+    // A map with a reference can do without a command, where the drive takes positions.
     const auto in = import_log(read_import_map(p.map().dump(), "guess"), scope("mm (Length)"), "scope.csv");
     CHECK(in.log.samples == 3);
     CHECK(in.log.axes[0].position[1] == doctest::Approx(0.75e-3));
