@@ -110,6 +110,10 @@ unwritten "$program" apply --machine m.json --diagnosis d.json --out applied.jso
 for what in mjcf linuxcnc drive compensation; do unwritten "$program" export --machine m.json --$what -; done
 unwritten "$program" init --log l.csv --unchecked --out - --mass 1 --force-constant 1
 unwritten "$program" init --log l.csv --unchecked --out begun.json --mass 1 --force-constant 1
+printf 'G21 G90 F3000\nG1 X30\nG64 P0.01\nG3 X30 Y0 I-30 J0\nG3 X30 Y0 I-30 J0\nM30\n' >circle.nc
+"$cnc" run -q --cnc "$root/examples/programs/quadrant_cnc/mill.json" --path circle.nc --log circle.csv
+for words in "" "--json -" "--report -"; do unwritten "$program" circle --log circle.csv $words; done
+unwritten "$program" import --propose "$root/examples/import/odrive.csv" -
 mkdir -p full/a
 cp m.json full/machine.json
 cp l.csv full/a/log.csv
