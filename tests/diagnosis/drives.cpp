@@ -240,6 +240,40 @@ TEST_CASE("position drive: nobody is blamed on a healthy machine" * doctest::tes
     m.position_gain = 40;
     CHECK(blames_nobody(diagnosed(linear(coulomb, of_position), recorded(takes::set_points, m))));
 }
+TEST_CASE(
+    "position drive: a machine anywhere inside its tolerances is blamed for nothing, although delay and gains "
+    "nearly stand for one another" *
+    doctest::test_suite("all")) {
+    auto file = linear(coulomb, of_position);
+    file.replace(file.find("1e-6"), 4, "5e-8");
+    for (const double side : {-1, 1}) {
+        auto m = pi_drive;
+        m.count = 5e-8;
+        m.position_gain = 40 * (1 + 0.01 * side);
+        m.gain *= 1 - 0.01 * side;
+        m.integral *= 1 + 0.02 * side;
+        m.delay *= 1 - 0.05 * side;
+        m.mass *= 1 + 0.02 * side;
+        m.viscous *= 1 - 0.15 * side;
+        CAPTURE(side);
+        CHECK(blames_nobody(diagnosed(file, recorded(takes::set_points, m))));
+    }
+}
+TEST_CASE("position drive with an integral: a process force is found without a mean, which the integral hides" *
+          doctest::test_suite("all")) {
+    auto m = pi_drive;
+    m.position_gain = 40;
+    m.count = 5e-8;
+    for (int k = 0; k < 10000; ++k) m.added.push_back(5 * std::sin(2 * std::numbers::pi * 21 * 1e-3 * k));
+    auto file = linear(coulomb, of_position);
+    file.replace(file.find("1e-6"), 4, "5e-8");
+    const auto d = diagnosed(file, recorded(takes::set_points, m));
+    const cause* process = only_claim(d, "cutting_force");
+    REQUIRE(process);
+    CHECK(d.verdict == verdict::explained);
+    CHECK(value_of(*process, "process.force_N") == doctest::Approx(5).epsilon(0.05));
+    CHECK(value_of(*process, "process.mean_N") == 0);
+}
 TEST_CASE("velocity drive behind LinuxCNC's pid: with the values to type the following error falls as "
           "forecast, to 15 %" *
           doctest::test_suite("all")) {

@@ -10,8 +10,8 @@ namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Force periodic in time: mean + sum of N_i sin(2 pi i f t + phase_i), a turning cutter or spindle. Joins the
 /// force. Shows as lines in the frequency of the residual that no motion shifts. The mean cannot be
-/// distinguished from a constant force; the phase begins anew with each log. The fundamental up to three times
-/// the corner: above, rounding of the encoder makes limit cycles.
+/// distinguished from a constant force, and the integral of a drive's loop hides it; the phase begins anew with
+/// each log. The fundamental up to three times the corner: above, rounding of the encoder makes limit cycles.
 inline constexpr effect cutting_force{
     .name = "cutting_force",
     .label = "cutting force",
@@ -81,6 +81,8 @@ inline constexpr effect cutting_force{
             out.push_back(detail::repeating<detail::cutting_force_harmonics, 8>(
                 "process.fundamental_Hz", "process.force_N", period, duration, most));
         }
+        // Where a drive's integral begins stands for any mean, unless what the drive gives was measured.
+        if (s.leader.drive.has_integral() && !s.record.taps_force(s.leader.drive)) return out;
         for (auto& start : out)
             start.push_back({.key = "process.mean_N",
                              .of = [](plant_model& p) -> double& { return p.cutting_mean; },

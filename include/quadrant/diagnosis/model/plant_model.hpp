@@ -93,6 +93,8 @@ struct plant_model {
     double static_force(double position) const {
         return constant_force - spring * position - weight() * std::sin(position - gravity.phase);
     }
+    /// Force that keeps the load at rest at a position, a process running [N].
+    double holding_force(double position) const { return -(static_force(position) + cutting_mean); }
 
     plant_model() = default;
     /// `give`: of a contact that is not described, or gives way by less, record_scales::give() [m].

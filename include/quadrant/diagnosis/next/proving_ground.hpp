@@ -66,7 +66,7 @@ public:
         log.name = axis_.name;
         log.reference = m.reference;
         const double start = m.reference[0];
-        const double held = -(plant.static_force(start) + plant.cutting_mean) / plant.force_constant;
+        const double held = plant.holding_force(start) / plant.force_constant;
         log.position.assign(m.reference.size(), start);
         log.command.assign(m.reference.size(), held);
         auto run =
@@ -115,7 +115,7 @@ private:
     axis_log driven_record(plant_model plant, const planned_motion& m) const {
         const std::size_t n = m.reference.size();
         const double start = m.reference[0];
-        plant.drive.start_force = -(plant.static_force(start) + plant.cutting_mean); // it stands there
+        plant.drive.start_force = plant.holding_force(start); // it stands there
         const bool asks = axis_.drive.kind == drive_kind::velocity;
         axis_log log;
         log.name = axis_.name;

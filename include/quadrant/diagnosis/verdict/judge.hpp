@@ -26,7 +26,8 @@ inline verdict judge(const axis_case& c, const std::vector<cause>& causes) {
         return as_given ? verdict::no_gap : verdict::within_tolerance;
     }
     const bool blamed = std::any_of(causes.begin(), causes.end(), claimed);
-    if (!blamed && !c.count_unnamed && !c.controller_open() && c.calibrated_within_tolerances())
+    if (!blamed && !c.count_unnamed && !c.controller_open() &&
+        (c.calibrated_within_tolerances() || c.calibrated_within_its_laws()))
         return verdict::within_tolerance;
     const bool helps =
         std::any_of(causes.begin(), causes.end(), [](const cause& x) { return x.shrink.value > 0.2; });

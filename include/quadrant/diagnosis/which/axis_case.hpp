@@ -33,6 +33,9 @@ private:
     axis_record record_of(double period, const exclusions& excluded, const progress& tell, held_by how,
                           const axis_case* before, std::optional<tap_reading> tap);
     std::optional<plant_model> nearest_; ///< of that search
+    /// How far apart machines inside the owner's tolerances are on the hold-out log's motion.
+    const std::vector<double>& cloud_of_second() const;
+    mutable std::vector<double> cloud_of_second_{}; ///< found when it is asked for
     bool within_its_laws(const axis_record& r, const std::vector<plant_model>& plants) const;
     bool within_its_laws_on_both(std::vector<plant_model> plants) const;
     /// This model, the calibrated machine, and this model with stronger friction.

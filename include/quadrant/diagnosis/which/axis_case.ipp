@@ -80,8 +80,9 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     claims = path.size() - 1;
     noise = models.noise(best());
     const auto ms = detail::beside_own_noise(best().fit.ms, record, log, best().fit.plant);
-    settled =
-        models.settled(ms, record.score, noise) && (best().effects.empty() || models.near_its_laws(best()));
+    const auto cloud = [&]() -> const std::vector<double>& { return models.tolerance_cloud(); };
+    settled = models.settled(ms, record.score, noise, cloud) &&
+              (best().effects.empty() || models.near_its_laws(best()));
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
     if (tested_apart()) settled_on_second = second_log(best()).settled;
 }
@@ -89,11 +90,11 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
 QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_tolerances() const {
     const candidate& m = path.front();
     if (m.stops_at_a_tolerance()) return false; // it would have left them
-    if (!models.within_tolerances(m.fit.ms, record.score, noise)) return false;
+    if (!models.within_tolerances(m.fit.ms, record.score, models.tolerance_cloud(), noise)) return false;
     if (!tested_apart()) return true;
     fit_result there{.plant = restarted(m.fit.plant, *second), .x = Eigen::VectorXd(0)};
     fitter(second->observer, second->score).evaluate(there);
-    return models.within_tolerances(there.ms, second->score, noise);
+    return models.within_tolerances(there.ms, second->score, cloud_of_second(), noise);
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws(const axis_record& r,
@@ -121,7 +122,7 @@ axis_case::beside_stronger_friction(const plant_model& m) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws() const {
-    if (best().effects.empty() || record.replayed() || !models.near_its_laws(best())) return false;
+    if (best().effects.empty() || record.closed() || !models.near_its_laws(best())) return false;
     auto plants = beside_stronger_friction(best().fit.plant);
     if (!settled && !within_its_laws(record, plants)) return false;
     if (!tested_apart() || settled_on_second) return true;
@@ -137,12 +138,12 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::within_its_laws_on_both(std::vector<plan
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::calibrated_within_its_laws() const {
-    return !record.replayed() && models.near_its_laws(path.front()) &&
+    return !record.closed() && models.near_its_laws(path.front()) &&
            within_its_laws_on_both(beside_stronger_friction(path.front().fit.plant));
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::is_error_of_its_law(const effect& e) const {
-    if (!e.of_described_friction || best().effects.size() < 2 || record.replayed()) return false;
+    if (!e.of_described_friction || best().effects.size() < 2 || record.closed()) return false;
     const candidate without = models.without(best(), &e);
     auto plants = beside_stronger_friction(without.fit.plant);
     plants[1] = plants[0]; // of friction's law alone: what the other causes are wrong by is no friction
@@ -151,7 +152,9 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::is_error_of_its_law(const effect& e) con
 
 QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
     const candidate& m = applied();
-    return claims > 0 && models.settled(m) && models.near_its_laws(m);
+    if (claims == 0 || !models.near_its_laws(m)) return false;
+    return models.settled(m) ||
+           (!record.closed() && within_its_laws_on_both(beside_stronger_friction(m.fit.plant)));
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double>
@@ -190,7 +193,14 @@ QUADRANT_DIAGNOSIS_DECL axis_case::on_second axis_case::second_log(const candida
         *m.holdout = {-there.objective, std::move(there.ms), rms(residual_of(*second, there.plant, a))};
     }
     const candidate::on_holdout& known = **m.holdout;
-    return {known.score, models.settled(known.ms, second->score, noise), known.force};
+    const auto cloud = [&]() -> const std::vector<double>& { return cloud_of_second(); };
+    return {known.score, models.settled(known.ms, second->score, noise, cloud), known.force};
+}
+
+QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_case::cloud_of_second() const {
+    if (cloud_of_second_.empty())
+        cloud_of_second_ = models.tolerance_cloud(*second, restarted(path.front().fit.plant, *second));
+    return cloud_of_second_;
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double>

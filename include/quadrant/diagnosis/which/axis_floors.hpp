@@ -25,16 +25,24 @@ public:
     /// In all channels: of a model that leaves noise alone it is below rules.structure.
     double structure(const candidate& c, double sigma) const;
     /// Whether a channel holds so little above the noise that nobody would call it a gap: small beside what
-    /// machines inside the owner's tolerances leave there.
-    bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, std::size_t i) const;
+    /// machines inside the owner's tolerances leave there, which is the channel's entry in the `cloud`.
+    bool immaterial(const std::vector<double>& ms, const channel& c, double sigma, double cloud) const;
+    bool immaterial(const candidate& c) const;
     /// Whether no channel holds more above the noise than machines inside the owner's tolerances differ by
     /// there.
-    bool within_tolerances(const std::vector<std::vector<double>>& ms, const scoring& score,
-                           double sigma) const;
-    bool immaterial(const candidate& c) const;
-    /// Whether every channel is at the floor: noise, or nothing that would matter. Of a model on this record
-    /// or, with its mean squares there, on another.
-    bool settled(const std::vector<std::vector<double>>& ms, const scoring& score, double sigma) const;
+    static bool within_tolerances(const std::vector<std::vector<double>>& ms, const scoring& score,
+                                  const std::vector<double>& cloud, double sigma);
+    /// Whether every channel is at the floor: noise, or nothing that would matter. `cloud()`: of the record
+    /// that these mean squares are of, asked for where something is left.
+    template <class Cloud>
+    bool settled(const std::vector<std::vector<double>>& ms, const scoring& score, double sigma,
+                 const Cloud& cloud) const {
+        for (std::size_t i = 0; i < ms.size(); ++i)
+            if (structure(ms[i], score.channels[i], sigma) >= rules_.structure &&
+                !immaterial(ms[i], score.channels[i], sigma, cloud()[i]))
+                return false;
+        return true;
+    }
 
     /// The residual force that noise and rounding alone leave [N].
     double floor_force(const candidate& c) const { return floor_force(noise(c)); }
@@ -43,7 +51,7 @@ public:
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const;
 
-    bool settled(const candidate& c) const { return settled(c.fit.ms, record_.score, noise(c)); }
+    bool settled(const candidate& c) const;
 
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what
     /// causes do.
@@ -57,6 +65,8 @@ public:
     /// The gains of a drive's loops count where what the drive gives was measured: they do not move the axis
     /// along its path.
     const std::vector<double>& tolerance_cloud() const;
+    /// The same on another record, on which the calibrated machine begins like this.
+    std::vector<double> tolerance_cloud(const axis_record& r, const plant_model& calibrated) const;
 
     /// One more effect earns its place: on held-out motion, by more than a hair, and in newtons.
     bool pays(const candidate& more, const candidate& less) const;
@@ -74,7 +84,8 @@ protected:
     using axis_models::axis_models;
 
     /// By how much the innovations of twenty such machines differ from those of the calibrated one [m].
-    std::vector<std::vector<double>> differences_of_like_machines(bool with_loops) const;
+    std::vector<std::vector<double>>
+    differences_of_like_machines(const axis_record& r, const plant_model& calibrated, bool with_loops) const;
 
     /// Mean square of a channel above what it sees of the noise [m^2].
     static double left_in(const std::vector<double>& ms, const channel& c, double sigma);

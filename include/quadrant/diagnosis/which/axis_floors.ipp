@@ -41,31 +41,28 @@ QUADRANT_DIAGNOSIS_DECL double axis_floors::structure(const candidate& c, double
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::immaterial(const std::vector<double>& ms, const channel& c,
-                                                     double sigma, std::size_t i) const {
-    return left_in(ms, c, sigma) < square(rules_.immaterial) * tolerance_cloud()[i];
+                                                     double sigma, double cloud) const {
+    return left_in(ms, c, sigma) < square(rules_.immaterial) * cloud;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::within_tolerances(const std::vector<std::vector<double>>& ms,
-                                                            const scoring& score, double sigma) const {
-    for (std::size_t i = 0; i < std::min(ms.size(), tolerance_cloud().size()); ++i)
-        if (!(left_in(ms[i], score.channels[i], sigma) < tolerance_cloud()[i])) return false;
+                                                            const scoring& score,
+                                                            const std::vector<double>& cloud, double sigma) {
+    for (std::size_t i = 0; i < ms.size(); ++i)
+        if (!(left_in(ms[i], score.channels[i], sigma) < cloud[i])) return false;
     return true;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::immaterial(const candidate& c) const {
     const double sigma = noise(c);
     for (std::size_t i = 0; i < c.fit.ms.size(); ++i)
-        if (!immaterial(c.fit.ms[i], record_.score.channels[i], sigma, i)) return false;
+        if (!immaterial(c.fit.ms[i], record_.score.channels[i], sigma, tolerance_cloud()[i])) return false;
     return true;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const std::vector<std::vector<double>>& ms,
-                                                  const scoring& score, double sigma) const {
-    for (std::size_t i = 0; i < ms.size(); ++i)
-        if (structure(ms[i], score.channels[i], sigma) >= rules_.structure &&
-            (i >= record_.score.channels.size() || !immaterial(ms[i], score.channels[i], sigma, i)))
-            return false;
-    return true;
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const candidate& c) const {
+    return settled(c.fit.ms, record_.score, noise(c),
+                   [this]() -> const std::vector<double>& { return tolerance_cloud(); });
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::floor_force(double noise) const {
@@ -93,10 +90,10 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::near_its_laws(const candidate& c) cons
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<double>>
-axis_floors::differences_of_like_machines(bool with_loops) const {
+axis_floors::differences_of_like_machines(const axis_record& r, const plant_model& calibrated,
+                                          bool with_loops) const {
     std::mt19937_64 random(20080901);
-    std::vector<plant_model> plants(21,
-                                    calibrated_.fit.plant); // the first is the calibrated machine itself
+    std::vector<plant_model> plants(21, calibrated); // the first is the calibrated machine itself
     for (std::size_t j = 1; j < plants.size(); ++j)
         for (const auto& p : calibrated_.fit.parameters) {
             const double low = p.to_fit(p.low), high = p.to_fit(p.high);
@@ -105,23 +102,29 @@ axis_floors::differences_of_like_machines(bool with_loops) const {
                 p.of(plants[j]) = p.from_fit(low + share * (high - low));
         }
     std::vector<std::vector<double>> e(plants.size());
-    record_.observer.run(plants, e);
+    r.observer.run(plants, e);
     for (std::size_t j = 1; j < e.size(); ++j)
         for (std::size_t k = 0; k < e[j].size(); ++k) e[j][k] -= e.front()[k];
     e.erase(e.begin());
     return e;
 }
 
-QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {
-    if (!cloud_.empty()) return cloud_;
+QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_floors::tolerance_cloud(const axis_record& r,
+                                                                         const plant_model& calibrated) const {
+    std::vector<double> out;
     std::array<std::vector<std::vector<double>>, 2> of; // on the motion alone; with the loops of the drive
-    for (const channel& c : record_.score.channels) {
+    for (const channel& c : r.score.channels) {
         auto& machines = of[c.of_tap];
-        if (machines.empty()) machines = differences_of_like_machines(c.of_tap);
+        if (machines.empty()) machines = differences_of_like_machines(r, calibrated, c.of_tap);
         std::vector<double> sizes;
         for (const auto& e : machines) sizes.push_back(square(rms(detail::seen(e, c))));
-        cloud_.push_back(quantile(sizes, 0.95));
+        out.push_back(quantile(sizes, 0.95));
     }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL const std::vector<double>& axis_floors::tolerance_cloud() const {
+    if (cloud_.empty()) cloud_ = tolerance_cloud(record_, calibrated_.fit.plant);
     return cloud_;
 }
 

@@ -12,7 +12,7 @@ namespace quadrant::inline v0::diagnosis {
 inline plant_model restarted(plant_model plant, const axis_record& record) {
     plant.drive.off_from = plant.drive.off_until = 0;
     if (plant.drive.has_integral()) {
-        plant.drive.start_force = -plant.static_force(record.position[0]); // what a drive at rest holds
+        plant.drive.start_force = plant.holding_force(record.position[0]); // what a drive at rest holds
         // What drifts says nothing of where it began.
         if (record.observer.drift_pole == 1)
             plant = fitter(record.observer, record.score)
