@@ -67,10 +67,12 @@ function ask_columns() {
     the('columns').hidden = !name;
     if (!name) return;
     const table = dropped.get(name);
-    the('columns-why').textContent = `${name} does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one.`;
+    the('columns-why').textContent = table.tool
+        ? `${name} looks like a file of ${table.tool}. What its header says is filled in${table.open.length ? `; it does not say: ${table.open.join('; ')}` : ''}.`
+        : `${name} does not name its columns as our logs do (t_s, x_pos_m, ...). Position, command and time are needed; a reference if there is one.`;
     const option = (value, text = value.replaceAll('_', ' ')) => make('option', {value, textContent: text});
     the('columns').querySelector('tbody').replaceChildren(...table.columns.map((c, k) => {
-        const title = table.named ? c.name : `column ${k + 1} (${c.name} in the first row)`;
+        const title = c.name && table.named ? c.name : `column ${k + 1}${c.name ? ` (${c.name} in the first row)` : ''}`;
         const cell = (tag, what, properties = {}, ...children) => make('td', {}, (() => {
             const e = make(tag, properties, ...children);
             e.setAttribute('aria-label', `${what} of ${title}`);
@@ -79,21 +81,20 @@ function ask_columns() {
         const row = make('tr', {}, make('th', {scope: 'row', textContent: title}),
             cell('select', 'meaning', {}, option('', 'left out'), option('time'), ...table.roles.map(r => option(r)), option('measured', 'command, measured behind the amplifier')),
             cell('select', 'unit', {}, option('', '-'), ...table.units.map(u => option(u))),
-            cell('input', 'axis', {type: 'text', value: 'x', size: 4}));
+            cell('input', 'axis', {type: 'text', value: c.axis, size: 4}));
         const [role, unit] = row.querySelectorAll('select');
-        role.value = c.time ? 'time' : '';
+        role.value = c.time ? 'time' : c.role;
         unit.value = c.unit;
         return row;
     }));
 }
 
 function map_by_hand(table) {
-    const map = {schema: 'quadrant.import/1', separator: table.separator, decimal: table.decimal, axes: {}};
-    if (table.named) map.header = 1;
+    const map = {schema: 'quadrant.import/1', ...table.layout, axes: {}};
     [...the('columns').querySelectorAll('tbody tr')].forEach((row, k) => {
         const [role, unit] = [...row.querySelectorAll('select')].map(s => s.value), axis = row.querySelector('input').value.trim();
         if (!role) return;
-        const column = {column: table.named ? table.columns[k].name : k + 1, ...(unit ? {unit} : {})};
+        const column = {column: table.columns[k].column, ...(unit ? {unit} : {})};
         if (role === 'time') map.time = column;
         else if (role === 'measured') (map.axes[axis] ||= {}).command = {...column, is: 'measured'};
         else (map.axes[axis] ||= {})[role] = column;

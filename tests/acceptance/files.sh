@@ -110,6 +110,29 @@ for sample in halsampler.txt odrive.csv twincat_scope.csv; do
     "$program" import --map "$root/examples/import/${sample%.*}.map.json" "$root/examples/import/$sample" "${sample%.*}.csv"
 done
 head -n 1 odrive.csv | grep -qx 't_s,c_ref_rad,c_pos_rad,c_cmd_Nm'
+# Without a map: what the header says is taken, told, and can be had as a map; what it does not say is asked for.
+"$program" import "$root/examples/import/odrive.csv" guessed.csv </dev/null | grep -q 'guessed from the header, as ODrive writes it'
+head -n 1 guessed.csv | grep -qx 't_s,axis0_ref_rad,axis0_pos_rad,axis0_cmd_Nm'
+"$program" import --propose "$root/examples/import/odrive.csv" odrive.map.json >said.txt
+"$program" import --quiet --map odrive.map.json "$root/examples/import/odrive.csv" mapped.csv
+cmp guessed.csv mapped.csv
+refuses 'of TwinCAT Scope, which does not say: which column is the command of x' import "$root/examples/import/twincat_scope.csv" l2.csv
+refuses 'of halsampler, which does not say: the period' import "$root/examples/import/halsampler.txt" l2.csv
+refuses 'bring it in first, with "quadrant-gap import' init --log "$root/examples/import/odrive.csv" --out m2.json
+"$program" import --propose "$root/examples/import/twincat_scope.csv" scope.map.json | grep -q 'To put in: the unit of MAIN.AxisY.NcToPlc.ActPos'
+refuses '"?" is not a unit' import --map scope.map.json "$root/examples/import/twincat_scope.csv" l2.csv
+python3 - <<'END'
+import json
+m = json.load(open("scope.map.json"))
+for role in ("position", "reference"):
+    m["axes"]["x"][role]["unit"] = "mm"
+m["axes"]["x"]["command"] = {"column": "MAIN.nTorqueY", "unit": "A", "scale": 0.0045}
+json.dump(m, open("scope.map.json", "w"))
+END
+"$program" import --quiet --map scope.map.json "$root/examples/import/twincat_scope.csv" scope.csv
+tail -n +2 twincat_scope.csv >a.csv
+tail -n +2 scope.csv | cmp - a.csv
+refuses 'is not as ODrive, TwinCAT Scope, halscope or halsampler write' import --propose halsampler.csv l2.json
 sed 300d "$root/examples/import/halsampler.txt" >lost.txt
 "$program" import --map "$root/examples/import/halsampler.map.json" lost.txt l.csv | grep -q '1 rows are missing in 1 places'
 sed 's/"unit": "V"/"unit": "V", "scale": -1/' "$root/examples/import/halsampler.map.json" >turned.json

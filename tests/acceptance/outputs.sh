@@ -79,13 +79,53 @@ refuses 'cannot both be written to it' init --log l.csv --out begun.md --mass 1 
 cmp from_output.csv kept.csv
 grep -q 'rows, sample period' words.txt
 "$program" simulate --machine m.json --log l.csv --json - 2>/dev/null | python3 -m json.tool >/dev/null
-# A failed write of standard output is an error code.
-for arguments in "--help" "import --map $map $raw -" "simulate --machine m.json --log l.csv"; do
+# A failed write of standard output is the exit code 1, with one line: of every subcommand, with much and with little to
+# write, files and words.
+"$program" diagnose --quiet --fast --machine m.json --log l.csv --json d.json
+unwritten() { # PROGRAM ARGUMENTS...
     code=0
-    "$program" $arguments >/dev/full 2>said.txt || code=$?
-    [ $code != 0 ] || fail "$arguments: exit code 0 though standard output is full"
-    grep -q 'standard output' said.txt || fail "$arguments: does not say that standard output failed: $(cat said.txt)"
+    "$@" >/dev/full 2>said.txt || code=$?
+    shift
+    [ $code = 1 ] || fail "$*: exit code $code, not 1, though standard output is full: $(cat said.txt)"
+    [ "$(grep -c 'standard output cannot be written$' said.txt)" = 1 ] ||
+        fail "$*: does not say once that standard output failed: $(cat said.txt)"
+}
+unwritten "$program" --help
+unwritten "$program" --version
+unwritten "$program" diagnose --help
+unwritten "$program" import --map "$map" "$raw" -
+for words in "" "--json -" "--report -"; do
+    unwritten "$program" simulate --machine m.json --log l.csv $words
+    unwritten "$program" diagnose --fast --machine m.json --log l.csv $words
+    unwritten "$program" compare l.csv "$data/holdout.csv" --machine m.json $words
 done
+for words in "" "--json -"; do
+    unwritten "$program" forecast --machine m.json --diagnosis d.json --motion l.csv $words
+    unwritten "$program" compensate --machine m.json --diagnosis d.json --log l.csv $words
+    unwritten "$program" trial --machines 1 --no-forecast $words
+done
+unwritten "$program" compensate --machine m.json --diagnosis d.json --log l.csv --controller -
+unwritten "$program" apply --machine m.json --diagnosis d.json --out -
+unwritten "$program" apply --machine m.json --diagnosis d.json --out applied.json
+for what in mjcf linuxcnc drive compensation; do unwritten "$program" export --machine m.json --$what -; done
+unwritten "$program" init --log l.csv --unchecked --out - --mass 1 --force-constant 1
+unwritten "$program" init --log l.csv --unchecked --out begun.json --mass 1 --force-constant 1
+printf 'G21 G90 F3000\nG1 X30\nG64 P0.01\nG3 X30 Y0 I-30 J0\nG3 X30 Y0 I-30 J0\nM30\n' >circle.nc
+"$cnc" run -q --cnc "$root/examples/programs/quadrant_cnc/mill.json" --path circle.nc --log circle.csv
+for words in "" "--json -" "--report -"; do unwritten "$program" circle --log circle.csv $words; done
+unwritten "$program" import --propose "$root/examples/import/odrive.csv" -
+mkdir -p full/a
+cp m.json full/machine.json
+cp l.csv full/a/log.csv
+unwritten "$program" fleet --jobs 1 --out full_out full
+for words in "" "--json" "--report -"; do
+    unwritten "$cnc" run --cnc "$root/examples/programs/quadrant_cnc/mill.json" --path "$root/examples/path/diamond.nc" $words
+    unwritten "$cnc" analyse --cnc "$root/examples/programs/quadrant_cnc/mill.json" $words
+done
+unwritten "$cnc" run --cnc "$root/examples/programs/quadrant_cnc/mill.json" --path "$root/examples/path/diamond.nc" --log -
+# What goes to files is written all the same.
+unwritten "$program" simulate --machine m.json --log l.csv --json - --report written.html
+grep -q '</html>' written.html
 echo 'ok: standard output'
 
 # A folder that may not be written to, a folder in the place of a file: refused, nothing left.

@@ -7,5 +7,7 @@ cxx=$1 out=$2
 shift 2
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$out"
-$cxx "$@" -O0 -isystem "$here/stub" -I"$here/../../examples" "$here/components.cc" -o "$out/components"
-"$out/components"
+for name in components table; do
+    $cxx "$@" -O0 -isystem "$here/stub" -I"$here/../../examples" "$here/$name.cc" -o "$out/$name"
+    "$out/$name"
+done

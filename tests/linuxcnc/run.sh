@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: run.sh QUADRANT_GAP FOLDER [table|pid|panel]  (as root; QUADRANT_TESTS=all; else, or without LinuxCNC, says so: 77)
+# usage: run.sh QUADRANT_GAP FOLDER [table|pid|xy|panel]  (as root; QUADRANT_TESTS=all; else, or without LinuxCNC, says so: 77)
 # The components in LinuxCNC itself, without a screen. HAL alone: bad pins, changes while it runs, another period. Then
 # the machine of examples/linuxcnc/machine under LinuxCNC's planner, recorded, imported and diagnosed.
-# With `table`: the comparison of docs/linuxcnc.md instead. With `pid` or `panel`: only what is done with the stock pid,
-# or by the panel.
+# With `table`: the comparison of docs/linuxcnc.md instead. With `pid`, `xy` or `panel`: only what is done with the stock
+# pid, by quadrant_xy, or by the panel.
 set -eu
 skip() { echo "SKIPPED: LinuxCNC: $*"; exit 77; }
 [ "${QUADRANT_TESTS-}" = all ] || skip "only with QUADRANT_TESTS=all"
@@ -30,7 +30,7 @@ work=$(mktemp -d) # where the user may go: a build folder may be root's alone
 made_user=no
 clean() {
     if [ $made_user = yes ]; then userdel -r $user 2>/dev/null || true; fi
-    for name in quadrant_axis quadrant_plant; do
+    for name in quadrant_axis quadrant_xy quadrant_plant; do
         rm -f $modules/$name.so
         [ ! -e "$out/kept/$name.so" ] || mv "$out/kept/$name.so" $modules/
     done
@@ -38,7 +38,7 @@ clean() {
     rm -rf "$work"
 }
 trap clean EXIT
-for name in quadrant_axis quadrant_plant; do
+for name in quadrant_axis quadrant_xy quadrant_plant; do
     [ ! -e $modules/$name.so ] || mv $modules/$name.so "$out/kept/" # somebody installed them: back at the end
 done
 sh "$example/build.sh" --install
@@ -94,6 +94,22 @@ if [ "${3-}" = table ]; then
     exit 0
 fi
 
+# Both axes in one component: xy.hal in the place of quadrant.hal.
+of_table='s/= quadrant.hal/= xy.hal/; s/quadrant-axis.0.time/quadrant-xy.0.time/; s/quadrant-axis.1.time/servo-thread.time/'
+whole_table() {
+    machine xy "$of_table"
+    diagnose xy 1
+    claim "1 kHz, quadrant_xy, nothing injected: no gap" said xy 'v in ("no_gap", "within_tolerance") and not named'
+    machine xy_injected "$of_table; s/^HALFILE = plant.hal/&\nHALFILE = inject.hal/"
+    diagnose xy_injected 1
+    claim "1 kHz, quadrant_xy, cogging and delay on x: both named, and nothing else" \
+        said xy_injected 'named == {"x.cogging", "x.time_delay"}'
+}
+if [ "${3-}" = xy ]; then
+    whole_table
+    exit $failed
+fi
+
 if [ "${3-}" != panel ]; then
 # LinuxCNC's own pid without its feedforwards, and a file that knows neither the mass nor the friction well. What
 # compensate says is typed into the INI file, and the machine runs again: the following error falls as forecast.
@@ -127,6 +143,7 @@ claim "1 kHz, cogging and delay on the pins of quadrant_plant: both named, on th
 machine fast 's/^SERVO_PERIOD = .*/SERVO_PERIOD = 250000/'
 diagnose fast 0.25
 claim "4 kHz, nothing injected: no gap" said fast 'v in ("no_gap", "within_tolerance") and not named'
+whole_table
 fi
 
 # The panel: recorded, diagnosed, shown, the values saved; the next start has them.

@@ -204,8 +204,10 @@ def test_foreign_columns_by_an_import_map():
     folder = SOURCE / "examples/import"
     log = quadrant.read_log(folder / "odrive.csv", map=folder / "odrive.map.json")
     assert log.axes == ["c"] and log.rows > 100
-    with pytest.raises(quadrant.BadInput):
-        quadrant.read_log(folder / "odrive.csv")
+    guessed = quadrant.read_log(folder / "odrive.csv")
+    assert guessed.axes == ["axis0"] and guessed.rows == log.rows
+    with pytest.raises(quadrant.BadInput, match="halsampler, which does not say"):
+        quadrant.read_log(folder / "halsampler.txt")
 
 
 def test_a_trial_of_two_machines():

@@ -421,13 +421,19 @@ def other_columns(driver, page, root, shots):
     wait(lambda: "rows, one every" in element(driver, "#dropped").text, 10, "a log through a map")
     open_page(driver, page)
     driver.execute_script(DROP, "odrive.csv", (root / "examples/import/odrive.csv").read_text())
+    wait(lambda: "rows, one every" in element(driver, "#dropped").text and "as ODrive writes it" in element(driver, "#dropped").text,
+         10, "ODrive's columns by their names")
+    open_page(driver, page)
+    driver.execute_script(DROP, "scope.csv", (root / "examples/import/twincat_scope.csv").read_text())
     wait(lambda: element(driver, "#columns").is_displayed(), 10, "the table of columns")
-    rows = driver.find_elements("css selector", "#columns tbody tr")
-    uses = {"time": ("time", "s"), "axis0.controller.pos_setpoint": ("reference", "turn"), "axis0.pos_estimate": ("position", "turn"),
-            "axis0.controller.effective_torque_setpoint": ("command", "Nm")}
-    for row in rows:
-        role, unit = uses.get(element(row, "th").text, ("", ""))
-        for select, value in zip(row.find_elements("css selector", "select"), (role, unit)):
+    assert "TwinCAT Scope" in element(driver, "#columns-why").text
+    uses = {"column 1": ("time", "ms"), "MAIN.AxisY.NcToPlc.SetPos": ("reference", "mm"),
+            "MAIN.AxisY.NcToPlc.ActPos": ("position", "mm"), "MAIN.nTorqueY": ("command", "A")}
+    for row in driver.find_elements("css selector", "#columns tbody tr"):
+        (role, unit), selects = uses[element(row, "th").text], row.find_elements("css selector", "select")
+        if role != "command":
+            assert selects[0].get_attribute("value") == role, element(row, "th").text
+        for select, value in zip(selects, (role, unit)):
             driver.execute_script("arguments[0].value = arguments[1]", select, value)
     shoot(driver, shots / "web_columns.png")
     element(driver, "#columns-use").click()

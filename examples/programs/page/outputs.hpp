@@ -69,11 +69,11 @@ private:
     std::vector<file> inputs_, outputs_;
 };
 
-/// Writes a whole file, or to standard output for "-".
+/// Writes a whole file, or to standard output for "-". What standard output did not take is told by `ended`;
+/// the other files are written all the same.
 inline void write_output(const std::string& path, std::string_view text) {
     if (path != standard_output) return quadrant::diagnosis::write_aside(path, text);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
-        throw quadrant::diagnosis::bad_input("standard output", "cannot be written");
+    std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 /// The exit code of a program that would end with `code`: 1 and a line when not all of its standard output was
@@ -103,13 +103,15 @@ inline void end_without_memory(const char* program) {
 }
 
 /// The exit code of `program()`. What it throws (bad input, what this computer refuses, no memory to set up the
-/// command line) becomes one line on standard error and the code `refused`.
+/// command line) becomes one line on standard error and the code `refused`; words that standard output does not
+/// take (fmt::print throws) that of `ended`.
 template <class Program> int guarded(const char* name, int refused, const Program& program) {
     try {
         return program();
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "%s: out of memory\n", name);
     } catch (const std::exception& e) {
+        if (std::ferror(stdout) != 0) return ended(0, name);
         std::fprintf(stderr, "%s: %s\n", name, e.what());
     }
     return refused;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap import: another program's log in the columns and units of docs/formats.md.
 #include "commands.hpp"
+#include "log_of_text.hpp"
 
 #include <quadrant/diagnosis/check_physics.hpp>
 #include <quadrant/diagnosis/import/table_file.hpp>
@@ -8,6 +9,7 @@
 
 #include <iostream>
 #include <memory>
+#include <tuple>
 #include <unistd.h>
 
 namespace quadrant_gap {
@@ -19,7 +21,7 @@ struct import_options {
     std::vector<std::string> files; ///< those to read, and the one to write
     quadrant::diagnosis::import_choice choice;
     quadrant::diagnosis::known_axis known;
-    bool unchecked = false;
+    bool unchecked = false, propose = false;
     terminal say;
 };
 
@@ -40,7 +42,30 @@ void ask_origin(quadrant::diagnosis::import_map& map) {
     }
 }
 
+/// A map file with what the header says; what it does not say is "?".
+void propose(const import_options& o) {
+    using namespace quadrant::diagnosis;
+    const std::string &in = o.files.front(), &out = o.files.back();
+    outputs paths;
+    paths.reads("input 1", in).writes("MAP", out);
+    if (o.files.size() != 2 || !o.map.empty())
+        throw bad_input("--propose", "takes one log and the map to write");
+    const auto proposed = propose_map(
+        text_of_table_file(quadrant::diagnosis::detail::read_whole(std::filesystem::path(in)), in), in);
+    if (proposed.tool.empty())
+        throw bad_input(in,
+                        "is not as ODrive, TwinCAT Scope, halscope or halsampler write: begin with a map of "
+                        "examples/import");
+    write_output(out, proposed.map().dump(2) + "\n");
+    if (o.say.quiet) return;
+    std::fprintf(paths.words(), "%s: a map of what %s wrote: %s\n", out.c_str(), proposed.tool.c_str(),
+                 proposed.said().c_str());
+    for (const auto& note : proposed.notes) std::fprintf(paths.words(), "Note: %s.\n", note.c_str());
+    for (const auto& open : proposed.open) std::fprintf(paths.words(), "To put in: %s.\n", open.c_str());
+}
+
 void run(const import_options& o) {
+    if (o.propose) return propose(o);
     using namespace quadrant::diagnosis;
     outputs paths;
     paths.reads("--map", o.map);
@@ -54,12 +79,19 @@ void run(const import_options& o) {
     }
     const std::string& out = o.files.back();
     import_map map;
+    std::vector<std::string> guesses;
     if (!o.map.empty())
         map = read_import_map(std::filesystem::path(o.map));
     else if (files.size() > 1)
         throw bad_input("--map", "is needed to join several files");
     else
-        map = map_of_header(files.front().text, files.front().name);
+        try {
+            map = map_of_header(files.front().text, files.front().name);
+        } catch (const bad_input&) {
+            auto guessed = guessed_map(files.front().text, files.front().name);
+            if (!guessed) throw;
+            std::tie(map, guesses) = std::move(*guessed);
+        }
     if (o.command_is == "measured")
         for (auto& axis : map.axes) axis.command_is = command_origin::measured;
     else if (o.command_is.empty() && isatty(STDIN_FILENO))
@@ -70,6 +102,7 @@ void run(const import_options& o) {
     if (o.say.quiet) return;
     std::fprintf(paths.words(), "%zu rows, sample period %.6g s: %s\n", imported.log.samples,
                  imported.log.sample_period_s, out.c_str());
+    for (const auto& note : guesses) std::fprintf(paths.words(), "Note: %s.\n", note.c_str());
     for (const auto& note : imported.notes) std::fprintf(paths.words(), "Note: %s.\n", note.c_str());
 }
 
@@ -82,7 +115,11 @@ void add_import(CLI::App& app) {
     command->add_option(
         "--map", o->map,
         "which column is what, in which unit (JSON; examples/import). Not needed where the columns "
-        "have our names, in any unit (t_ms, x_pos_mm)");
+        "have our names, in any unit (t_ms, x_pos_mm), or those of ODrive");
+    command->add_flag(
+        "--propose", o->propose,
+        "IN MAP: write a map with what the header of ODrive, TwinCAT Scope, halscope or halsampler "
+        "says; put in what is \"?\"");
     command
         ->add_option(
             "FILES", o->files,

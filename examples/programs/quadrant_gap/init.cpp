@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant-gap init: begins a machine file from options, a log, and a few questions on a terminal.
 #include "commands.hpp"
+#include "log_of_text.hpp"
 
 #include <quadrant/diagnosis/init.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
@@ -78,6 +79,21 @@ void ask_origin(init_options& o) {
         o.command_is = name_of(command_origin::measured);
 }
 
+/// A log in our own format; another program's is refused with what brings it in.
+machine_log read_own_log(const std::string& file) {
+    const std::filesystem::path path(file);
+    try {
+        return read_log(path);
+    } catch (const bad_input&) {
+        const auto proposed = propose_map(quadrant::diagnosis::detail::read_whole(path), file);
+        if (proposed.tool.empty()) throw;
+        throw bad_input(file,
+                        fmt::format("looks like a file of {}: bring it in first, with \"quadrant-gap import {} "
+                                    "log.csv\"",
+                                    proposed.tool, file));
+    }
+}
+
 void run(init_options& o) {
     outputs files;
     const bool to_file = o.out != quadrant_page::standard_output;
@@ -85,7 +101,7 @@ void run(init_options& o) {
         to_file ? std::filesystem::path(o.out).replace_extension("md").string() : std::string();
     files.reads("--log", o.log).writes("--out", o.out).writes("the comments of --out", beside);
     std::optional<machine_log> log;
-    if (!o.log.empty()) log = read_log(std::filesystem::path(o.log));
+    if (!o.log.empty()) log = read_own_log(o.log);
     const auto kind_of = [&](const std::string& axis) { // "": of the log's first
         if (!log) return o.request.rotary ? axis_kind::rotary : axis_kind::linear;
         for (const axis_log& a : log->axes)

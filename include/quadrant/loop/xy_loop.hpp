@@ -95,6 +95,7 @@ public:
     const control_type& control() const noexcept { return control_; }
     control_type& control() noexcept { return control_; }
     const Table& table() const noexcept { return table_; }
+    Table& table() noexcept { return table_; } ///< for a machine as the table: what its encoders read
     Process& process_x() noexcept { return process_x_; } ///< to let the tool leave the cut
     Process& process_y() noexcept { return process_y_; }
 
