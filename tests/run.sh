@@ -20,7 +20,7 @@ jobs=$(nproc 2>/dev/null || echo 2)
 
 fuzz_seconds=20          # of processor time, all fuzzers together
 tests=                   # CMake's QUADRANT_TESTS
-together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 1.3 GB a compiler
+together=13              # CMake's QUADRANT_TOGETHER: half of the processor time, and up to 3.1 GB a compiler
 
 case "${1-}" in
 '') set -- release sanitize fuzz callgrind ;;

@@ -181,6 +181,9 @@ TEST_CASE("tally: bounds of Clopper and Pearson, Brier score and bins by hand") 
     CHECK(t["false_blame"]["upper95"] == doctest::Approx(1 - std::pow(0.05, 1.0 / 60)));
     CHECK(t["top1"]["none"]["ci95"][0] == doctest::Approx(std::pow(0.025, 1.0 / 60)));
     CHECK(t["calibration"]["causes"] == 0);
+    const auto three_of_ten = detail::share{3, 10}.json()["ci95"]; // tables of the binomial: 6.67 % and 65.25 %
+    CHECK(three_of_ten[0] == doctest::Approx(0.0667).epsilon(1e-3));
+    CHECK(three_of_ten[1] == doctest::Approx(0.6525).epsilon(1e-3));
 
     all = {{judge(truth("single", {effect("cogging", 5)}),
                   said("explained", {cause("cogging", 0.9), cause("mass", 0.2)})),

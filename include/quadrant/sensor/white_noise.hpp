@@ -78,7 +78,7 @@ private:
                                                -1.0 / 39916800, 1.0 / 6227020800, -1.0 / 1307674368000,
                                                1.0 / 355687428096000}};
         static constexpr double of_one[5] = {1, 0, -1, 0, 1}, of_angle[5] = {0, -1, 0, 1, 0};
-        const int quarter = int(4 * v + 0.5);
+        const int quarter = (int(8 * v) + 1) / 2; // the nearest
         const double angle = 2 * std::numbers::pi * (v - 0.25 * quarter), x = angle * angle, x2 = x * x;
         const double* const s = sums[quarter & 1];
         const double low = (s[0] + s[1] * x) + x2 * (s[2] + s[3] * x),

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <variant>
 
 namespace quadrant::inline v0::trajectory {
 

@@ -5,7 +5,7 @@
 #include "recalibration.hpp"
 
 #include <array>
-#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
 #include <map>
 
 /// From judgements to the figures of a trial, as the JSON that --json writes. Intervals of shares are those of
@@ -19,10 +19,27 @@ struct judged_machine {
 
 namespace detail {
 
-/// In double throughout: Boost.Math's long double tables are filled when a program starts, and valgrind, which
-/// has no long double, ends it there.
-using binomial = boost::math::binomial_distribution<
-    double, boost::math::policies::policy<boost::math::policies::promote_double<false>>>;
+/// Probability of at most `hits` hits in `of` tries with probability p each, 0 < p < 1.
+inline double at_most(std::size_t hits, std::size_t of, double p) {
+    const double n = static_cast<double>(of);
+    double sum = 0;
+    for (std::size_t i = 0; i <= hits; ++i) {
+        const double k = static_cast<double>(i);
+        sum += std::exp(std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1) + k * std::log(p) +
+                        (n - k) * std::log1p(-p));
+    }
+    return sum;
+}
+
+/// Probability for which `at_most` is `chance`, by bisection: `at_most` falls with p.
+inline double bound_of_p(std::size_t hits, std::size_t of, double chance) {
+    double low = 0, high = 1;
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = (low + high) / 2;
+        (at_most(hits, of, middle) > chance ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
 
 struct share {
     std::size_t hits = 0, of = 0;
@@ -30,10 +47,9 @@ struct share {
     ordered_json json() const {
         ordered_json out{{"right", hits}, {"of", of}};
         if (of == 0) return out;
-        const double n = static_cast<double>(of), k = static_cast<double>(hits);
-        out["share"] = k / n;
-        out["ci95"] = {hits == 0 ? 0.0 : binomial::find_lower_bound_on_p(n, k, 0.025),
-                       hits == of ? 1.0 : binomial::find_upper_bound_on_p(n, k, 0.025)};
+        out["share"] = static_cast<double>(hits) / static_cast<double>(of);
+        out["ci95"] = {hits == 0 ? 0.0 : bound_of_p(hits - 1, of, 0.975),
+                       hits == of ? 1.0 : bound_of_p(hits, of, 0.025)};
         return out;
     }
 };
@@ -41,7 +57,7 @@ struct share {
 /// One-sided upper 95 % bound of a probability that showed `hits` times.
 inline double upper_bound(std::size_t hits, std::size_t of) {
     if (of == 0 || hits == of) return 1;
-    return binomial::find_upper_bound_on_p(static_cast<double>(of), static_cast<double>(hits), 0.05);
+    return bound_of_p(hits, of, 0.05);
 }
 
 } // namespace detail

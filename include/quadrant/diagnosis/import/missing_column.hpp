@@ -19,7 +19,7 @@ inline std::string instead_of(const std::string& name, const std::vector<std::st
         for (const auto& [sign, known] : {std::pair{'\t', "tab"}, std::pair{';', ";"}, std::pair{',', ","}})
             if (names[0].find(sign) != std::string::npos)
                 return fmt::format(": the header is one column; is the separator \"{}\"?", known);
-    if (const std::string near = suggestion(name, names); !near.empty()) return near;
+    if (std::string near = suggestion(name, names); !near.empty()) return near;
     constexpr std::size_t most = 12;
     std::string out = "; there are";
     for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
