@@ -180,7 +180,7 @@ inline void give_joint(axis_truth& a, double period, dice& random) {
     if (a.friction.coulomb > 0 && random.chance(0.6)) a.friction.load = written(random.log_uniform(0.02, 0.2));
     // Against counts and travel as short as on linear axes: the file says nothing of it, so a record may show
     // nothing of it.
-    a.friction.length = random.log_uniform(5e-7, 4e-6);
+    a.friction.length = radians_for_a_metre * random.log_uniform(5e-8, 4e-7);
     std::vector<double> counts;
     for (const double q : {2e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5})
         if (q / period * c.velocity_gain * std::min(1.0, 2 * c.filter_Hz * period) < 0.15) counts.push_back(q);
@@ -236,6 +236,7 @@ inline motion_limits limits(const axis_truth& a, double seconds, double period, 
         l.velocity = random.log_uniform(0.5, 3);
         l.half_travel = random.log_uniform(0.4, 1.6);
         l.top_Hz = std::min(60.0, l.top_Hz);
+        l.unit = radians_for_a_metre;
     }
     return l;
 }

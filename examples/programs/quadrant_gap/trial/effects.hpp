@@ -146,6 +146,7 @@ public:
         if (effect == "presliding_friction" && f.law == contact_law::tanh_spring)
             f.law = contact_law::maxwell_slip; // that one barely remembers
         if (effect != "stribeck_friction") return;
+        if (truth.turns) f.stribeck_velocity *= radians_for_a_metre;
         const double form = random.uniform();
         f.shape = form < 0.5    ? stribeck_shape::exponential
                   : form < 0.75 ? stribeck_shape::gaussian

@@ -181,8 +181,10 @@ private:
         }
         if (truth_.drive.shows_current()) {
             const double current = push / truth_.actuator.force_constant;
-            if (f == 0) out.current.push_back(truth_.drive.tap_is_mean ? 0 : current);
+            // As a row begins: between the middles of the steps before and behind it.
+            if (f == 0) out.current.push_back(truth_.drive.tap_is_mean ? 0 : (current_ + current) / 2);
             if (truth_.drive.tap_is_mean) out.current.back() += current / static_cast<double>(fine);
+            current_ = current;
         }
         out.force.back() += push / static_cast<double>(fine);
         const auto law = [&](joint where) { return laws_(where, body_, push, t, h); };
@@ -197,6 +199,7 @@ private:
     laws_of_effects laws_;
     inner_loops inner_;
     double displaced_ = 0; ///< of the reading, by laws of the transmission and of the reading
+    double current_ = 0;   ///< of a drive in the step before [A]
 };
 
 } // namespace detail

@@ -116,6 +116,10 @@ struct law_truth {
     quadrant::diagnosis::own_law::values values{};
 };
 
+/// A joint of an arm goes ten radians where a linear axis goes a metre: its contacts, its creeping and its
+/// Stribeck velocity are as many times larger in number.
+inline constexpr double radians_for_a_metre = 10;
+
 struct axis_truth {
     std::string name = "x";
     bool turns = false; ///< a rotary axis: rad for m, N m for N in all that follows
