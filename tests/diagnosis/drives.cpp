@@ -2,6 +2,7 @@
 // Machines whose drive closes loops of its own, from a simulator that shares nothing with the library
 // (drive_simulator.hpp), through the diagnosis.
 #include "drive_simulator.hpp"
+#include "quadrant_gap/make_match.hpp"
 #include "shared.hpp"
 
 #include <doctest/doctest.h>
@@ -184,6 +185,17 @@ TEST_CASE("velocity drive with a measured current: its delay and a limit inside 
     const cause* limit = only_claim(of_limited, "drive_limit");
     REQUIRE(limit);
     CHECK(value_of(*limit, "drive.force_limit_N") == doctest::Approx(limited.force_limit).epsilon(0.03));
+}
+TEST_CASE("position drive with a measured current: nothing is said of a command that was measured") {
+    auto m = pi_drive;
+    m.position_gain = 40;
+    m.force_of_current = 20;
+    auto r = recorded(takes::set_points, m);
+    REQUIRE(r.log.axes[0].command_is == command_origin::measured);
+    const auto machine =
+        read_machine(linear(coulomb + R"(, "force_constant_N_per_A": 20)", of_position), "machine.json");
+    quadrant_gap::make_match(machine, r.log, &r.holdout);
+    for (const std::string& note : r.log.notes) CHECK(note.find("command_is") == note.npos);
 }
 TEST_CASE("as_reading: from the force that a wrong reading makes of a drive's law comes that reading") {
     const double period = 1e-3;
