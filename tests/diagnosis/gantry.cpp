@@ -20,14 +20,17 @@ using workshop::value_of;
 namespace {
 
 /// A beam of 200 kg with a share of it at end 1; each end has a motor, a scale, friction and a loop of its own.
-/// It turns against guides of 40 N a micrometre.
+/// It turns against guides of 40 N a micrometre, or of another stiffness.
 struct beam_on_two_motors {
     double friction_1 = 20, friction_2 = 20, share = 0.5, scale_2 = 1, fight = 0;
+    double stiffness = 4e7; ///< of the guides against the difference of the ends [N/m]
+    double gains = 0.5;     ///< of both loops together, at end 1
 
     std::string log() const {
-        constexpr double period = 0.001, mass = 200, turned = 50, stiffness = 4e7, count = 1e-6;
+        constexpr double period = 0.001, mass = 200, turned = 50, count = 1e-6;
         constexpr int fine = 50;
-        const double h = period / fine, band = 2 * std::numbers::pi * 15;
+        const double damping = 0.4 * std::sqrt(stiffness * turned), h = period / fine,
+                     band = 2 * std::numbers::pi * 15;
         std::string out = "t_s,x1_ref_m,x1_pos_m,x1_cmd_N,x2_ref_m,x2_pos_m,x2_cmd_N\n";
         double x = 0, v = 0, d = 0, rate = 0;
         std::array<double, 2> before{}, given{};
@@ -39,7 +42,7 @@ struct beam_on_two_motors {
             std::array<double, 2> read{};
             for (std::size_t i = 0; i < 2; ++i) {
                 read[i] = count * std::round(ends[i] / count);
-                const double part = i == 0 ? share : 1 - share;
+                const double part = i == 0 ? gains : 1 - gains;
                 given[i] =
                     part * mass * band * (band * (asked - read[i]) - 1.8 * (read[i] - before[i]) / period) +
                     (i == 0 ? fight : -fight);
@@ -53,7 +56,7 @@ struct beam_on_two_motors {
                 const double f1 = given[0] - friction_1 * smooth(v + (1 - share) * rate),
                              f2 = given[1] - friction_2 * smooth(v - share * rate);
                 v += h / mass * (f1 + f2 - 60 * v);
-                rate += h / turned * ((1 - share) * f1 - share * f2 - stiffness * d - 2e4 * rate);
+                rate += h / turned * ((1 - share) * f1 - share * f2 - stiffness * d - damping * rate);
                 x += h * v;
                 d += h * rate;
             }
@@ -82,6 +85,18 @@ diagnosis_result diagnosed(const beam_on_two_motors& real) {
 bool notes(const diagnosis_result& d, const std::string& words) {
     return std::any_of(d.notes.begin(), d.notes.end(),
                        [&](const std::string& n) { return n.find(words) != n.npos; });
+}
+/// The number that follows these words in a note; nan: there is none.
+double number_behind(const diagnosis_result& d, const std::string& words) {
+    for (const std::string& n : d.notes)
+        if (const auto at = n.find(words); at != n.npos) return std::stod(n.substr(at + words.size()));
+    return std::nan("");
+}
+/// For a message.
+std::string told(const diagnosis_result& d) {
+    std::string out = said(d);
+    for (const auto& n : d.notes) out += "\n" + n;
+    return out;
 }
 std::string refusal(const std::string& machine, const std::string& csv) {
     try {
@@ -122,10 +137,44 @@ TEST_CASE("gantry pair: the motors' forces tell how they push against each other
     const auto d = diagnosed({.friction_1 = 32, .friction_2 = 8, .fight = 25});
     CAPTURE(said(d));
     CHECK(workshop::claims(d).front() == "coulomb_friction");
-    std::string told;
-    for (const auto& n : d.notes) told += n + "\n";
-    CAPTURE(told);
+    CAPTURE(told(d));
     CHECK(notes(d, "push against each other with"));
+}
+
+TEST_CASE("gantry pair: on a beam that may turn, the notes have the friction of each end, and which end stays "
+          "behind at a reversal") {
+    const auto d = diagnosed({.friction_1 = 32, .friction_2 = 8, .stiffness = 0});
+    CAPTURE(told(d));
+    CHECK(number_behind(d, "friction is ") == doctest::Approx(32).epsilon(0.05));
+    CHECK(number_behind(d, "at end x1 and ") == doctest::Approx(8).epsilon(0.05));
+    // 12 N turn the beam against two loops of 444 N a millimetre of the difference: 27 um either way.
+    CHECK(number_behind(d, "after each reversal end x1 stays ") == doctest::Approx(54).epsilon(0.05));
+    CHECK(notes(d, R"(write "ends": ["x2", "x1"])"));
+    const auto exchanged = diagnosed({.friction_1 = 8, .friction_2 = 32, .stiffness = 0});
+    CAPTURE(told(exchanged));
+    CHECK(workshop::claims(exchanged) == std::vector<std::string>{"coulomb_friction", "lost_motion"});
+    CHECK(number_behind(exchanged, "after each reversal end x2 stays ") == doctest::Approx(54).epsilon(0.05));
+    CHECK_FALSE(notes(exchanged, R"(write "ends")"));
+}
+
+TEST_CASE("gantry pair: mass at one end is told, and neither friction nor late readings in its place") {
+    const auto d = diagnosed({.share = 0.65, .stiffness = 0});
+    CAPTURE(told(d));
+    CHECK(notes(d, "65 % of the mass are at end x1"));
+    CHECK_FALSE(notes(d, "friction is"));
+    CHECK_FALSE(notes(d, "is read"));
+}
+
+TEST_CASE("gantry pair: where guides hold the beam, a split of the commands is neither mass nor friction, and "
+          "both ends are read at once") {
+    for (const auto& beam : {beam_on_two_motors{.gains = 0.65}, {.friction_1 = 32, .friction_2 = 8}}) {
+        const auto d = diagnosed(beam);
+        CAPTURE(told(d));
+        CHECK(notes(d, "end x1 has 65 % of the friction and of the accelerating force") == (beam.gains > 0.5));
+        CHECK_FALSE(notes(d, "friction is"));
+        CHECK_FALSE(notes(d, "of the mass are"));
+        CHECK_FALSE(notes(d, "is read"));
+    }
 }
 
 TEST_CASE("gantry pair: a file is written as it was read, and the difference of the ends is left out of a "

@@ -67,6 +67,10 @@ TEST_CASE("arm_length: another length is not called another mass" * doctest::tes
     real.length = 0.5;
     named(diagnose(file, run(real.on())), "arm_length", "payload.arm_m", 0.5, 0.03);
 }
+TEST_CASE("effects of a rotary axis alone: their labels have no word that a rotary axis replaces") {
+    for (const effect* e : every_effect())
+        if (e->rotary_only) CHECK(text_of(e->label, axis_kind::rotary) == e->label);
+}
 TEST_CASE("payload_mass, arm_length: one group where the inertia of the payload does not show" *
           doctest::test_suite("all")) {
     load real;

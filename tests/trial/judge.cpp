@@ -122,6 +122,19 @@ TEST_CASE("judge: intervals of claims are compared, the first harmonic of severa
     CHECK(j.parameters[0].covered());
     CHECK_FALSE(j.parameters[1].covered());
 }
+TEST_CASE("judge: a wave that is found with twice its period is the same wave, in the second harmonic") {
+    ordered_json c = cause("cogging", 0.9);
+    c["parameters"] = {
+        {"cogging_period_m", {{"value", 0.0601}, {"ci95", {0.0595, 0.0605}}}},
+        {"cogging_N", {{"value", {0.2, 6.1}}, {"ci95", {ordered_json{-0.1, 0.5}, ordered_json{5.8, 6.4}}}}}};
+    const auto t = truth("single", {effect("cogging", 5, {{"cogging_period_m", 0.03}, {"cogging_N", 6.0}})});
+    const auto j = judge(t, said("explained", {c}));
+    REQUIRE(j.parameters.size() == 2);
+    CHECK(j.parameters[0].value == doctest::Approx(0.03005));
+    CHECK(j.parameters[0].covered());
+    CHECK(j.parameters[1].value == 6.1);
+    CHECK(j.parameters[1].covered());
+}
 
 TEST_CASE("judge: no diagnosis is no answer, and wrong") {
     const auto j = judge(truth("none"), nullptr);
@@ -152,15 +165,15 @@ TEST_CASE("judge: an effect that the file excludes has to be left without a name
 }
 
 TEST_CASE("recalibration: finds the line that the answers were drawn from") {
-    const auto drawn =
-        [](double slope, double offset) { // 5000 of each probability, right exactly as often as the line says
-            std::vector<std::pair<double, bool>> all;
-            for (const double p : {0.1, 0.3, 0.6, 0.9, 0.97}) {
-                const double q = 1 / (1 + std::exp(-offset - slope * std::log(p / (1 - p))));
-                for (int k = 0; k < 5000; ++k) all.emplace_back(p, k < 5000 * q);
-            }
-            return recalibrate(all);
-        };
+    const auto drawn = [](double slope,
+                          double offset) { // 5000 of each probability, right exactly as often as the line says
+        std::vector<std::pair<double, bool>> all;
+        for (const double p : {0.1, 0.3, 0.6, 0.9, 0.97}) {
+            const double q = 1 / (1 + std::exp(-offset - slope * std::log(p / (1 - p))));
+            for (int k = 0; k < 5000; ++k) all.emplace_back(p, k < 5000 * q);
+        }
+        return recalibrate(all);
+    };
     for (const auto& [slope, offset] : {std::pair{1.0, 0.0}, {0.6, -0.4}, {1.3, 0.5}}) {
         const auto r = drawn(slope, offset);
         CHECK(std::abs(r.slope - slope) < 0.01);

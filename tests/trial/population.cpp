@@ -159,6 +159,47 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "population: behind a drive with loops of its own the current is logged with its force constant, and a "
+    "wrong constant shows in it") {
+    using quadrant::diagnosis::drive_kind;
+    const auto holds = [](const auto& list) {
+        return std::any_of(list.begin(), list.end(), [](const auto* e) { return e->name == "force_constant"; });
+    };
+    for (const population of : {population::velocity_pi, population::position}) {
+        CAPTURE(populations[static_cast<std::size_t>(of)]);
+        CHECK(can_be_logged(of, logs::measured));
+        CHECK(holds(withheld_from(of, logs::measured)));
+        CHECK_FALSE(holds(withheld_from(of)));
+        const drawn_machine m =
+            draw(3, 4, {kind::single, {"force_constant"}, false, false, of, logs::measured});
+        const auto machine = quadrant::diagnosis::read_machine(machine_file(m).dump(), "machine.json");
+        CHECK(machine.axes[0].command_unit == "A");
+        const auto record = run(m.truth, m.log_reference, m.period, m.noise_seed);
+        std::istringstream text(log_file(m, record, m.noise_seed));
+        const auto log = quadrant::diagnosis::read_log(text, "log.csv");
+        CHECK_NOTHROW(check_match(machine, log));
+        const double wrong = m.truth[0].actuator.force_constant / m.described[0].actuator.force_constant;
+        CHECK(std::abs(wrong - 1) > m.tolerance.force_constant);
+        CHECK(m.effects.at(0).size > 0.1);
+        // Where no command was logged the current stands in its place.
+        const auto& current = log.axes[0].effort.empty() ? log.axes[0].command : log.axes[0].effort;
+        REQUIRE(current.size() == record[0].force.size());
+        double by = 0, of_force = 0; // slope of what the file takes the current for over the force
+        for (std::size_t k = 0; k < current.size(); ++k) {
+            by += current[k] * m.described[0].actuator.force_constant * record[0].force[k];
+            of_force += std::pow(record[0].force[k], 2);
+        }
+        CHECK(by / of_force == doctest::Approx(1 / wrong).epsilon(0.01));
+    }
+    const drawn_machine servo =
+        draw(3, 4, {kind::none, {}, false, false, population::position_servo, logs::measured});
+    CHECK(servo.described[0].drive.tapped);
+    CHECK_FALSE(can_be_logged(population::velocity_p, logs::coarse));
+    CHECK_FALSE(can_be_logged(population::joint, logs::measured));
+    CHECK_FALSE(can_be_logged(population::kinematic, logs::measured));
+}
+
+TEST_CASE(
     "population: a joint is rotary, weighs, and is read without complaint; its loop holds it where it begins") {
     for (const planned& p : plan(5, 20, population::joint)) CHECK_FALSE(p.two_axes);
     const drawn_machine m = draw(3, 4, {kind::single, {"payload_mass"}, false, false, population::joint});

@@ -335,6 +335,31 @@ double reading_with(const std::vector<std::pair<joint, double>>& added, double c
 
 } // namespace
 
+TEST_CASE("trial's drive: its current is that of the moment at which a row begins, or the mean over the row") {
+    constexpr double period = 1e-3, answer = 2.8e-3; // mass over gain
+    axis_truth a = free_mass();
+    a.actuator.force_constant = 10;
+    a.drive.kind = drive_truth::drive_kind::velocity;
+    a.drive.velocity_per_V = 1;
+    a.drive.velocity_gain = a.mechanics.mass / answer;
+    a.drive.delay = 4e-4;
+    a.drive.tapped = true;
+    std::vector<double> ramp(12);
+    for (std::size_t k = 0; k < ramp.size(); ++k)
+        ramp[k] = 0.1 * period * std::max(0.0, static_cast<double>(k) - 2);
+    const double first = 0.1 * a.drive.velocity_gain / a.actuator.force_constant; // when the set-point arrives
+    for (const bool mean : {false, true}) {
+        a.drive.tap_is_mean = mean;
+        const auto out = run({a}, {ramp}, period, 1)[0];
+        for (std::size_t k = 3; k < 10; ++k) {
+            const double since = static_cast<double>(k - 2) * period - a.drive.delay;
+            const double at = first * std::exp(-since / answer),
+                         over = at * answer / period * (1 - std::exp(-period / answer));
+            CHECK(near(out.current[k], mean ? over : at, 1e-3));
+        }
+    }
+}
+
 TEST_CASE("trial's plant: the law of an effect acts at its joint") {
     const double way = 0.5 * 0.1 * 0.1; // of 1 m/s^2
     CHECK(near(reading_with({{joint::force, 50}}), way, 1e-3));

@@ -28,7 +28,7 @@ inline void make_match(const quadrant::diagnosis::machine_description& machine,
     for (const auto& axis : machine.axes)
         for (const auto& logged : log.axes)
             if (logged.name == axis.name && logged.command_is != axis.actuator.command_is &&
-                logged.command_is == command_origin::measured)
+                logged.command_is == command_origin::measured && !axis.drive.closes())
                 log.notes.push_back(fmt::format(
                     "axis {}: its column says that the command was measured behind the amplifier; the machine "
                     "file does not (actuator.command_is): amplifier effects are then suspects too.",

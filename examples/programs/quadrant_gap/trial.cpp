@@ -125,8 +125,9 @@ std::vector<drawn_files> draw_machines(trial_options& o, const std::vector<std::
     const auto named = std::find(populations.begin(), populations.end(), o.population);
     const auto of = static_cast<population>(named - populations.begin());
     const logs how = *logs_named(o.how);
-    if (of != population::current && how != logs::plain)
-        throw bad_input("--logs", "other logs than plain ones are drawn of current drives only");
+    if (!can_be_logged(of, how))
+        throw bad_input("--logs",
+                        fmt::format("{} logs are not drawn of the population {}", o.how, o.population));
     o.no_forecast = o.no_forecast || of != population::current;
     const auto planned_machines = plan(o.seed, o.machines, of, how);
     progress drawn("drawn", chosen.size(), o.say);

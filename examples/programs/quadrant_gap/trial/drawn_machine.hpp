@@ -105,7 +105,7 @@ inline axis_truth drawn_axis(double period, const std::string& name, dice& rando
 }
 
 /// Makes the drive of this axis one with loops of its own, with a bandwidth and delays as such drives have.
-inline void give_loops(axis_truth& a, population of, double period, dice& random) {
+inline void give_loops(axis_truth& a, population of, double period, logs how, dice& random) {
     drive_truth& d = a.drive;
     d.kind = drive_of(of);
     a.actuator.delay = 0;
@@ -125,7 +125,7 @@ inline void give_loops(axis_truth& a, population of, double period, dice& random
             a.friction.level_at_rest = written(a.friction.coulomb * random.uniform(1.15, 1.9));
         a.encoder.resolution = random.one_of(std::vector<double>{2e-5, 1e-4, 3e-4});
         a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 0.5);
-        d.tapped = random.chance(0.5);
+        d.tapped = random.chance(0.5) || how == logs::measured;
         return;
     }
     const double bandwidth = 2 * std::numbers::pi * random.uniform(20, std::min(60.0, 0.06 / period));
@@ -142,6 +142,10 @@ inline void give_loops(axis_truth& a, population of, double period, dice& random
     a.controller.limit = written(a.mechanics.mass * peak);
     a.actuator.force_constant = 1;
     if (random.chance(0.5)) d.force_limit = a.controller.limit;
+    if (how != logs::measured) return;
+    d.tapped = true;
+    d.tap_is_mean = random.chance(0.5);
+    a.actuator.force_constant = written(a.controller.limit / random.log_uniform(3, 30)); // [N/A]
 }
 
 /// Makes this axis a joint of an arm: geared, with a load at its end, its weight and friction that grows with
@@ -174,7 +178,9 @@ inline void give_joint(axis_truth& a, double period, dice& random) {
     a.friction.level_at_rest = excess > 0 ? written(excess * a.friction.coulomb) : 0;
     a.friction.stribeck_velocity = written(random.log_uniform(0.01, 0.1));
     if (a.friction.coulomb > 0 && random.chance(0.6)) a.friction.load = written(random.log_uniform(0.02, 0.2));
-    a.friction.length = random.log_uniform(2e-6, 4e-5);
+    // Against counts and travel as short as on linear axes: the file says nothing of it, so a record may show
+    // nothing of it.
+    a.friction.length = radians_for_a_metre * random.log_uniform(5e-8, 4e-7);
     std::vector<double> counts;
     for (const double q : {2e-7, 1e-6, 2e-6, 5e-6, 1e-5, 2e-5})
         if (q / period * c.velocity_gain * std::min(1.0, 2 * c.filter_Hz * period) < 0.15) counts.push_back(q);
@@ -187,7 +193,7 @@ inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
         value *= 1 + random.uniform(-relative, relative);
     };
     moved(a.mechanics.mass, t.mass);
-    if (a.drive.kind == drive_truth::drive_kind::current || a.drive.supply > 0)
+    if (a.drive.kind == drive_truth::drive_kind::current || a.drive.supply > 0 || a.drive.shows_current())
         moved(a.actuator.force_constant, t.force_constant);
     moved(a.friction.viscous, t.viscous);
     moved(a.friction.coulomb, t.coulomb);
@@ -230,6 +236,7 @@ inline motion_limits limits(const axis_truth& a, double seconds, double period, 
         l.velocity = random.log_uniform(0.5, 3);
         l.half_travel = random.log_uniform(0.4, 1.6);
         l.top_Hz = std::min(60.0, l.top_Hz);
+        l.unit = radians_for_a_metre;
     }
     return l;
 }

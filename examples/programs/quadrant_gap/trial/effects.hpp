@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "machine.hpp"
+#include "logs.hpp"
 #include "quadrant/diagnosis/effect/effect_list.hpp"
 #include "random.hpp"
 
@@ -146,6 +146,7 @@ public:
         if (effect == "presliding_friction" && f.law == contact_law::tanh_spring)
             f.law = contact_law::maxwell_slip; // that one barely remembers
         if (effect != "stribeck_friction") return;
+        if (truth.turns) f.stribeck_velocity *= radians_for_a_metre;
         const double form = random.uniform();
         f.shape = form < 0.5    ? stribeck_shape::exponential
                   : form < 0.75 ? stribeck_shape::gaussian
@@ -188,14 +189,17 @@ inline void insertion::change_controller() {
     parameters[std::string("controller.") + chosen.name] = *chosen.value;
 }
 
-/// Whether a machine with this kind of drive can have the effect. Behind a drive that closes loops of its own
-/// there is one axis, and its encoder is the motor's: no play, no error of a scale, no neighbour, and the
-/// limits and delays are the drive's.
-inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::drive_kind kind) {
+/// Whether a machine with this kind of drive can have the effect, and a log of this kind shows it. Behind a
+/// drive that closes loops of its own there is one axis, and its encoder is the motor's: no play, no error of a
+/// scale, no neighbour, and the limits and delays are the drive's. Its force constant shows where its current
+/// is measured.
+inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::drive_kind kind,
+                 logs how = logs::plain) {
     using enum quadrant::diagnosis::drive_kind;
     if (e.rotary_only) return false; // of a joint alone
-    if (kind == current) return e.box != "drive";
-    if (e.box == "process" || e.name == "force_constant") return e.box == "process" || kind == position_servo;
+    if (kind == current) return e.box != "drive" && shows(how, e);
+    if (e.name == "force_constant") return kind == position_servo || how == logs::measured;
+    if (e.box == "process") return true;
     if (e.box == "mechanics") return e.name != "backlash" && e.name != "cross_coupling";
     if (e.box != "drive") return false;
     if (e.name == "drive_gain" || e.name == "drive_limit" || e.name == "command_delay") return true;
@@ -205,10 +209,11 @@ inline bool fits(const quadrant::diagnosis::effect& e, quadrant::diagnosis::driv
 
 /// The effects that a trial withholds from machines with such drives, in the order of the list.
 inline std::vector<const quadrant::diagnosis::effect*>
-withheld_effects(quadrant::diagnosis::drive_kind kind = quadrant::diagnosis::drive_kind::current) {
+withheld_effects(quadrant::diagnosis::drive_kind kind = quadrant::diagnosis::drive_kind::current,
+                 logs how = logs::plain) {
     std::vector<const quadrant::diagnosis::effect*> out;
     for (const auto* e : quadrant::diagnosis::every_effect())
-        if (e->trial.into && fits(*e, kind)) out.push_back(e);
+        if (e->trial.into && fits(*e, kind, how)) out.push_back(e);
     return out;
 }
 

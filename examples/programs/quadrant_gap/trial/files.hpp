@@ -46,6 +46,10 @@ inline ordered_json driven_axis(const drawn_machine& m, const axis_truth& a, ord
     } else {
         plant.erase("force_constant_N_per_V");
     }
+    if (d.shows_current()) {
+        plant["force_constant_N_per_A"] = a.actuator.force_constant;
+        tolerance["force_constant"] = t.force_constant;
+    }
     return {{"plant", plant},
             {"tolerance", tolerance},
             {"encoder", {{"resolution_m", a.encoder.resolution}}},
@@ -135,11 +139,11 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
         return !d.closes() || d.kind == drive_truth::drive_kind::velocity;
     };
     for (const axis_truth& a : m.described)
-        out += fmt::format("{3}{0}_pos_{4}{1}{2}", a.name,
-                           in_volts(a.drive) ? fmt::format(",{}_cmd_V", a.name) : "",
-                           a.drive.tapped ? fmt::format(",{}_duty", a.name) : "",
-                           with_reference ? fmt::format(",{}_ref_{},", a.name, a.turns ? "rad" : "m") : ",",
-                           a.turns ? "rad" : "m");
+        out += fmt::format(
+            "{3}{0}_pos_{4}{1}{2}", a.name, in_volts(a.drive) ? fmt::format(",{}_cmd_V", a.name) : "",
+            a.drive.tapped ? fmt::format(",{}_{}", a.name, a.drive.shows_current() ? "current_A" : "duty") : "",
+            with_reference ? fmt::format(",{}_ref_{},", a.name, a.turns ? "rad" : "m") : ",",
+            a.turns ? "rad" : "m");
     out += '\n';
     char text[128];
     for (std::size_t k = 0; k < axes[0].position.size(); ++k) {
@@ -152,13 +156,16 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
             const axis_record& a = axes[i];
             const drive_truth& d = m.described[i].drive;
             if (with_reference) out += fmt::format(",{:.12f}", a.reference[k]);
-            const double command =
-                m.how != logs::measured
-                    ? a.command[k]
-                    : a.acting[k] + 0.002 * m.described[i].controller.limit * random.normal();
+            const bool measured = m.how == logs::measured && !d.closes();
+            const double noise = 0.002 * m.described[i].controller.limit; // of what is measured
             out += fmt::format(",{:.9f}", a.position[k]);
-            if (in_volts(d)) out += fmt::format(",{:.6f}", command);
-            if (d.tapped) out += fmt::format(",{:.5f}", a.duty[k]);
+            if (in_volts(d))
+                out += fmt::format(",{:.6f}", measured ? a.acting[k] + noise * random.normal() : a.command[k]);
+            if (d.shows_current())
+                out += fmt::format(",{:.6f}", a.current[k] + noise / m.described[i].actuator.force_constant *
+                                                                 random.normal());
+            else if (d.tapped)
+                out += fmt::format(",{:.5f}", a.duty[k]);
         }
         out += '\n';
     }

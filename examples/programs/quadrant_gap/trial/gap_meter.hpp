@@ -8,13 +8,16 @@ namespace quadrant_gap::trial {
 
 namespace detail {
 
-/// Of the force that the controller, or a drive with loops of its own, asks for, below some 60 Hz.
+/// Of the force that the controller, or a drive with loops of its own, asks for, below some 60 Hz. Where the
+/// current of such a drive is measured: what the file takes it for.
 inline std::vector<double> asked_force(const axis_record& r, double force_constant, double period) {
     const auto half = static_cast<std::size_t>(std::max(0.0, std::round(0.004 / period)));
-    const bool closes = !r.force.empty(); // the drive asks for it
+    const bool closes = !r.force.empty(), measured = !r.current.empty(); // the drive asks for it
     std::vector<double> sum(r.command.size() + 1, 0.0), out(r.command.size());
     for (std::size_t k = 0; k < r.command.size(); ++k)
-        sum[k + 1] = sum[k] + (closes ? r.force[k] : force_constant * r.command[k]);
+        sum[k + 1] = sum[k] + (measured ? force_constant * r.current[k]
+                               : closes ? r.force[k]
+                                        : force_constant * r.command[k]);
     for (std::size_t k = 0; k < out.size(); ++k) {
         const std::size_t a = k > half ? k - half : 0, b = std::min(out.size(), k + half + 1);
         out[k] = (sum[b] - sum[a]) / static_cast<double>(b - a);

@@ -75,19 +75,35 @@ inline std::vector<cause_view> causes_of(const ordered_json& d) {
     return out;
 }
 
+/// A wave that repeats along the travel may be found with a multiple of its period: its harmonic n of that is
+/// the same wave. The n of this cause; 1: the period itself, or none.
+inline std::size_t harmonic_of(const ordered_json& effect, const ordered_json& found) {
+    for (const auto& [key, value] : effect.at("parameters").items()) {
+        if (key.find("_period_") == key.npos || !value.is_number() || !found.contains(key)) continue;
+        const ordered_json& period = found.at(key).at("value");
+        if (!period.is_number() || !(value.get<double>() > 0)) continue;
+        const double ratio = period.get<double>() / value.get<double>(), n = std::round(ratio);
+        if (n >= 2 && std::abs(ratio / n - 1) < 0.02) return static_cast<std::size_t>(n);
+    }
+    return 1;
+}
+
 inline void judge_parameters(judgement& j, const ordered_json& effect, const cause_view& c) {
     const auto parameters = c.whole->find("parameters");
     if (parameters == c.whole->end() || c.effect != effect.at("effect")) return;
+    const std::size_t n = harmonic_of(effect, *parameters);
     for (const auto& [key, value] : effect.at("parameters").items()) {
         const auto given = parameters->find(key);
         if (!value.is_number() || given == parameters->end()) continue;
         const ordered_json &estimated = given->at("value"), &interval = given->at("ci95");
-        const bool list = estimated.is_array(); // harmonics: the first is compared
-        if (list && estimated.empty()) continue;
-        const ordered_json& ends = list ? interval.at(0) : interval;
+        const bool list = estimated.is_array(); // harmonics: the one with the true period is compared
+        if (list && estimated.size() < n) continue;
+        const ordered_json& ends = list ? interval.at(n - 1) : interval;
         if (!ends.is_array() || !ends.at(0).is_number() || !ends.at(1).is_number()) continue;
-        const double v = list ? estimated.at(0).get<double>() : estimated.get<double>();
-        j.parameters.push_back({c.effect, key, value.get<double>(), v, ends.at(0), ends.at(1)});
+        const double by = key.find("_period_") == key.npos ? 1 : 1 / static_cast<double>(n);
+        const double v = list ? estimated.at(n - 1).get<double>() : by * estimated.get<double>();
+        j.parameters.push_back({c.effect, key, value.get<double>(), v, by * ends.at(0).get<double>(),
+                                by * ends.at(1).get<double>()});
     }
 }
 

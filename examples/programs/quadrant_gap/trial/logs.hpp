@@ -15,7 +15,8 @@ namespace quadrant_gap::trial {
 enum class logs {
     plain,       ///< every row, fine counts, the command that was asked for
     coarse,      ///< counts of 1 to 20 um
-    measured,    ///< the command column is what acts behind the amplifier, with noise
+    measured,    ///< the command column is what acts behind the amplifier, with noise; of a drive with loops of
+                 ///< its own a column more
     gaps,        ///< rows are missing in up to four places
     jitter,      ///< stamps up to a fifth of a period off
     no_reference ///< position and command alone
@@ -29,7 +30,8 @@ inline std::optional<logs> logs_named(std::string_view name) {
 }
 
 /// Whether a log of this kind holds anything of an effect: behind the amplifier nothing is seen of what acts on
-/// the command, and without reference or asked command nothing of the controller.
+/// the command, and without reference or asked command nothing of the controller. What is measured behind a
+/// drive with loops of its own stands beside what the drive received.
 inline bool shows(logs kind, const quadrant::diagnosis::effect& e) {
     const bool controller = e.box == "controller";
     if (kind == logs::measured) return !controller && e.joins != quadrant::diagnosis::joint::command;

@@ -98,7 +98,9 @@ private:
 struct axis_record {
     std::vector<double> reference, position, command;
     std::vector<double> acting{}; ///< mean command behind the amplifier, over the period that follows the row
-    std::vector<double> force, duty; ///< of a drive with loops of its own: mean over each row; as a row begins
+    /// Of a drive with loops of its own: mean force over each row; duty as a row begins; current as it is
+    /// measured.
+    std::vector<double> force, duty{}, current{};
 };
 
 /// Log without rounding and noise: what the equations alone make of a motion.
@@ -177,6 +179,13 @@ private:
             if (f == 0) out.duty.push_back(inner_.duty());
             push = drive_.force(truth_.drive.supply * push, body_.position());
         }
+        if (truth_.drive.shows_current()) {
+            const double current = push / truth_.actuator.force_constant;
+            // As a row begins: between the middles of the steps before and behind it.
+            if (f == 0) out.current.push_back(truth_.drive.tap_is_mean ? 0 : (current_ + current) / 2);
+            if (truth_.drive.tap_is_mean) out.current.back() += current / static_cast<double>(fine);
+            current_ = current;
+        }
         out.force.back() += push / static_cast<double>(fine);
         const auto law = [&](joint where) { return laws_(where, body_, push, t, h); };
         body_.step(push * (1 + law(joint::motor_gain)) + law(joint::force), t, h, other, law(joint::friction));
@@ -190,6 +199,7 @@ private:
     laws_of_effects laws_;
     inner_loops inner_;
     double displaced_ = 0; ///< of the reading, by laws of the transmission and of the reading
+    double current_ = 0;   ///< of a drive in the step before [A]
 };
 
 } // namespace detail

@@ -101,9 +101,13 @@ struct drive_truth {
     double position_gain = 0;                                                             ///< [1/s]
     double duty_gain = 0, supply = 0, minimum_duty = 0, maximum_duty = 1, rate_limit = 0; ///< rate 0: none
     double delay = 0, loss = 0, clock_slip = 0;
-    bool linear = false, tapped = false; ///< set-points drawn as a line; the duty in the log
+    bool linear = false; ///< set-points drawn as a line
+    /// What is measured behind its loops is in the log, too: the duty, or the current; the latter as each row
+    /// begins, or as the mean of the row.
+    bool tapped = false, tap_is_mean = false;
 
     bool closes() const { return kind != drive_kind::current; }
+    bool shows_current() const { return tapped && closes() && kind != drive_kind::position_servo; }
 };
 
 /// The law of an effect of the list, with its true numbers.
@@ -111,6 +115,10 @@ struct law_truth {
     const quadrant::diagnosis::own_law* law = nullptr;
     quadrant::diagnosis::own_law::values values{};
 };
+
+/// A joint of an arm goes ten radians where a linear axis goes a metre: its contacts, its creeping and its
+/// Stribeck velocity are as many times larger in number.
+inline constexpr double radians_for_a_metre = 10;
 
 struct axis_truth {
     std::string name = "x";

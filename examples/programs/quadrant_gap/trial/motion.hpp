@@ -11,6 +11,7 @@ namespace quadrant_gap::trial {
 
 struct motion_limits {
     double seconds = 10, half_travel = 0.15, velocity = 0.4, acceleration = 4, top_Hz = 150;
+    double unit = 1; ///< of what is small: reversals and creeping
 };
 
 class motion {
@@ -94,7 +95,8 @@ private:
     std::vector<piece> pieces_;
 };
 
-/// Two speeds or more over the travel, reversals of 0.05 to 20 mm, mostly a multi-sine, rest; in any order.
+/// Two speeds or more over the travel, reversals of 0.05 to 20 mm (of joints ten times as many mrad), mostly a
+/// multi-sine, rest; in any order.
 inline motion rich_motion(const motion_limits& l, dice& random) {
     motion out;
     out.rest(random.uniform(0.1, 0.3));
@@ -110,7 +112,7 @@ inline motion rich_motion(const motion_limits& l, dice& random) {
         out.stroke(-length, speed, a);
     };
     const auto reversals = [&] {
-        const double amplitude = random.log_uniform(5e-5, 0.02);
+        const double amplitude = l.unit * random.log_uniform(5e-5, 0.02);
         const double fastest = std::sqrt(0.7 * l.acceleration / amplitude) / (2 * std::numbers::pi);
         const double quickest = 0.7 * l.velocity / (2 * std::numbers::pi * amplitude);
         const double f = std::min({fastest, quickest, random.log_uniform(1, 6)});
@@ -118,11 +120,11 @@ inline motion rich_motion(const motion_limits& l, dice& random) {
         if (f > 0.3 && cycles / f < std::min(left(), 0.2 * l.seconds)) out.sinusoid(amplitude, f, cycles);
     };
     const auto creep = [&] { // a slow short stroke there and back
-        const double speed = random.log_uniform(5e-4, 8e-3);
+        const double speed = l.unit * random.log_uniform(5e-4, 8e-3);
         const double length = speed * std::min(0.06 * l.seconds, left() / 2.5);
         if (length <= 0) return;
-        out.stroke(length, speed, 0.3);
-        out.stroke(-length, speed, 0.3);
+        out.stroke(length, speed, 0.3 * l.unit);
+        out.stroke(-length, speed, 0.3 * l.unit);
     };
     const auto tones = [&] {
         const double seconds = std::min(left(), l.seconds * random.uniform(0.1, 0.18));
@@ -150,9 +152,9 @@ inline motion poor_motion(const motion_limits& l, dice& random) {
     const double seconds = std::min(l.seconds, 7.0),
                  length = l.half_travel * random.uniform(0.3, 0.7) * random.sign();
     const double speed = std::abs(length) / (0.42 * seconds);
-    out.stroke(length, speed, 0.5);
+    out.stroke(length, speed, 0.5 * l.unit);
     out.rest(0.1);
-    out.stroke(-length, speed, 0.5);
+    out.stroke(-length, speed, 0.5 * l.unit);
     out.rest(0.2);
     return out;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "effects.hpp"
-#include "logs.hpp"
 
 #include <array>
 #include <string>
@@ -33,6 +32,12 @@ inline quadrant::diagnosis::drive_kind drive_of(population p) {
                                drive_kind::position, drive_kind::position_servo, drive_kind::current,
                                drive_kind::current,  drive_kind::current};
     return kinds[static_cast<std::size_t>(p)];
+}
+
+/// Whether machines of this population are drawn with logs of this kind.
+inline bool can_be_logged(population of, logs how) {
+    if (how == logs::plain || of == population::current) return true;
+    return how == logs::measured && drive_of(of) != quadrant::diagnosis::drive_kind::current;
 }
 
 enum class kind { none, single, pair, unknown, removed, poor };
@@ -94,11 +99,8 @@ inline bool has_a_twin(std::string_view effect) {
 
 /// The effects that a population withholds, in the order of the list.
 inline std::vector<const quadrant::diagnosis::effect*> withheld_from(population of, logs how = logs::plain) {
-    if (!is_chain(of)) {
-        auto out = of == population::joint ? effects_of_a_joint() : withheld_effects(drive_of(of));
-        std::erase_if(out, [&](const auto* e) { return !shows(how, *e); });
-        return out;
-    }
+    if (of == population::joint) return effects_of_a_joint();
+    if (!is_chain(of)) return withheld_effects(drive_of(of), how);
     const std::vector<std::string_view> gears{"lost_motion", "pitch_error", "scale_error", "travel_error",
                                               "encoder_cyclic_error"},
         forces{"wind_up", "motor_friction", "coulomb_friction", "viscous_friction", "mass", "constant_force"},

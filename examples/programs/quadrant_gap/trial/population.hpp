@@ -79,7 +79,7 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
             m.period = random.one_of(p.machines_of == population::position_servo
                                          ? std::vector<double>{0.002, 0.005, 0.005}
                                          : std::vector<double>{0.0005, 0.001, 0.001, 0.002});
-            detail::give_loops(m.described[0], p.machines_of, m.period, random);
+            detail::give_loops(m.described[0], p.machines_of, m.period, m.how, random);
         }
         if (p.machines_of == population::joint) detail::give_joint(m.described[0], m.period, random);
         bool needs_coulomb = false;

@@ -32,6 +32,34 @@ QUADRANT_DIAGNOSIS_DECL outcome link_or_refusal(const described_link& d, const a
     }
 }
 
+/// What turns a beam at each reversal, in words; empty: nothing does. A play is that of the second end: where
+/// the first stays behind, only the link with its ends exchanged shows it.
+inline std::string told_by_reversals(const described_link& d, const outcome& o, const axis_description& axis,
+                                     const axis_log& log, const std::vector<std::string>& excluded,
+                                     const rules& limits) {
+    const auto play_in = [](const outcome& of) {
+        for (const cause& c : of.causes)
+            if (c.effect == "lost_motion" && c.probability >= 0.5) return c.parameters[0].values[0].value;
+        return 0.0;
+    };
+    const auto words = [&](const std::string& behind, const std::string& ahead, double play) {
+        return fmt::format("axis {}: after each reversal {} stays {:.3g} um behind {}: the friction of the "
+                           "ends turns the beam, or a joint of it is loose.",
+                           axis.name, behind, 1e6 * play, ahead);
+    };
+    if (const double play = play_in(o); play > 0) return words(d.to, d.from, play);
+    if (o.verdict <= verdict::explained || d.described.play > 0) return {};
+    described_link exchanged = d;
+    std::swap(exchanged.readings.first, exchanged.readings.last);
+    std::swap(exchanged.readings.first_count, exchanged.readings.last_count);
+    if (!says_enough(readings(exchanged.readings))) return {};
+    const double play = play_in(diagnose_link(exchanged, axis, excluded, limits));
+    if (play == 0) return {};
+    return words(d.from, d.to, play) +
+           fmt::format(R"( It is lost motion of the second end: write "ends": ["{}", "{}"].)",
+                       log.turn->second, log.turn->first);
+}
+
 QUADRANT_DIAGNOSIS_DECL axis_result diagnose_positions(diagnosis_result& out, std::vector<cause>& causes,
                                                        const axis_description& axis, const axis_log& log,
                                                        double period, const std::string& file,
@@ -66,6 +94,9 @@ QUADRANT_DIAGNOSIS_DECL axis_result diagnose_positions(diagnosis_result& out, st
             result.signals.residual_before = o.difference;
             result.signals.residual_after = o.left;
         }
+        if (log.turn)
+            if (auto told = told_by_reversals(d, o, axis, log, excluded, limits); !told.empty())
+                o.notes.push_back(std::move(told));
         join(result, causes, out, std::move(o), "block");
     }
     if (links.size() > 1) // the shares are of two gaps

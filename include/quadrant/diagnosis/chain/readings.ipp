@@ -166,7 +166,8 @@ QUADRANT_DIAGNOSIS_DECL equations readings::of_model(const link_model& m) const 
     }
     std::vector<Eigen::VectorXd> columns{Eigen::VectorXd::Ones(n)};
     out.of.push_back({});
-    if (!link_.asked) { // the two readings are not of the same moment
+    // The two readings are not of the same moment; beside a freed delay a second time would mean nothing.
+    if (!link_.asked && !m.has(term::delay)) {
         Eigen::VectorXd age(n);
         for (Eigen::Index i = 0; i < n; ++i) age[i] = velocity_[rows_[static_cast<std::size_t>(i)]];
         columns.push_back(std::move(age));

@@ -9,7 +9,7 @@ namespace quadrant::inline v0::diagnosis::suspect {
 /// length itself: where the inertia of the payload is too small to show, it is one group with `payload_mass`.
 inline constexpr effect arm_length{
     .name = "arm_length",
-    .label = "another length of the arm",
+    .label = "longer or shorter arm",
     .box = "mechanics",
     .joins = joint::force,
     .exciting_motion = "strong accelerations beside slow strokes, hanging and level",

@@ -71,7 +71,8 @@ QUADRANT_DIAGNOSIS_DECL std::optional<tap_reading> axis_case::other_tap() const 
     const plant_model& plant = best().fit.plant;
     if (!record.taps_force(plant.drive) || record.tap || best().effects.empty()) return {};
     const fitter fit(record.observer, record.score);
-    const tap_reading way = detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit));
+    const tap_reading way = detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit),
+                                             record.bandwidth_Hz);
     return way == plant.drive.read.tap ? std::nullopt : std::optional(way);
 }
 

@@ -14,9 +14,10 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 /// The way in which the tap is read with which this machine, its `own` numbers fitted, gives least otherwise:
-/// by the median over the rows, which an effect in a part of them moves little.
+/// by the median over the rows, which an effect in a part of them moves little, below `band_Hz`.
 QUADRANT_DIAGNOSIS_DECL tap_reading best_tap(const fitter& fit, const driven_motion& drive,
-                                             plant_model described, const std::vector<parameter>& own);
+                                             plant_model described, const std::vector<parameter>& own,
+                                             double band_Hz);
 } // namespace detail
 
 /// The described machine on the record of one axis, calibrated inside the owner's tolerance; and what a model

@@ -6,14 +6,17 @@ namespace quadrant::inline v0::diagnosis {
 namespace detail {
 
 QUADRANT_DIAGNOSIS_DECL tap_reading best_tap(const fitter& fit, const driven_motion& drive,
-                                             plant_model described, const std::vector<parameter>& own) {
+                                             plant_model described, const std::vector<parameter>& own,
+                                             double band_Hz) {
     constexpr int steps = 6; // of a fit: the ways differ by more than its last digits
     tap_reading best = described.drive.read.tap;
     double least = std::numeric_limits<double>::infinity();
     for (const auto way :
          {tap_reading::before_set_point, tap_reading::after_set_point, tap_reading::row_mean}) {
         described.drive.read.tap = way;
-        auto size = drive.run(fit.fit(described, own, steps).plant.drive).beside;
+        // Above the band the noise of the position decides, which is smaller on average over a row.
+        auto size =
+            zero_phase(drive.run(fit.fit(described, own, steps).plant.drive).beside, band_Hz, drive.period);
         for (double& e : size) e = std::abs(e);
         const double left = quantile(std::move(size), 0.5);
         if (left < least) best = way;
@@ -41,9 +44,10 @@ QUADRANT_DIAGNOSIS_DECL axis_models::axis_models(const axis_record& record, cons
     for (parameter& p : numbers_of_record(given_.fit.plant, record))
         start.fit.parameters.push_back(std::move(p));
     if (record.taps_force(given_.fit.plant.drive))
-        given_.fit.plant.drive.read.tap =
-            record.tap ? *record.tap
-                       : detail::best_tap(fit, *record.observer.drive, given_.fit.plant, start.fit.parameters);
+        given_.fit.plant.drive.read.tap = record.tap
+                                              ? *record.tap
+                                              : detail::best_tap(fit, *record.observer.drive, given_.fit.plant,
+                                                                 start.fit.parameters, record.bandwidth_Hz);
     start.fit.plant = given_.fit.plant;
     fit.evaluate(given_.fit);
     given_.total = -fit.score_ms(given_.fit.ms); // nothing was fitted: every motion is held out
