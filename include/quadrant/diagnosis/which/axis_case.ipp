@@ -71,8 +71,8 @@ QUADRANT_DIAGNOSIS_DECL std::optional<tap_reading> axis_case::other_tap() const 
     const plant_model& plant = best().fit.plant;
     if (!record.taps_force(plant.drive) || record.tap || best().effects.empty()) return {};
     const fitter fit(record.observer, record.score);
-    const tap_reading way = detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit),
-                                             record.bandwidth_Hz);
+    const tap_reading way =
+        detail::best_tap(fit, *record.observer.drive, plant, resumed(best().fit), record.bandwidth_Hz);
     return way == plant.drive.read.tap ? std::nullopt : std::optional(way);
 }
 
@@ -81,9 +81,8 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     claims = path.size() - 1;
     noise = models.noise(best());
     const auto ms = detail::beside_own_noise(best().fit.ms, record, log, best().fit.plant);
-    const auto cloud = [&]() -> const std::vector<double>& { return models.tolerance_cloud(); };
-    settled = models.settled(ms, record.score, noise, cloud) &&
-              (best().effects.empty() || models.near_its_laws(best()));
+    settled = models.settled(ms, record.score, noise, [&] { return models.tolerance_cloud(); });
+    if (!best().effects.empty()) settled = settled && models.near_its_laws(best());
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
     if (tested_apart()) settled_on_second = second_log(best()).settled;
 }
@@ -154,8 +153,8 @@ QUADRANT_DIAGNOSIS_DECL bool axis_case::is_error_of_its_law(const effect& e) con
 QUADRANT_DIAGNOSIS_DECL bool axis_case::claims_suffice() const {
     const candidate& m = applied();
     if (claims == 0 || !models.near_its_laws(m)) return false;
-    return models.settled(m) ||
-           (!record.closed() && within_its_laws_on_both(beside_stronger_friction(m.fit.plant)));
+    if (models.settled(m)) return true;
+    return !record.closed() && within_its_laws_on_both(beside_stronger_friction(m.fit.plant));
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<double>
