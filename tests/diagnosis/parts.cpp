@@ -480,6 +480,39 @@ TEST_CASE("regimes: Coulomb friction lies in velocity, cogging in position, each
     }
 }
 
+TEST_CASE("calibration: a constant force and the asymmetries of friction move inside their tolerances, of "
+          "either sign; "
+          "what the file does not describe stays") {
+    axis_description axis;
+    axis.plant.mass_kg = 10;
+    const auto moving = [&](std::string_view key) {
+        std::optional<parameter> out;
+        for (parameter& p : calibration(axis, workshop::usual.give()))
+            if (p.key == key) out = std::move(p);
+        return out;
+    };
+    CHECK_FALSE(moving("constant_force_N"));
+    for (const double sign : {-1, 1}) {
+        axis.plant.constant_force_N = sign * 4;
+        axis.plant.coulomb_N = 5;
+        axis.plant.coulomb_asymmetry = sign * 0.2;
+        axis.plant.viscous_asymmetry = sign * 0.1;
+        for (const auto& [key, value] :
+             {std::pair{"constant_force_N", 4.0}, std::pair{"coulomb_asymmetry", 0.2},
+              std::pair{"viscous_asymmetry", 0.1}}) {
+            CAPTURE(key);
+            const auto p = moving(key);
+            REQUIRE(p);
+            plant_model plant(axis, workshop::usual.give());
+            CHECK(workshop::near(p->of(plant), sign * value, 1e-12));
+            CHECK(workshop::near(p->low, sign * value - 0.05 * value, 1e-12)); // no tolerance is given
+            CHECK(workshop::near(p->high, sign * value + 0.05 * value, 1e-12));
+            CHECK(workshop::near(p->from_fit(p->expected), sign * value, 1e-12));
+            CHECK(p->spread > 0);
+        }
+    }
+}
+
 TEST_CASE(
     "calibration: a contact described as giving way stays as described, one that gives way a little may move") {
     plant_description d;

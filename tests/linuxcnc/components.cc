@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // The HAL components without LinuxCNC: on the stub beside this file, called period by period.
+#include "claims.hpp"
 #include "linuxcnc/component.hpp"
 #include "linuxcnc/quadrant_axis.hpp"
 #include "linuxcnc/quadrant_plant.hpp"
@@ -8,25 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <random>
-
-// Whoever allocates while the real-time function runs is counted.
-static thread_local bool real_time = false;
-static int allocations = 0;
-void* operator new(std::size_t size) {
-    allocations += real_time;
-    if (void* p = std::malloc(size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-
-static int failures = 0;
-static void claim(bool holds, const char* what) {
-    std::printf("%s: %s\n", holds ? "ok" : "FAILED", what);
-    failures += !holds;
-}
 
 static volatile double& real(const char* name) { return *stub::reals.at(name); }
 static bool bit(const char* name) { return *stub::bits.at(name); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // quadrant_xy without LinuxCNC, on the stub beside this file: it has to do what two quadrant_axis do, each of
 // them on a plant of its own, and stop both axes where one of them is lost.
+#include "claims.hpp"
 #include "linuxcnc/component.hpp"
 #include "linuxcnc/quadrant_axis.hpp"
 #include "linuxcnc/quadrant_plant.hpp"
@@ -10,27 +11,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <string>
 #include <tuple>
 #include <utility>
-
-// Whoever allocates while the real-time function runs is counted.
-static thread_local bool real_time = false;
-static int allocations = 0;
-void* operator new(std::size_t size) {
-    allocations += real_time;
-    if (void* p = std::malloc(size)) return p;
-    throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-
-static int failures = 0;
-static void claim(bool holds, const char* what) {
-    std::printf("%s: %s\n", holds ? "ok" : "FAILED", what);
-    failures += !holds;
-}
 
 using text = std::string;
 static volatile double& real(const text& name) { return *stub::reals.at(name); }

@@ -81,7 +81,7 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     claims = path.size() - 1;
     noise = models.noise(best());
     const auto ms = detail::beside_own_noise(best().fit.ms, record, log, best().fit.plant);
-    settled = models.settled(ms, record.score, noise, [&] { return models.tolerance_cloud(); });
+    settled = models.settled(ms, noise);
     if (!best().effects.empty()) settled = settled && models.near_its_laws(best());
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
     if (tested_apart()) settled_on_second = second_log(best()).settled;

@@ -51,7 +51,9 @@ public:
     /// Nothing is left to explain, neither in pulses nor as a slow force below the encoder's count.
     bool at_noise(const candidate& c) const;
 
-    bool settled(const candidate& c) const;
+    /// The same on this record.
+    bool settled(const std::vector<std::vector<double>>& ms, double sigma) const;
+    bool settled(const candidate& c) const { return settled(c.fit.ms, noise(c)); }
 
     /// What a model leaves is mostly noise. Tolerances excuse what the described machine leaves, not what
     /// causes do.

@@ -60,8 +60,9 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::immaterial(const candidate& c) const {
     return true;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const candidate& c) const {
-    return settled(c.fit.ms, record_.score, noise(c),
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::settled(const std::vector<std::vector<double>>& ms,
+                                                  double sigma) const {
+    return settled(ms, record_.score, sigma,
                    [this]() -> const std::vector<double>& { return tolerance_cloud(); });
 }
 
