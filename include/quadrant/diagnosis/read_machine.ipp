@@ -225,7 +225,8 @@ private:
         std::string missing;
         for (const tolerance_name& t : tolerance_names(axis.kind)) {
             const auto described = numbers_of(axis, *t.key, *t.of);
-            if (!described.empty() && described[0] != 0 && !axis.tolerance.given.contains(std::string(t.name)))
+            if (t.key->unstated > 0 && !described.empty() && described[0] != 0 &&
+                !axis.tolerance.given.contains(std::string(t.name)))
                 missing += (missing.empty() ? "" : ", ") + key_of(t.name, axis.kind);
         }
         if (!missing.empty())

@@ -17,7 +17,9 @@ inline constexpr effect actuator_dead_zone{
     .keys = {machine_key{.name = "actuator.dead_zone_V",
                          .rule = detail::rule::not_negative,
                          .meaning = "commands below it have no effect, larger ones lose it",
-                         .at = member<&actuator_description::dead_zone_V>}},
+                         .at = member<&actuator_description::dead_zone_V>,
+                         .of = [](plant_model& p) -> double& { return p.dead_zone; },
+                         .tolerance = true}},
     .prior = {0.03, "hydraulic valves and cheap output stages have it; servo amplifiers seldom"},
     .remedy = "Invert the dead zone in the drive: it needs the direction of the whole command.",
     .advice =

@@ -16,7 +16,9 @@ inline constexpr effect actuator_lag{
     .keys = {machine_key{.name = "actuator.lag_s",
                          .rule = detail::rule::up_to_a_second,
                          .meaning = "time constant of the current loop, first order",
-                         .at = member<&actuator_description::lag_s>}},
+                         .at = member<&actuator_description::lag_s>,
+                         .of = [](plant_model& p) -> double& { return p.lag; },
+                         .tolerance = true}},
     .prior = {0.4, "every current loop has one; most are faster than a position log can see"},
     .remedy = "Tune the current loop faster; use lower position and velocity gains until then.",
     .advice =

@@ -16,7 +16,10 @@ inline constexpr effect actuator_saturation{
     .keys = {machine_key{.name = "actuator.drive_limit_V",
                          .rule = detail::rule::positive,
                          .meaning = "limit of the drive, below the controller's own",
-                         .at = member<&actuator_description::drive_limit_V>}},
+                         .at = member<&actuator_description::drive_limit_V>,
+                         .of = [](plant_model& p) -> double& { return p.drive_limit; },
+                         .neutral = std::numeric_limits<double>::infinity(),
+                         .tolerance = true}},
     .prior = {0.2, "current limits are set by hand and forgotten"},
     .remedy = "Command less acceleration or raise the current limit of the drive: what is cut off cannot be "
               "fed forward.",

@@ -18,7 +18,9 @@ inline constexpr effect backlash{
     .keys = {machine_key{.name = "backlash_m",
                          .rule = detail::rule::not_negative,
                          .meaning = "play between drive and encoder",
-                         .at = member<&plant_description::backlash_m>}},
+                         .at = member<&plant_description::backlash_m>,
+                         .of = [](plant_model& p) -> double& { return p.backlash; },
+                         .tolerance = true}},
     .prior = {0.4, "screws, gears and couplings wear; a direct drive cannot have it"},
     .remedy =
         "Preload the nut or the gear; an encoder on the load lets the loop see the play, but not remove it.",

@@ -17,7 +17,9 @@ inline constexpr effect cross_coupling{
                          .rule = detail::rule::asymmetry,
                          .meaning =
                              "this axis' acceleration gains coupling times the other's, of the same kind",
-                         .at = member<&plant_description::coupling>}},
+                         .at = member<&plant_description::coupling>,
+                         .of = [](plant_model& p) -> double& { return p.coupling; },
+                         .tolerance = true}},
     .prior = {0.1,
               "stacked axes and soft machine beds have it; it shows only while the other axis accelerates"},
     .remedy = "Feed the other axis' reference acceleration forward in this command; check squareness and how "

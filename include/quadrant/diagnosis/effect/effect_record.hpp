@@ -66,6 +66,12 @@ struct effect {
     double by_another_law = 1;
 };
 
+/// Whether the sizes of an effect are those of a wave's harmonics.
+constexpr bool is_wave(const effect& e) {
+    return std::any_of(e.keys.begin(), e.keys.end(),
+                       [](const machine_key& k) { return !k.components.empty(); });
+}
+
 /// Whether one of two effects names the other as the same model on some records.
 constexpr bool may_be_one(const effect& a, const effect& b) {
     const auto names = [](const effect& one, const effect& other) {

@@ -5,6 +5,7 @@
 #include "../text/number_rule.hpp"
 
 #include <concepts>
+#include <span>
 #include <variant>
 
 namespace quadrant::inline v0::diagnosis {
@@ -55,9 +56,12 @@ struct machine_key {
     double& (*of)(plant_model&) = nullptr;
     double neutral = 0; ///< the value at which the effect is absent
     key_shape shape = key_shape::number;
+    /// Of the size of a wave, in place of `of`: both components of each of its harmonics.
+    std::span<double& (*const)(plant_model&)> components{};
     bool required = false;
     bool tolerance = false; ///< the owner may say how well it is known, under its name without the unit
-    bool percent = false;   ///< a pure number that texts show in per cent
+    double unstated = tolerance_description::unstated; ///< how well, where he does not say so
+    bool percent = false;                              ///< a pure number that texts show in per cent
     bool unit_of_command =
         false; ///< named by the unit of the command: "_per_V" or "_per_A", absent where that is the force
     bool same_when_rotary = false;            ///< a mass or a length on a rotary axis, too

@@ -10,6 +10,16 @@ namespace quadrant::inline v0::diagnosis::detail {
 
 using harmonics_of = harmonics& (*)(plant_model&);
 
+/// Both components of each harmonic of a wave in a model, for `machine_key::components`.
+template <harmonics_of Box>
+inline constexpr auto components_of = []<std::size_t... I>(std::index_sequence<I...>) {
+    using component = double& (*)(plant_model&);
+    return std::array<component, 2 * sizeof...(I)>{
+        [](plant_model& p) -> double& { return Box(p).cosine[I]; }...,
+        [](plant_model& p) -> double& { return Box(p).sine[I]; }...};
+}
+(std::make_index_sequence<harmonics::most>());
+
 template <harmonics_of Box, std::size_t I>
 void add_harmonic(std::vector<parameter>& ps, const char* key, double size) {
     const auto amplitude = [&](double& (*of)(plant_model&)) {

@@ -63,9 +63,9 @@ struct payload_description {
 struct tolerance_description {
     std::map<std::string, double> given;
     static constexpr double unstated = 0.05; ///< docs/formats.md: absent means 0.05 and a note
-    double of(const std::string& key) const {
+    double of(const std::string& key, double otherwise = unstated) const {
         const auto found = given.find(key);
-        return found == given.end() ? unstated : found->second;
+        return found == given.end() ? otherwise : found->second;
     }
 };
 

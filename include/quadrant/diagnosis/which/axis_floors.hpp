@@ -85,6 +85,9 @@ public:
 protected:
     using axis_models::axis_models;
 
+    /// Whether every harmonic of a wave ends inside its tolerance, and no other was found.
+    bool is_calibration_of_wave(plant_model& fitted, const effect& e) const;
+
     /// By how much the innovations of twenty such machines differ from those of the calibrated one [m].
     std::vector<std::vector<double>>
     differences_of_like_machines(const axis_record& r, const plant_model& calibrated, bool with_loops) const;

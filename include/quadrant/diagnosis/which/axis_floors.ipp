@@ -5,6 +5,7 @@ namespace quadrant::inline v0::diagnosis {
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration(const candidate& c, const effect* e) const {
     plant_model fitted = c.fit.plant;
+    if (is_wave(*e)) return is_calibration_of_wave(fitted, *e);
     const auto values = e->read(fitted);
     for (const parameter& own : calibrated_.fit.parameters)
         if (!values.empty() && own.key == values.front().key && own.key != "presliding_length_m") {
@@ -12,6 +13,23 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration(const candidate& c, con
             return x >= own.low && x <= own.high;
         }
     return false;
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::is_calibration_of_wave(plant_model& fitted, const effect& e) const {
+    plant_model described = given_.fit.plant;
+    bool any = false;
+    // Inside its bounds, or as described where it has none.
+    const auto stays = [&](double& (*of)(plant_model&)) {
+        for (const parameter& own : calibrated_.fit.parameters)
+            if (&own.of(fitted) == &of(fitted)) {
+                any = true;
+                return of(fitted) >= own.low && of(fitted) <= own.high;
+            }
+        return of(fitted) == of(described);
+    };
+    for (const machine_key& key : e.keys)
+        if (!std::all_of(key.components.begin(), key.components.end(), stays)) return false;
+    return any;
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::noise(const candidate& c) const {

@@ -8,6 +8,15 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
+/// Whether a model has a wave, or a mean beside it.
+inline bool is_there(plant_model& p, const effect& wave) {
+    return std::any_of(wave.keys.begin(), wave.keys.end(), [&](const machine_key& k) {
+        const auto acts = [&](auto of) { return of(p) != 0; };
+        return std::any_of(k.components.begin(), k.components.end(), acts) ||
+               (k.of && k.needs.front().empty() && acts(k.of));
+    });
+}
+
 /// The described machine's own numbers as machine keys. Friction that gives way
 /// a little is written as one element.
 inline constexpr effect described_values{
@@ -28,9 +37,14 @@ inline constexpr effect described_values{
         }
         plant_model model = p;
         for (const effect* e : every_effect())
-            for (const machine_key& key : e->keys)
-                if (key.of && key.tolerance && key.of(model) != key.neutral)
-                    out.push_back({std::string(key.name), {key.of(model)}});
+            if (is_wave(*e)) {
+                if (is_there(model, *e))
+                    for (key_value& v : e->read(model)) out.push_back(std::move(v));
+            } else {
+                for (const machine_key& key : e->keys)
+                    if (key.of && key.tolerance && key.of(model) != key.neutral)
+                        out.push_back({std::string(key.name), {key.of(model)}});
+            }
         if (f.coulomb + f.excess > 0 && f.contact.elements == 1) {
             out.push_back({"gms_weights", {1}});
             out.push_back({"gms_stiffness_N_per_m", {(f.coulomb + f.excess) / f.contact.lengths()[0]}});

@@ -59,6 +59,13 @@ struct within_tolerance {
     }
 };
 
+/// The components of a wave, each by its own share: the size then stays inside its tolerance, and the phase
+/// gives way as far as that lets it.
+inline void add_wave(const within_tolerance& within, const machine_key& key, plant_model described,
+                     double relative) {
+    for (double& (*const of)(plant_model&) : key.components) within(key.name, of, of(described), relative);
+}
+
 /// Both levels of friction move inside their tolerances, and the excess between them by what either lets it.
 inline void add_friction(std::vector<parameter>& out, const plant_description& d,
                          const tolerance_description& tolerance) {
@@ -116,11 +123,15 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
     within(
         "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
+    const plant_model described(axis, give);
     for (const effect* e : every_effect())
-        for (const machine_key& key : e->keys)
-            if (key.of && key.tolerance)
-                for (double value : numbers_of(axis, key, *e))
-                    within(key.name, key.of, value, tolerance.of(std::string(key.tolerance_name())));
+        for (const machine_key& key : e->keys) {
+            if (!key.tolerance) continue;
+            const double relative = tolerance.of(std::string(key.tolerance_name()), key.unstated);
+            detail::add_wave(within, key, described, relative);
+            if (key.of)
+                for (double value : numbers_of(axis, key, *e)) within(key.name, key.of, value, relative);
+        }
     detail::add_contact(out, d, give);
     return out;
 }
