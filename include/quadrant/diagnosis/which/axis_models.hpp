@@ -44,8 +44,8 @@ public:
     /// Rms of the residual force of a model with the numbers of one of its effects back as described, all
     /// others kept [N].
     double force_without(const candidate& whole, const effect& e) const;
-    /// Rms of what one of the effects of a model does to its residual force [N].
-    double force_of(const candidate& whole, const effect& e) const;
+    /// What one of the effects of a model does to its residual force [N].
+    std::vector<double> does(const candidate& whole, const effect& e) const;
     /// A model with the numbers of one of its effects back as described, all others kept.
     plant_model plant_without(const candidate& whole, const effect& e) const;
 

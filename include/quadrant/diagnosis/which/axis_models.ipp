@@ -89,12 +89,12 @@ QUADRANT_DIAGNOSIS_DECL double axis_models::force_without(const candidate& whole
     return rms(residual(c));
 }
 
-QUADRANT_DIAGNOSIS_DECL double axis_models::force_of(const candidate& whole, const effect& e) const {
+QUADRANT_DIAGNOSIS_DECL std::vector<double> axis_models::does(const candidate& whole, const effect& e) const {
     std::array<std::vector<double>, 2> left;
     residuals({whole.fit.plant, plant_without(whole, e)},
               [&](std::size_t i, std::vector<double> r) { left[i] = std::move(r); });
     for (std::size_t k = 0; k < left[0].size(); ++k) left[1][k] -= left[0][k];
-    return rms(left[1]);
+    return left[1];
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_models::is_calibrated(const parameter& p) const {

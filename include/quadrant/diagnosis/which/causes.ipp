@@ -79,8 +79,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
-        const bool like_friction = e.joins != joint::command && e.joins != joint::reading;
-        if ((of_laws && like_friction) || c.is_error_of_its_law(e) || undetermined ||
+        const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
+        if ((of_laws && on_axis && detail::may_be_friction(c, e)) || c.is_error_of_its_law(e) || undetermined ||
             detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
             detail::is_as_described(named, e, as_given) || detail::lies_beyond(named, c.best()))
             detail::to_suspects({&named, 1});

@@ -165,6 +165,21 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
     return false;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool may_be_friction(const axis_case& c, const effect& e) {
+    if (e.of_described_friction) return true; // it is that law
+    const auto left = [&](const plant_model& p) {
+        candidate m;
+        m.fit.plant = p;
+        return square(rms(beside_friction(c.record, c.models.residual(m))));
+    };
+    const double with = left(c.best().fit.plant), without = left(c.models.plant_without(c.best(), e));
+    const double noise = std::min(with, square(c.floor_force()));
+    const channel& band = c.record.score.channels.front();
+    const double samples = band.nu * static_cast<double>(band.segment_of_block.size());
+    const bool surely_there = 0.5 * samples * std::log(without / with) > c.limits.margin;
+    return !(surely_there && without - with > 0.5 * (without - noise));
+}
+
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e) {
     if (c.record.replayed() || !c.calibrated_within_tolerances()) return false;
     const std::array plants{c.best().fit.plant, c.models.plant_without(c.best(), e)};
@@ -173,7 +188,10 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
     auto &left = innovation[0], &does = innovation[1];
     for (std::size_t k = 0; k < does.size(); ++k) does[k] -= left[k];
     return std::all_of(c.record.score.channels.begin(), c.record.score.channels.end(),
-                       [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
+                       [&](const channel& band) {
+                           const double above_noise = square(rms(seen(left, band))) - band.of_noise(c.noise);
+                           return square(rms(seen(does, band))) < 4 * std::max(0.0, above_noise);
+                       });
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

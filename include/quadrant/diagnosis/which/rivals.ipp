@@ -172,8 +172,8 @@ private:
     /// something beside it does.
     bool stands_in(const rival& r, const rival& first) const {
         if (&r == &first || !by_force(r)) return true;
-        if (!force_of_own_) force_of_own_ = case_.models.force_of(case_.best(), own_);
-        return case_.models.force_of(r.model, *r.name) > *force_of_own_ / 3;
+        if (!force_of_own_) force_of_own_ = rms(case_.models.does(case_.best(), own_));
+        return rms(case_.models.does(r.model, *r.name)) > *force_of_own_ / 3;
     }
 
     const axis_case& case_;
