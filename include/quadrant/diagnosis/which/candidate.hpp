@@ -82,6 +82,17 @@ QUADRANT_DIAGNOSIS_DECL double flexibility(const fit_result& f);
 /// What rare effects must bring before they stand beside common ones: their prior odds, as a score.
 QUADRANT_DIAGNOSIS_DECL double rarity(const std::vector<const effect*>& effects);
 
+/// Curvature and gradient of the score around a fit: of each fold, and of all.
+struct fold_sums {
+    std::array<fold_sum, folds> of{};
+    fold_sum all{};
+    Eigen::VectorXd low{}, high{}; ///< how far each number may still move
+};
+
+/// One Newton step from the whole fit to that without a fold, inside the bounds: where a number meets one,
+/// those of its valley stop with it.
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd step_without(const fold_sums& sums, std::size_t fold, bool replayed);
+
 } // namespace detail
 
 /// Judges on motion that was not fitted: for each fold the parameters are found again without its segments by

@@ -18,13 +18,6 @@ QUADRANT_DIAGNOSIS_DECL double rarity(const std::vector<const effect*>& effects)
     return sum;
 }
 
-/// Curvature and gradient of the score around a fit: of each fold, and of all.
-struct fold_sums {
-    std::array<fold_sum, folds> of{};
-    fold_sum all{};
-    Eigen::VectorXd low{}, high{}; ///< how far each number may still move
-};
-
 /// Sums of the blocks; the candidate gets those that intervals are made of.
 inline fold_sums sums_of(candidate& c, const scoring& s) {
     const auto n = c.fit.x.size();
@@ -74,15 +67,12 @@ inline void add_what_is_known(fold_sums& sums, const fit_result& fit) {
     }
 }
 
-/// One Newton step from the whole fit to that without a fold.
-inline Eigen::VectorXd step_without(const fold_sums& sums, std::size_t fold, bool replayed) {
+QUADRANT_DIAGNOSIS_DECL Eigen::VectorXd step_without(const fold_sums& sums, std::size_t fold, bool replayed) {
     Eigen::MatrixXd a = sums.all.a - sums.of[fold].a;
     a.diagonal() *= 1 + 1e-9;
-    if (replayed) return bounded_step(a, sums.all.g - sums.of[fold].g, sums.low, sums.high);
-    return solved(a, sums.of[fold].g) // at the optimum, where nothing presses against a bound
-        .unaryExpr([](double d) { return std::isfinite(d) ? d : 0; })
-        .cwiseMax(sums.low)
-        .cwiseMin(sums.high);
+    Eigen::VectorXd g = -sums.of[fold].g;
+    if (replayed) g += sums.all.g; // elsewhere as at the optimum, where nothing presses against a bound
+    return bounded_step(a, g, sums.low, sums.high);
 }
 
 /// Of a path: a machine far from its description has to be worth it, and so has a number that is free.

@@ -45,8 +45,9 @@ QUADRANT_DIAGNOSIS_DECL excluded_rival excluded_instead_of(const axis_case& c, s
 QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
                                                          const std::vector<parameter_estimate>& found);
 
-/// Whether what an effect does in the best model may be what a law of friction is wrong by. It is not where it
-/// is surely there in forces that no such law holds, and takes off half of what is left of them above the noise.
+/// Whether what an effect does in the best model may be what a law of friction is wrong by. It is not where
+/// it is surely there in forces that no such law holds, and takes off half of what is left of them above the
+/// noise.
 QUADRANT_DIAGNOSIS_DECL bool may_be_friction(const axis_case& c, const effect& e);
 
 /// Whether, on a machine that is within the owner's tolerances without any cause, an effect with all other
