@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "claims.hpp"
 
+#include <quadrant/diagnosis/effect/cogging.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/which/calibration.hpp>
 
@@ -94,4 +95,60 @@ TEST_CASE("described waves: a machine file holds the tolerance of a size and of 
     CHECK(m.axes[0].tolerance.of("ripple") == 0.2);
     CHECK(m.axes[0].tolerance.of("ripple_period") == 0.01);
     for (const std::string& note : m.notes) CHECK(note.find("ripple") == std::string::npos);
+}
+
+TEST_CASE("waves: a small fourth harmonic of a cogging is its own, no other wave" *
+          doctest::test_suite("all")) {
+    machine real;
+    const auto file = described(real);
+    real.stranger = [](double x, double, double) {
+        const double turn = 2 * std::numbers::pi * x / 0.0178;
+        return 150 * std::sin(turn) + 30 * std::sin(2 * turn + 1) + 10 * std::sin(3 * turn + 2) +
+               4 * std::sin(4 * turn);
+    };
+    const auto d = diagnosed(file, real);
+    CAPTURE(said(d));
+    CHECK(claims(d) == std::vector<std::string>{"cogging"});
+    REQUIRE(!d.causes.empty());
+    for (const parameter_estimate& p : d.causes[0].parameters)
+        if (p.key == "cogging_N") {
+            REQUIRE(p.values.size() > 3);
+            CHECK(near(p.values[3].value, 4, 0.1));
+        }
+}
+
+TEST_CASE(
+    "waves: the fit of a cogging begins with the harmonics that stand above the noise, however small beside "
+    "the first") {
+    // Four passes over a tenth of a metre.
+    axis_record r;
+    std::vector<double> x;
+    for (int k = 0; k < 4000; ++k) {
+        x.push_back(0.05 * (1 - std::cos(2 * std::numbers::pi * k / 2000.0)));
+        r.velocity.push_back(50 * std::numbers::pi / 2000 * std::sin(2 * std::numbers::pi * k / 2000.0));
+    }
+    r.position = x;
+    r.period = 0.001;
+    r.bandwidth_Hz = 100;
+    r.resolution = 1e-6;
+    r.scale = {.travel = 0.1, .speed = 0.08, .command = 1, .count = 1e-6, .corner_Hz = 100};
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 0.05);
+    const auto freed = [&](double fourth) { // numbers of the start at that period
+        std::vector<double> residual;
+        for (const double at : x) {
+            const double turn = 2 * std::numbers::pi * at / 0.011;
+            residual.push_back(10 * std::sin(turn) + fourth * std::sin(4 * turn) + noise(random));
+        }
+        const plant_description described;
+        const tolerance_description tolerance;
+        plant_model leader;
+        leader.force_constant = 100;
+        std::size_t of_the_period = 0;
+        for (const auto& start : suspect::cogging.starts({described, tolerance, r, leader, residual, residual}))
+            if (near(start.front().start, 0.011, 0.02)) of_the_period = start.size();
+        return of_the_period;
+    };
+    CHECK(freed(0) == 1 + 2 * 3);   // the period and three harmonics
+    CHECK(freed(0.3) == 1 + 2 * 8); // a thousandth of the first's power
 }

@@ -63,12 +63,9 @@ inline constexpr effect cogging{
         const auto& x = s.record.position;
         for (double period :
              detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
-            const auto power = detail::comb<8>(s.residual, x, period);
-            const double most = *std::max_element(power.begin(), power.end());
-            const bool many = std::any_of(power.begin() + 3, power.end(),
-                                          [&](double p) { return p > 0.01 * most; }); // a tenth in force
-            const auto repeats = many ? detail::repeating<detail::cogging_harmonics, 8>
-                                      : detail::repeating<detail::cogging_harmonics, 3>;
+            const auto repeats = detail::holds_more_than_three(s, period)
+                                     ? detail::repeating<detail::cogging_harmonics, 8>
+                                     : detail::repeating<detail::cogging_harmonics, 3>;
             out.push_back(repeats("cogging_period_m", "cogging_N", period, travel, s.force_scale()));
         }
         return out;
