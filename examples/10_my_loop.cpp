@@ -2,8 +2,8 @@
 // How long does my own loop take? Fifteen lines put it under the clock, and under callgrind, which counts the
 // most instructions of a sample over all inputs and does not care what else runs.
 //
-//   build/examples/10_my_loop            times of 200 000 calls
-//   sh benchmarks/bound.sh build/examples/10_my_loop once      instructions: the most of a call, and which call
+//   build/release/examples/10_my_loop    times of 200 000 calls
+//   sh benchmarks/bound.sh build/release/examples/10_my_loop once      instructions: the most of a call, and which call
 //
 // You should see: every call finite, and a median far below a servo period.
 #include <quadrant/analysis/measure.hpp>

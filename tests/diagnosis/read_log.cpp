@@ -316,6 +316,14 @@ TEST_CASE("read_log: UTF-16 with its byte order mark is read as UTF-8") {
     CHECK(read(big).axes[0].position == read(good).axes[0].position);
 }
 
+TEST_CASE("read_log: a MAT, HDF5 or Parquet file is refused with the command that makes a log of it") {
+    for (const std::string start : {"MATLAB 5.0 MAT-file, a text of 116 bytes", "\x89HDF\r\n\x1a\n", "PAR1"})
+        CHECK_THROWS_WITH_AS(read(start + std::string(8, '\0') + "\n"),
+                             "log.csv:1:1: is a MAT, Parquet or HDF5 file: make a log of it with quadrant-gap "
+                             "import FILE log.csv",
+                             bad_input);
+}
+
 TEST_CASE("read_log: stamps that are written too coarsely still give the period") {
     std::vector<std::string> stamps; // a quarter of a millisecond in four decimals
     for (int k = 0; k < 400; ++k) stamps.push_back(fmt::format("{:.4f}", 2.5e-4 * k));

@@ -90,6 +90,10 @@ public:
 
 private:
     void refuse_other_files() {
+        for (const std::string_view mark : {"MATLAB ", "PAR1", "\x89HDF"})
+            if (line_.starts_with(mark))
+                refuse_(0, "is a MAT, Parquet or HDF5 file: make a log of it with quadrant-gap import FILE "
+                           "log.csv");
         if (line_.find('\0') != line_.npos)
             refuse_(line_.find('\0'),
                     "holds zero bytes: it is UTF-16 without a byte order mark, or no text; save it as "
