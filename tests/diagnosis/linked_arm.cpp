@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
-// Two links of one arm, which a machine file describes as two axes alone: that they move each other is told, with
-// the numbers of the law; axes that do not touch are not called an arm.
+// Two links of one arm, which a machine file describes as two axes alone: that they move each other is told,
+// with the numbers of the law; axes that do not touch are not called an arm.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/match.hpp>

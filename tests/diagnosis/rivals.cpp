@@ -16,7 +16,7 @@ using workshop::said;
 
 namespace {
 
-/// The second joint of a robot: strokes of 2 rad, slow and fast, with the current that they need, and its noise.
+/// The second joint of a robot: strokes of 2 rad, slow and fast, with the current that they need and noise.
 std::string joint_log() {
     constexpr double period = 0.01, inertia = 16, viscous = 16.5, coulomb = 14.2, weight = 105;
     constexpr std::size_t rows = 9600, window = 40;
