@@ -490,3 +490,32 @@ TEST_CASE(
     // negative there and makes three fifths of the command, and the jerk shows why.
     CHECK(pushed(1, 0, 0.02, 0.5, 0.2) == "accepted");
 }
+
+TEST_CASE("import: a row without a value that is asked for is missing, whatever stands in the others") {
+    const std::string map =
+        R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "t", "unit": "s"},
+        "axes": {"q": {"reference": {"column": "goal", "unit": "turn"}, "position": {"column": "at", "unit": "turn"},
+                       "command": {"column": "torque", "unit": "Nm"}}}})";
+    std::string text = "t,goal,at,torque,heat\n0.0,,0.5,0,\n"; // the drive had not answered yet
+    for (int k = 1; k < 40; ++k)
+        text += fmt::format("{},{},{},{},\n", 0.01 * k, 0.1 * k, 0.1 * k + 0.01, k == 20 ? "nan" : "0.25");
+    text += "0.40,,4.01,0.25,\n";
+    const auto in = import_log(read_import_map(map, "map.json"), text, "in.csv");
+    CHECK(in.log.axes.at(0).position.size() == 39); // the one inside the record is left out of it
+    CHECK(in.notes.at(0) == "3 rows lack a value that the map asks for: left out");
+    // Without stamps nobody would know that a row is missing.
+    const std::string no_time = R"({"schema": "quadrant.import/1", "header": 1, "time": {"period_s": 0.01},
+        "axes": {"q": {"position": {"column": "at", "unit": "turn"}, "command": {"column": "torque", "unit": "Nm"}}}})";
+    CHECK(of_log("at,torque\n1,2\n1.5,\n2,2\n", no_time).find("is empty") != std::string::npos);
+}
+TEST_CASE("import: stamps rounded to a digit do not change the period of rows that are even but for a few") {
+    const std::string map =
+        R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "t", "unit": "s"},
+        "axes": {"q": {"position": {"column": "at", "unit": "rad"}, "command": {"column": "torque", "unit": "Nm"}}}})";
+    constexpr double tick = 0.015625; // of a clock, written in milliseconds
+    std::string text = "t,at,torque\n";
+    for (int k = 0; k < 400; ++k)
+        if (k % 90 != 45) text += fmt::format("{:.3f},{:.6f},0.25\n", tick * k, std::sin(0.01 * k));
+    const auto in = import_log(read_import_map(map, "map.json"), text, "in.csv", {.resample = true});
+    CHECK(near(in.log.sample_period_s, tick, 1e-4)); // most steps are 0.016 s
+}

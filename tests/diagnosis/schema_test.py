@@ -178,7 +178,7 @@ accept(machine, every_effect, "a machine with every effect")
 for path, to in [
         (["plant", "gms_weights"], ...), (["plant", "gms_weights"], [0.1] * 5), (["plant", "gms_weights"], []),
         (["plant", "friction_position_amplitude"], 1), (["plant", "friction_drift"], -1), (["plant", "mode_frequency_Hz"], ...),
-        (["plant", "ripple_period_m"], ...), (["plant", "coupling"], 1), (["encoder", "cyclic_period_m"], ...),
+        (["plant", "ripple_period_m"], ...), (["plant", "coupling"], "1"), (["encoder", "cyclic_period_m"], ...),
         (["process", "force_N"], ...), (["process", "phase_rad"], 1), (["actuator", "lag_s"], 2),
         (["actuator", "loss_probability"], 1)]:
     refuse(machine, changed(every_effect, x + path, to), f"machine with {'.'.join(path)} = {to}")

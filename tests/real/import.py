@@ -32,6 +32,8 @@ RECORDS = [
      "torso_current_A", (8015, 8025), ["resampled", "measured"]),
     ("so101", ["so101/large_amplitude/state_motor.csv", "so101/large_amplitude/control.csv"], [],
      "t_s,elbow_pos_rad,rotation_pos_rad,elbow_ref_rad,rotation_ref_rad", (6650, 6652), ["resampled"]),
+    ("cyclo_actuator", ["cyclo_actuator/trajectory_700gr.csv"], ["--resample"],
+     "t_s,joint_ref_rad,joint_pos_rad,joint_torque_Nm", (2100, 2260), ["rows lack a value", "rows have the stamp"]),
     ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"],
      "t_s,q_ref_rad,q_pos_rad,q_cmd_V", (6030, 6075), ["resampled", "rows are missing in 2 places"]),
     ("micromouse", ["micromouse/controllerDelayImpact5ms.csv"], ["--resample"],

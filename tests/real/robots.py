@@ -39,6 +39,12 @@ DRONE = {"q": {"plant": {"inertia_kg_m2": 3.1, "viscous_Nm_s_per_rad": 2.0, "tor
                "actuator": {"lag_s": 0.1}}}
 
 
+def cyclo(inertia, viscous):
+    """Torque behind the gear, by the drive's current."""
+    return {"joint": {"plant": {"inertia_kg_m2": inertia, "viscous_Nm_s_per_rad": viscous},
+                      "tolerance": {"inertia": 0.2, "viscous": 0.5}, "actuator": MEASURED}}
+
+
 def servo(friction=None, gain=1.87, **more):
     """Goals and positions only: stiffness 1.87 * 12 V * 0.245 N m/V = 5.5 N m/rad, by the servo's current."""
     plant = {"inertia_kg_m2": 0.0085, "viscous_Nm_s_per_rad": 0.12, "torque_constant_Nm_per_V": 0.245,
@@ -53,6 +59,13 @@ def servo(friction=None, gain=1.87, **more):
                       "supply_V": 12, "command_delay_s": 0.03}}
 
 
+STS3250 = {"q": {
+    "plant": {"inertia_kg_m2": 0.045, "viscous_Nm_s_per_rad": 0.6, "torque_constant_Nm_per_V": 0.41},
+    "tolerance": {"inertia": 0.5, "viscous": 0.4, "position_gain": 0.1, "supply": 0.05, "torque_constant": 0.2,
+                  "command_delay": 0.5},
+    "encoder": {"resolution_rad": 0.00153398}, "actuator": {},
+    "drive": {"kind": "position_servo", "position_gain_per_rad": 11.6, "maximum_duty": 0.97, "supply_V": 12,
+              "command_delay_s": 0.02}}}
 MOUSE = {"left": wheel(0.02), "right": wheel(0.021)}
 
 LOGS = {
@@ -62,6 +75,10 @@ LOGS = {
     "mouse": ("micromouse", ["micromouse/controllerDelayImpact5ms.csv"], ["--resample"]),
     **{m: ("so101", [f"so101/{m}/{what}.csv" for what in ("state_motor", "control")], ["--to", "30"])
        for m in ("large_amplitude", "repetitive_motion", "chirp_sweep", "multisine")},
+    **{f"cyclo_{n}": ("cyclo_actuator", [f"cyclo_actuator/trajectory_{n}.csv"], ["--resample"])
+       for n in ("mounted", "bar", "350gr", "700gr")},
+    **{f"sts_{n}": ("sts3250", [f"sts3250/{n}.csv"], ["--sample-period", "0.02055"])
+       for n in ("sin_sin", "up_and_down")},
     "drone": ("quarter_drone", ["quarter_drone/dados_14_drone.csv"], ["--resample"]),
     "drone_fast": ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"]),
 }
@@ -75,13 +92,13 @@ RECORDS = {
     "servo_gain": ("large_amplitude", "multisine", {"rotation": servo(0.055, gain=3.74)}, []),
     "elbow_friction": ("repetitive_motion", "chirp_sweep", {"elbow": servo(constant_torque_Nm=0.21)}, []),
     "elbow_weight": ("repetitive_motion", "chirp_sweep", {"elbow": servo(0.207)}, []),
+    "sts3250": ("sts_sin_sin", "sts_up_and_down", STS3250, []),
+    "cyclo_mounted": ("cyclo_mounted", None, cyclo(0.17, 0.17), []),
+    "cyclo_bar": ("cyclo_bar", None, cyclo(0.2, 0.3), []),
+    "cyclo_350gr": ("cyclo_350gr", None, cyclo(0.23, 0.47), []),
+    "cyclo_700gr": ("cyclo_700gr", None, cyclo(0.3, 0.83), []),
     "drone_held": ("drone_fast", "drone", DRONE, []),
 }
-
-
-def one_of(d, names, axis):
-    """A claim, or a claimed group, of these names on the axis."""
-    return any(c["effect"] in names for c in claims(d, axis))
 
 
 def names_of(cause):
@@ -106,8 +123,8 @@ RIGHT = [
      lambda d: meets(claimed(d, "coulomb_friction", "torso"), "coulomb_N", 0.67, 0.67)),
     ("tiago", "the weight of the torso is claimed as a constant force",
      lambda d: bool(claimed(d, "constant_force", "torso"))),
-    ("tiago", "friction of arm 1 is claimed",
-     lambda d: one_of(d, {"coulomb_friction", "stribeck_friction"}, "arm1")),
+    ("tiago", "Coulomb friction of arm 1, not Stribeck friction, is claimed and meets 0.14 A",
+     lambda d: meets(claimed(d, "coulomb_friction", "arm1"), "coulomb_Nm", 0.14, 0.14)),
     ("servo_healthy", "nobody is blamed", lambda d: not claims(d)),
     ("servo_friction", "Coulomb friction is claimed and meets 0.054 to 0.06 N m",
      lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.054, 0.06)),
@@ -130,12 +147,23 @@ RIGHT = [
      lambda d: bool(claimed(d, "gravity", "q"))),
     ("mouse", "Coulomb friction of the left wheel is claimed and meets 1.4 V",
      lambda d: meets(claimed(d, "coulomb_friction", "left"), "coulomb_Nm", 1.4, 1.4)),
+    ("sts3250", "gravity is the first cause, claimed, and meets 1.33 N m",
+     lambda d: bool(d["causes"]) and d["causes"][0] == claimed(d, "gravity")
+     and meets(claimed(d, "gravity"), "gravity_torque_Nm", 1.33, 1.33)),
+    ("cyclo_mounted", "Coulomb friction is claimed, meets 3.3 to 3.4 N m, and nothing else is claimed",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 3.3, 3.4) and len(claims(d)) == 1),
+    ("cyclo_bar", "Coulomb friction is claimed and meets 2.6 to 3.4 N m",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 2.6, 3.4)),
+    ("cyclo_700gr", "gravity is claimed and meets 2.8 to 3.0 N m",
+     lambda d: meets(claimed(d, "gravity"), "gravity_torque_Nm", 2.8, 3.0)),
+    ("cyclo_700gr", "Coulomb friction is claimed and meets 2.7 to 3.0 N m",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 2.7, 3.0)),
 ] + [(r, "nothing before the tap of a measured command is named", nothing_before_the_tap)
-     for r in ("tx40", "tiago")]
+     for r in ("tx40", "tiago", "cyclo_mounted", "cyclo_bar", "cyclo_350gr", "cyclo_700gr")]
 
 NOT_YET = [
-    ("tiago", "Coulomb friction of arm 1, not Stribeck friction, is claimed and meets 0.14 A",
-     lambda d: meets(claimed(d, "coulomb_friction", "arm1"), "coulomb_Nm", 0.14, 0.14)),
+    ("cyclo_350gr", "gravity of 1.75 N m is claimed",
+     lambda d: meets(claimed(d, "gravity"), "gravity_torque_Nm", 1.75, 1.75)),
 ]
 
 if __name__ == "__main__":

@@ -164,7 +164,7 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
             suspect = &c;
         }
     }
-    if (a.verdict == verdict::unexplained || !first) {
+    if (!first) {
         const std::string hint = !suspect ? ""
                                           : fmt::format("; the nearest suspect is {} (probability {})",
                                                         claim(*suspect), probability(suspect->probability));
@@ -191,18 +191,18 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
     if (!added.empty())
         what = what.empty() ? fmt::format("{} of axis {}", capital(added), a.name)
                             : fmt::format("{}, and {}", what, added);
+    const char* rest = a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained"
+                       : a.verdict == verdict::unexplained    ? ", but most of the gap stays unexplained"
+                                                              : "";
     // The numbers are those of what is claimed, not of the suspects behind it.
     if (first->gap_before_force_rms_N.value == 0) // two positions were compared
         return fmt::format("{}: {} {}, the difference of the positions shrinks from {} to {}{}.", what, "with",
                            first != last ? "them" : "it", quantity(first->gap_before_position_rms_m.value, "m"),
-                           quantity(last_of_positions->gap_after_position_rms_m.value, "m"),
-                           a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained"
-                                                                  : "");
+                           quantity(last_of_positions->gap_after_position_rms_m.value, "m"), rest);
     return fmt::format("{}: {} {}, the force gap shrinks from {} to {} (floor {}){}.", what,
                        first->waveform ? "without" : "with", first != last ? "them" : "it",
                        quantity(first->gap_before_force_rms_N.value, "N"),
-                       quantity(last->gap_after_force_rms_N.value, "N"), floor,
-                       a.verdict == verdict::partly_explained ? ", but part of the gap stays unexplained" : "");
+                       quantity(last->gap_after_force_rms_N.value, "N"), floor, rest);
 }
 
 } // namespace detail

@@ -14,7 +14,7 @@ inline constexpr effect cross_coupling{
     .exciting_motion = "accelerate the other axis while this one rests, then both in a circle",
     .shows = "the other axis' acceleration",
     .keys = {machine_key{.name = "coupling",
-                         .rule = detail::rule::asymmetry,
+                         .rule = detail::rule::any_number,
                          .meaning =
                              "this axis' acceleration gains coupling times the other's, of the same kind",
                          .at = member<&plant_description::coupling>,
@@ -42,11 +42,13 @@ inline constexpr effect cross_coupling{
             af += other[k] * s.residual[k];
         }
         if (!(aa > 0)) return {};
+        // A joint that the other one carries along has 1 + l1/l2 and more: its angle is relative to that one's.
+        constexpr double most = 10;
         return {{{.key = "coupling",
                   .of = [](plant_model& p) -> double& { return p.coupling; },
-                  .start = std::clamp(s.leader.coupling - af / aa / s.leader.mass, -0.5, 0.5),
-                  .low = -1,
-                  .high = 1,
+                  .start = std::clamp(s.leader.coupling - af / aa / s.leader.mass, -0.5 * most, 0.5 * most),
+                  .low = -most,
+                  .high = most,
                   .step = 1e-4}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

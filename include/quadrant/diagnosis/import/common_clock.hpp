@@ -65,7 +65,8 @@ private:
         for (std::size_t k = 1; k < table.t.size(); ++k) steps.push_back(table.t[k] - table.t[k - 1]);
         const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
         std::nth_element(steps.begin(), middle, steps.end());
-        return *middle > 0 ? *middle : clock.period;
+        // Steps that are rounded to the last digit of the stamps differ from the period by up to it.
+        return *middle > 0 && std::abs(*middle - clock.period) > table.written ? *middle : clock.period;
     }
     void resample(std::size_t file, double begin, double period) {
         foreign_table& table = tables_[file];

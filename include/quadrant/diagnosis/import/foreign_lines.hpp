@@ -36,6 +36,12 @@ public:
     [[noreturn]] void refuse(std::size_t offset, std::string_view message) const {
         throw bad_input(file_, number_, characters(current_.substr(0, offset)) + 1, message);
     }
+    /// Whether a cell is there and holds nothing, as where a drive had not answered yet.
+    bool lacks(std::size_t index) const {
+        if (index >= cells_.size()) return false;
+        const std::string_view text = cells_[index].text;
+        return text.empty() || text == "nan" || text == "NaN" || text == "NA";
+    }
     /// The number in a cell; null, or what is wrong with it.
     const char* parse(std::string_view text, double& value) const {
         if (layout_.decimal == '.') return parse_number(text, value);

@@ -111,7 +111,7 @@ private:
     bool next() { return std::exchange(again_, false) || lines_.next(); }
 
     void read_rows() {
-        std::size_t skipped = 0;
+        std::size_t skipped = 0, lacking = 0;
         bool blank_line = false;
         while (next()) {
             const auto& cells = lines_.cells();
@@ -129,11 +129,18 @@ private:
                 continue;
             }
             if (blank_line) lines_.refuse(0, "the line before is blank, inside the log");
+            const auto lacks = [&](const foreign_column& c) { return lines_.lacks(c.index); };
+            if (layout_.time && std::any_of(out_.columns.begin() + 1, out_.columns.end(), lacks)) {
+                ++lacking; // its stamp tells that it is missing
+                continue;
+            }
             out_.line.push_back(lines_.number());
             for (auto& c : out_.columns) read_cell(c, cells);
         }
         if (layout_.halscope && out_.line.size() > 1) drop_last();
         if (out_.line.size() < 2) throw bad_input(name_, "holds no rows of numbers that the map can read");
+        if (lacking > 0)
+            out_.notes.push_back(fmt::format("{} rows lack a value that the map asks for: left out", lacking));
         if (skipped > 0)
             out_.notes.push_back(fmt::format(
                 "{} lines between the names of the columns and the first row are skipped", skipped));

@@ -80,11 +80,11 @@ inline void put_in_words(axis_result& result, std::vector<cause>& causes) {
 inline void add_rest(diagnosis_result& out, const axis_case& c, const axis_result& result,
                      const std::vector<cause>& causes, const std::vector<std::vector<rival>>& rivals) {
     describe_rest(out, c, result, causes);
-    const bool proposed = !out.next.motion.empty();
+    const std::string of_an_earlier_axis = out.next.motion;
     // Where the path alone is compared, there is no residual force that a motion could show.
     const bool by_force = c.axis.drive.kind != drive_kind::position_servo && !c.record.observer.closed;
     if (by_force && !c.models.over()) propose(out, c, causes, rivals);
-    if (proposed) return;
+    if (out.next.motion == of_an_earlier_axis) return;
     out.next.motion = text_of(out.next.motion, c.axis.kind);
     out.next.finding = text_of(out.next.finding, c.axis.kind);
 }
@@ -113,6 +113,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
     tell_turning_inertia(out, c, causes, others);
+    tell_linked_arm(out, c, others);
     note_few_motions(out, c);
     add_read_off(causes, c);
     shrinks.measure(result, causes);
@@ -129,6 +130,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     if (of_transmission) join_transmission(out, result, causes, *of_transmission);
     put_in_words(result, causes);
     note_bounds(out, result);
+    note_above_band(out, c);
     note_limit(out, c);
     note_excluded(out, causes);
     note_missed(out, c);

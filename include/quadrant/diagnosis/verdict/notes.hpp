@@ -4,6 +4,7 @@
 #include "../which/axis_case.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 namespace quadrant::inline v0::diagnosis::detail {
@@ -22,6 +23,21 @@ inline void note_bounds(diagnosis_result& out, const axis_result& result) {
                    "is too narrow, or an effect acts that is not named.",
                    result.name.c_str(), name.c_str()));
     }
+}
+
+/// A measured command most of whose variation lies above the band in which forces are judged.
+inline void note_above_band(diagnosis_result& out, const axis_case& c) {
+    if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes()) return;
+    const axis_record& r = c.record;
+    std::vector<double> all(r.command.begin(), r.command.end());
+    const double mean = std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
+    for (double& u : all) u -= mean;
+    const double share = 1 - square(rms(zero_phase(all, r.bandwidth_Hz, r.period)) / rms(all));
+    if (share > 0.5)
+        out.notes.push_back(fmt::format("axis {}: {:.0f} % of the command's variation (in energy) lies above "
+                                        "the {:.3g} Hz up to which forces are "
+                                        "judged: nothing is said of what makes it.",
+                                        c.axis.name, 100 * share, r.bandwidth_Hz));
 }
 
 /// A controller whose integral is not limited as the file's kind limits it.

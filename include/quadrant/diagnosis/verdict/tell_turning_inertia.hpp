@@ -2,6 +2,7 @@
 #pragma once
 #include "../log/signals.hpp"
 #include "../which/causes.hpp"
+#include "../which/linked_arm.hpp"
 #include "../which/turning_inertia.hpp"
 
 #include <cmath>
@@ -49,6 +50,31 @@ inline void tell_turning_inertia(diagnosis_result& out, const axis_case& c, std:
         "Move axis {} alone, with {} held, for its other numbers.",
         c.axis.name, found->other, found->swing(), std::atan2(found->sine, found->cosine), 100 * found->share,
         instead ? "the machine as calibrated leaves" : "the causes leave", c.axis.name, found->other));
+}
+
+/// Whether the axis moves with another one as links of one arm do, told in a note: such a gap stays open
+/// because a machine file describes each axis alone.
+inline void tell_linked_arm(diagnosis_result& out, const axis_case& c, const other_axes& others) {
+    if (c.at_floor() || c.within_its_laws()) return;
+    const auto arm = arm_of(c, others.logs, others.rows_in_one);
+    if (!arm) return;
+    constexpr double of_five_folds = 2.8; // Student's factor
+    const regressed& friction = arm->coulomb;
+    const std::string size = friction.sure() ? fmt::format("{:.2g} N m ({:.2g} to {:.2g})", friction.value,
+                                                           friction.value - of_five_folds * friction.spread,
+                                                           friction.value + of_five_folds * friction.spread)
+                                             : "not determined";
+    out.notes.push_back(fmt::format(
+        "axis {}: it moves as the {} link of an arm with axis {}. A regression of the torque on both motions "
+        "leaves "
+        "{:.2g} N m, on its own motion alone {:.2g} N m: the links move each other by {:.2g} kg m^2 times the "
+        "cosine of the angle between them; the weight is {:.2g} N m by its own angle and {:.2g} N m by both "
+        "angles "
+        "together; Coulomb friction {}. A machine file describes each axis alone: values found for axis {} "
+        "stand "
+        "in for a part of that.",
+        c.axis.name, arm->inner ? "inner" : "outer", arm->other, arm->left, arm->alone, arm->coupling,
+        arm->own_weight, arm->both_weight, size, c.axis.name));
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail

@@ -12,6 +12,11 @@ namespace detail {
 QUADRANT_DIAGNOSIS_DECL std::vector<candidate> by_share(const axis_case& c, const candidate& from,
                                                         std::vector<const effect*> effects);
 
+/// The name that heads a group: the most probable one. A number that ends where its search ends has not been
+/// found: the name only does there what another one does (a Stribeck velocity above every speed is Coulomb
+/// friction), so that it comes after one whose numbers were found.
+QUADRANT_DIAGNOSIS_DECL const rival& heading(const std::vector<rival>& group);
+
 } // namespace detail
 
 /// The rivals of each cause of the best model. A group is headed by its most probable name: where another name

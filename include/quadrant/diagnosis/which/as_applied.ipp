@@ -29,6 +29,14 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> by_share(const axis_case& c, cons
     return out;
 }
 
+QUADRANT_DIAGNOSIS_DECL const rival& heading(const std::vector<rival>& group) {
+    const auto found = [](const rival& r) { return !own_number_ends_at_a_bound(r); };
+    const rival* head = &group.front();
+    for (const rival& r : group)
+        if (r.same && (found(r) != found(*head) ? found(r) : r.weight > head->weight)) head = &r;
+    return *head;
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
@@ -36,9 +44,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight
     std::size_t left = c.limits.most_causes;
     while (out.size() < c.best().effects.size()) {
         out.push_back(detail::rivals_of(c, out.size()));
-        const detail::rival* heaviest = &out.back().front();
-        for (const auto& r : out.back())
-            if (r.same && r.weight > heaviest->weight) heaviest = &r;
+        const detail::rival* heaviest = &detail::heading(out.back());
         if (left == 0 || heaviest == &out.back().front()) continue;
         auto way = c.models.path_to(heaviest->model);
         if (search::same(way.back(), c.best())) {

@@ -121,7 +121,8 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
         if (longer) return -std::numeric_limits<double>::infinity();
         const double out = c.worth(m);
         const bool matters = gap && out > own - 5 * score_temperature;
-        return matters && !gap->is_taken_by(m) ? -std::numeric_limits<double>::infinity() : out;
+        const bool may_be = out > own - 5 * score_temperature && ignores_the_command(c, m);
+        return may_be || (matters && !gap->is_taken_by(m)) ? -std::numeric_limits<double>::infinity() : out;
     };
     return 1 / (1 + std::exp((c.models.best_without(same, c.least_score(), worth) - c.worth(c.best())) /
                              score_temperature));

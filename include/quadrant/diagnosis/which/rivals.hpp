@@ -21,12 +21,25 @@ struct rival {
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
 };
 
+/// Whether a number that the name brings ends where its search ends.
+inline bool own_number_ends_at_a_bound(const rival& r) {
+    for (const key_value& k : r.name->read(r.model.fit.plant))
+        if (r.model.ends_at_a_bound(k.key)) return true;
+    return false;
+}
+
 /// Whether the forces of a model stand along the measured motion as well as in its predictions: a play hides
 /// the motor's motion, and an error of the reading is no force.
 inline bool shows_along_motion(const candidate& m) {
     const auto reads = [](const effect* e) { return e->joins == joint::reading; };
     return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
 }
+
+/// Whether a model answers a measured command less than the calibrated machine and leaves more of the forces
+/// along the measured motion than the best model. A stiff loop makes a measured command answer every force
+/// that a model lacks, and neither that nor the noise of its sensor moves the axis: a heavy model of a weak
+/// motor follows no command and predicts the readings well.
+QUADRANT_DIAGNOSIS_DECL bool ignores_the_command(const axis_case& c, const candidate& m);
 
 /// Weights of the rivals: softmax of their tempered held-out scores, averaged over draws of whole segments
 /// (pseudo-BMA with a bootstrap, Yao et al. 2018): a name that wins by a hair on correlated data has not won. A

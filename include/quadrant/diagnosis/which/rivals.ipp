@@ -53,6 +53,18 @@ QUADRANT_DIAGNOSIS_DECL double explained_by(const axis_case& c, std::size_t whic
     return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
 
+QUADRANT_DIAGNOSIS_DECL bool ignores_the_command(const axis_case& c, const candidate& m) {
+    if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
+        c.record.observer.led || !shows_along_motion(m) || !shows_along_motion(c.best()))
+        return false;
+    const auto answer = [](const candidate& x) {
+        return x.fit.plant.force_constant / x.fit.plant.moving_mass();
+    };
+    if (!(answer(m) < (1 - c.limits.least_shrink) * answer(c.path.front()))) return false;
+    const auto left = c.left_along_motion(std::array{m.fit.plant, c.best().fit.plant});
+    return left[0] > (1 + c.limits.least_shrink) * left[1];
+}
+
 /// Of a group stay the likeliest names that hold 95 % of its weight, the first, and what is one model with it.
 inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
     std::vector<rival*> same;
@@ -105,6 +117,7 @@ inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, co
         std::erase_if(
             out, [&](const rival& r) { return r.name != own && !r.unlisted() && !gap.is_taken_by(r.model); });
     }
+    std::erase_if(out, [&](const rival& r) { return r.name != own && ignores_the_command(c, r.model); });
     return out;
 }
 

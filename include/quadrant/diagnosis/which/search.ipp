@@ -86,7 +86,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<candidate> search::path_to(const candidate& 
         kept.total = -std::numeric_limits<double>::infinity();
         for (candidate& c : without_each(whole, whole.effects))
             if (c.total > kept.total) kept = std::move(c);
-        if (path.size() == 1 && !pays(whole, kept)) path.pop_back();
+        // What remains without a name must explain something by itself: two may be needed together.
+        const bool both = !kept.effects.empty() && pays(whole, calibrated_) && !pays(kept, calibrated_);
+        if (path.size() == 1 && !pays(whole, kept) && !both) path.pop_back();
         path.push_back(std::move(kept));
     }
     std::reverse(path.begin(), path.end());
