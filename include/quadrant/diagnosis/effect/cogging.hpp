@@ -62,7 +62,7 @@ inline constexpr effect cogging{
         const double shortest = std::max(travel / 400, 8 * s.record.resolution);
         const auto& x = s.record.position;
         for (double period :
-             detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
+             detail::comb_periods_along<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
             const auto power = detail::comb<8>(s.residual, x, period);
             const double most = *std::max_element(power.begin(), power.end());
             const bool many = std::any_of(power.begin() + 3, power.end(),
