@@ -22,8 +22,9 @@ constexpr const char* described = R"({"schema": "quadrant.machine/1", "sample_pe
 enum class at_limit { clamps, stands_still };
 
 /// The law of docs/formats.md on a mass with friction that is integrated 50 times a row. Two strokes ask for
-/// more than the limit gives. `added`: to the command before its limit, from 2.5 s on [V].
-machine_log recorded(at_limit law, double added = 0) {
+/// more than the limit gives. `added`: to the command before its limit, from 2.5 s on [V]. `gain`: of the
+/// position [1/s]; `follows`: share of the reference velocity in the demand.
+machine_log recorded(at_limit law, double added = 0, double gain = 40, double follows = 1) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> dither(-0.5, 0.5);
     machine_log out;
@@ -43,7 +44,7 @@ machine_log recorded(at_limit law, double added = 0) {
         read = std::round(x / count + dither(random)) * count;
         estimate =
             ((2 - corner * period) * estimate + 2 * corner * (k ? read - last : 0)) / (2 + corner * period);
-        const double e = 40 * (r - read) + (k ? (r - before) / period : 0) - estimate;
+        const double e = gain * (r - read) + (k ? follows * (r - before) / period : 0) - estimate;
         const double next = integral + 400 * period * e, asked = 40 * e + next + (t >= 2.5 ? added : 0);
         const double u = std::clamp(asked, -limit, limit);
         if (law == at_limit::clamps)
@@ -113,4 +114,19 @@ TEST_CASE(
         CHECK(judged(other, recorded(law)).differs);
         CHECK(judged(machine, recorded(law, 0.3)).differs);
     }
+}
+
+TEST_CASE("own limit: a wrong gain is found although the integral of its replay runs into the limit") {
+    // Without feedforward the position error is the speed over the gain. Replayed with the described gain, the
+    // integral adds up a wrong demand while the axis moves, and stands at its limit for most of the record.
+    std::string text = described;
+    const std::string key = "\"velocity_feedforward\": 1";
+    text.replace(text.find(key), key.size(), "\"velocity_feedforward\": 0");
+    const machine_description machine = read_machine(text, "machine.json");
+    const controller_finding found = judged(machine, recorded(at_limit::clamps, 0, 25.8, 0));
+    CHECK(found.differs);
+    CHECK(found.mended);
+    CHECK(found.key == "position_gain_per_s");
+    CHECK(found.value ==
+          doctest::Approx(25.8).epsilon(0.005)); // as sure as one controller is the same as another
 }

@@ -186,6 +186,19 @@ TEST_CASE("velocity drive with a measured current: its delay and a limit inside 
     REQUIRE(limit);
     CHECK(value_of(*limit, "drive.force_limit_N") == doctest::Approx(limited.force_limit).epsilon(0.03));
 }
+TEST_CASE("velocity drive with a measured current: a limit below the described one is a claim" *
+          doctest::test_suite("all")) {
+    // Without friction the simulator's current has no noise: read as the row begins, it stands at the limit.
+    auto limited = pi_drive;
+    limited.coulomb = 0;
+    limited.force_of_current = 20;
+    limited.force_limit = 60;
+    const std::string file = linear(R"(, "force_constant_N_per_A": 20)", of_pi + R"(, "force_limit_N": 900)");
+    const auto d = diagnosed(file, recorded(takes::volts, limited));
+    const cause* limit = only_claim(d, "drive_limit");
+    REQUIRE(limit);
+    CHECK(value_of(*limit, "drive.force_limit_N") == doctest::Approx(limited.force_limit).epsilon(0.03));
+}
 TEST_CASE("position drive with a measured current: nothing is said of a command that was measured") {
     auto m = pi_drive;
     m.position_gain = 40;

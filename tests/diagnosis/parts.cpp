@@ -51,6 +51,26 @@ TEST_CASE(
     CHECK(carried_peaks(force, none, z, travel / 2, travel / 400, 2).empty());
 }
 
+TEST_CASE("comb_periods_along: a wave is found on an axis that dwells in one place for most of the record") {
+    // A fast stroke of 420 mm over seven waves, and back; then slow ones over a quarter of a wave at one end.
+    constexpr double period = 0.0603, travel = 0.42;
+    std::vector<double> z, force;
+    const auto stands_at = [&](double x) {
+        z.push_back(x);
+        force.push_back(13 * std::sin(two_pi * x / period + 1.9));
+    };
+    for (int k = 0; k < 1000; ++k) stands_at(travel / 2 * (1 + std::cos(two_pi * k / 1000.0)));
+    for (int k = 0; k < 18000; ++k) stands_at(0.008 * (1 - std::cos(two_pi * k / 6000.0)));
+    const auto is = [&](double found) { // the wave, or a multiple of which it is a harmonic
+        return std::abs(std::round(found / period) / found - 1 / period) * travel < 0.5;
+    };
+    const double longest = travel / 2, shortest = travel / 400;
+    const auto of_transform = detail::comb_periods<8>(force, z, longest, shortest, 0);
+    CHECK(std::none_of(of_transform.begin(), of_transform.end(), is)); // misled by the window
+    const auto found = detail::comb_periods_along<8>(force, z, longest, shortest, 0);
+    CHECK(found.back() == doctest::Approx(period).epsilon(0.01)); // a fourteenth of a wave over the travel
+}
+
 TEST_CASE("harmonics: even ones alone are told as the harmonics of half the period") {
     const auto told = [](std::vector<double> sizes) {
         std::vector<parameter_estimate> out{

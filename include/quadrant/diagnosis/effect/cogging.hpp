@@ -62,7 +62,7 @@ inline constexpr effect cogging{
         const double shortest = std::max(travel / 400, 8 * s.record.resolution);
         const auto& x = s.record.position;
         for (double period :
-             detail::comb_periods<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
+             detail::comb_periods_along<8>(s.residual, x, 0.5 * travel, shortest, s.record.score.skip)) {
             const auto repeats = detail::holds_more_than_three(s, period)
                                      ? detail::repeating<detail::cogging_harmonics, 8>
                                      : detail::repeating<detail::cogging_harmonics, 3>;

@@ -43,8 +43,14 @@ inline constexpr effect drive_limit{
             servo ? [](plant_model& p) -> double& { return p.drive.maximum_duty; }
                   : [](plant_model& p) -> double& { return p.drive.force_limit; };
         const char* key = servo ? "drive.maximum_duty" : "drive.force_limit_N";
-        if (s.record.observer.drive->tapped()) // what was measured was not cut off, but for its noise
-            return {{detail::limit_below(s, key, of, most, 0.9, {0.97, 0.99, 1})}};
+        if (s.record.observer.drive->tapped()) {
+            // What was measured was not cut off, but for its noise: without noise the limit is the largest
+            // value itself. That lies inside what is searched, or the limit would be found at an end of it. No
+            // duty is above the largest.
+            const double largest = servo ? 1 : 0.97;
+            return {{detail::limit_below(s, key, of, most / largest, 0.9 * largest,
+                                         {0.97 * largest, 0.99 * largest, largest})}};
+        }
         return {{detail::limit_below(s, key, of, most)}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

@@ -135,6 +135,26 @@ std::vector<double> comb_periods(std::span<const double> signal, std::span<const
     return out;
 }
 
+/// The same along the travel, and where it is no harmonic of these, the period that least squares finds. An
+/// axis that dwells in a part of its travel sees the wave through that one window most of the time, and the
+/// side lobes of the window are higher in the transform than the line. A harmonic is the same line where the
+/// two differ by less than half a wave over the travel.
+template <std::size_t Count>
+std::vector<double> comb_periods_along(std::span<const double> signal, std::span<const double> z,
+                                       double longest, double shortest, std::size_t skip) {
+    std::vector<double> out = comb_periods<Count>(signal, z, longest, shortest, skip);
+    const std::vector<double> everywhere(z.size(), 1);
+    const auto [low, high] = std::minmax_element(z.begin(), z.end());
+    for (const double period : carried_peaks(signal, everywhere, z, longest, shortest, 1, skip)) {
+        const auto holds = [&](double of) {
+            const double order = std::round(of / period);
+            return order >= 1 && order <= Count && std::abs(order / of - 1 / period) * (*high - *low) < 0.5;
+        };
+        if (std::none_of(out.begin(), out.end(), holds)) out.push_back(period);
+    }
+    return out;
+}
+
 /// Whether the motion repeats with one of the first multiples of this period: it is then where it was one time
 /// before, and was not in between. What repeats in time with the motion cannot be distinguished from what
 /// follows the motion.

@@ -56,6 +56,8 @@ public:
         : log_(log), actuator_(actuator), smooth_(actuator), period_(record.period),
           from_(std::min(record.score.skip, log.command.size())), block_(record.score.block) {
         smooth_.dac_bits.reset();
+        unlimited_ = smooth_;
+        unlimited_.limit_V.reset();
     }
 
     const axis_log& log() const { return log_; }
@@ -72,6 +74,12 @@ public:
     std::vector<double> smooth(const controller_description& c) const {
         return replay_controller(c, smooth_, period_, loop_columns::of(log_));
     }
+    /// The same without the limit: an integral that adds up a wrong value for the whole record then follows a
+    /// change of that value in proportion, where the limit would hold it.
+    std::vector<double> unlimited(const controller_description& c) const {
+        return replay_controller(c, unlimited_, period_, loop_columns::of(log_));
+    }
+    bool limited() const { return actuator_.limit_V.has_value(); }
     /// Replayed less logged, from the first row that is compared.
     std::vector<double> difference(const controller_description& c, const std::vector<double>& replayed) const {
         return difference(c, replayed, log_.command);
@@ -94,7 +102,7 @@ private:
 
     const axis_log& log_;
     const actuator_description& actuator_;
-    actuator_description smooth_;
+    actuator_description smooth_, unlimited_;
     double period_;
     std::size_t from_, block_;
 };

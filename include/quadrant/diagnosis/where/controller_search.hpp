@@ -67,11 +67,11 @@ private:
         double value, score, from, to;
     };
 
-    std::optional<std::vector<double>> left(double x) {
+    std::optional<std::vector<double>> left(double x, bool limited = true) {
         // A corner above half the sampling rate is none.
         value_ = key_.key.ends_with("_Hz") ? std::min(x, 0.499 / box_.period()) : x;
         try {
-            auto d = box_.difference(trial_, box_.smooth(trial_));
+            auto d = box_.difference(trial_, limited ? box_.smooth(trial_) : box_.unlimited(trial_));
             if (std::all_of(d.begin(), d.end(), [](double v) { return std::isfinite(v); })) return d;
         } catch (const std::exception&) { // no controller has this value
         }
@@ -81,9 +81,9 @@ private:
         const auto d = left(x);
         return d ? replay_score(*d, box_.block(), floor_) : std::numeric_limits<double>::infinity();
     }
-    std::vector<double> slope_at(double x, double step, const std::vector<double>& here) {
-        auto there = left(x + step);
-        if (!there) there = left(x + (step = -step));
+    std::vector<double> slope_at(double x, double step, const std::vector<double>& here, bool limited = true) {
+        auto there = left(x + step, limited);
+        if (!there) there = left(x + (step = -step), limited);
         if (!there) return {};
         for (std::size_t k = 0; k < there->size(); ++k) (*there)[k] = ((*there)[k] - here[k]) / step;
         return *there;
@@ -101,11 +101,11 @@ private:
         return 0;
     }
     /// Change of the value that the difference at `x` asks for.
-    double newton(double x) {
-        const auto here = left(x);
+    double newton(double x, bool limited = true) {
+        const auto here = left(x, limited);
         if (!here) return 0;
         const double step = x != 0 ? 1e-3 * std::abs(x) : 1e-3 * scale_;
-        const auto slope = slope_at(x, step, *here);
+        const auto slope = slope_at(x, step, *here, limited);
         const double size = inner(slope, slope);
         return size > 0 ? -inner(slope, *here) / size : 0;
     }
@@ -121,6 +121,13 @@ private:
         if (const double square = inner(slope, slope); square > 0) {
             const double change = -inner(slope, described_) / square;
             for (double x : {0.5, 0.9, 1.0, 1.1, 2.0}) grid.push_back(given_ + x * change);
+        }
+        // Replayed with a wrong value an integral runs into its limit and stays there: neither the slope nor a
+        // value beside the true one leads to it. Without the limit both do.
+        if (box_.limited()) {
+            double x = given_;
+            for (int step = 0; step < 2; ++step)
+                if (const double next = x + newton(x, false); key_.allowed(next)) grid.push_back(x = next);
         }
         return grid;
     }
