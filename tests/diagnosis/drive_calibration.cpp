@@ -134,3 +134,51 @@ TEST_CASE(
         for (const auto& r : c.readings) check(r.parameters);
     }
 }
+TEST_CASE(
+    "calibration beside a measured current: gains and limit of the drive's force move by the force constant's "
+    "tolerance, too, and nothing else does") {
+    auto machine = file_of(described, tolerance, 1e-6, 1);
+    auto& axis = machine.axes[0];
+    axis.command_unit = "A";
+    axis.plant.force_constant_N_per_V = 20;
+    axis.drive.force_limit_N = 75;
+    axis.tolerance.given["force_constant"] = 0.08;
+    const auto alone = calibration(axis, 1e-6), joint = calibration(axis, 1e-6, true);
+    CHECK(joint.size() == alone.size() + 1);
+    for (const parameter& p : joint) {
+        CAPTURE(p.key);
+        if (p.key == "drive.force_limit_N") {
+            CHECK(p.low == doctest::Approx(0.92 * 75));
+            CHECK(p.high == doctest::Approx(1.08 * 75));
+            continue;
+        }
+        const auto before =
+            std::find_if(alone.begin(), alone.end(), [&](const auto& q) { return q.key == p.key; });
+        REQUIRE(before != alone.end());
+        const bool force =
+            p.key == "drive.velocity_gain_N_s_per_m" || p.key == "drive.velocity_integral_N_per_m";
+        CHECK(p.high == doctest::Approx((force ? 1.08 : 1) * before->high));
+    }
+}
+TEST_CASE("position drive with a measured current: a force constant inside its tolerance moves the gains "
+          "as the "
+          "current shows them, and nobody is blamed") {
+    constexpr double constant = 20; // [N/A]
+    auto m = machine_of(off_by(described, {1.02, 1.1, 1.04, 1.01, 0.98, 1.005, 1.03}), 1e-6, 1);
+    auto machine = file_of(described, tolerance, 1e-6, 1);
+    auto& axis = machine.axes[0];
+    axis.command_unit = "A";
+    axis.plant.force_constant_N_per_V = constant;
+    axis.tolerance.given["force_constant"] = 0.08;
+    for (const double off : {-0.07, 0.07}) {
+        CAPTURE(off);
+        m.force_of_current = constant * (1 + off);
+        const machine_log log = log_of(m, 1, 5), holdout = log_of(m, 0.8, 6);
+        rules one;
+        one.threads = 1;
+        const auto d = diagnose(
+            machine, log, &holdout, [](const std::string&) {}, one);
+        CHECK(d.verdict <= verdict::within_tolerance);
+        for (const cause& c : d.causes) CHECK_MESSAGE(c.group_probability < 0.5, c.effect);
+    }
+}
