@@ -21,6 +21,7 @@ struct machine {
     double force_limit = 1e9;           ///< of the velocity loop [N]
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
+    int rows_of_a_set_point = 1;        ///< it takes a new one after so many rows
     bool enabled_column = false;
     double force_of_current = 0;  ///< [N/A]: the drive's current is logged, too; 0: it is not
     bool current_is_mean = false; ///< over the row; else as the row begins
@@ -90,8 +91,12 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
         double mean_force = 0, first_force = 0;
         for (int i = 0; i < steps; ++i) {
             const double at = static_cast<double>(k) + (i + 0.5) / steps - m.delay / period;
-            const double tick = std::floor(at / (1 + m.clock_slip)); // of the drive's clock
-            const auto row = static_cast<std::size_t>(std::max(0.0, tick * (1 + m.clock_slip) + 1e-9));
+            const double every = m.rows_of_a_set_point * (1 + m.clock_slip);
+            const double tick = std::floor(at / every); // of the drive's clock
+            const auto row_of = [&](double n) {
+                return static_cast<std::size_t>(std::max(0.0, n * every + 1e-9));
+            };
+            const std::size_t row = row_of(tick);
             const double now = (static_cast<double>(k) + (i + 0.5) / steps) * period;
             const bool off = now >= m.off_from && now < m.off_until;
             double force = 0;
@@ -104,7 +109,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
             } else if (kind == takes::force) {
                 force = command[row];
             } else {
-                const double part = at / (1 + m.clock_slip) - tick, before = command[row > 0 ? row - 1 : 0];
+                const double part = at / every - tick, before = command[row_of(tick - 1)];
                 const double asked = kind == takes::volts
                                          ? m.velocity_per_V * command[row]
                                          : m.position_gain * (before + part * (command[row] - before) - x);

@@ -32,18 +32,23 @@ inline constexpr effect clock_slip{
         const double every = d.set_point_period > 0 ? d.set_point_period : s.record.period;
         const double set_points = static_cast<double>(s.record.position.size()) * s.record.period / every;
         constexpr double quartz = 2e-4; // no two of them differ by more
-        const double step =
-            0.3 / set_points; // a third of a period over the record: a slope leads from one to the next
-        std::vector<double> values;
-        for (double slip = step; slip < quartz; slip += step) values.insert(values.end(), {slip, -slip});
-        if (values.empty()) return {};
+        // A third of a period over the record: a slope leads from one to the next. A slip of less is a delay.
+        const double step = 0.3 / set_points;
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.drive.clock_slip; };
-        return {{{.key = "drive.clock_slip",
-                  .of = of,
-                  .start = detail::best_start(s, of, values),
-                  .low = -1.5 * quartz,
-                  .high = 1.5 * quartz,
-                  .step = 0.1 * step}}};
+        std::vector<std::vector<parameter>> out;
+        for (const double sign : {1.0, -1.0}) {
+            std::vector<double> values;
+            for (double slip = step; slip < quartz; slip += step) values.push_back(sign * slip);
+            if (values.empty()) return {};
+            const double ends[] = {sign * step, sign * 1.5 * quartz};
+            out.push_back({{.key = "drive.clock_slip",
+                            .of = of,
+                            .start = detail::best_start(s, of, values),
+                            .low = std::min(ends[0], ends[1]),
+                            .high = std::max(ends[0], ends[1]),
+                            .step = 0.1 * step}});
+        }
+        return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         return {{"drive.clock_slip", {p.drive.clock_slip}}};

@@ -2,10 +2,20 @@
 #pragma once
 #include "drive_suspect.hpp"
 
+namespace quadrant::inline v0::diagnosis::detail {
+
+/// Probability above which no drive follows its set-points.
+inline constexpr double most_lost = 0.5;
+
+} // namespace quadrant::inline v0::diagnosis::detail
+
 namespace quadrant::inline v0::diagnosis::suspect {
 
 /// Some set-points never arrive, and the drive repeats the one before. Joins the drive. Which they were is not
-/// known: a model has what they do on average, a set-point that lags.
+/// known: a model has what they do on average, a set-point that lags by p / (1 - p) periods. Above one half
+/// this is more than a period: no jitter around the newest set-point, but a delay or a filter. No drive runs
+/// so: at one half three in a row are lost every 14 periods, and drives stop with a communication fault after
+/// a few missed ones.
 inline constexpr effect set_point_loss{
     .name = "set_point_loss",
     .label = "lost set-points",
@@ -30,7 +40,7 @@ inline constexpr effect set_point_loss{
                   .of = [](plant_model& p) -> double& { return p.drive.loss; },
                   .start = 0.1,
                   .low = 0,
-                  .high = 0.9,
+                  .high = detail::most_lost,
                   .step = 1e-3}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

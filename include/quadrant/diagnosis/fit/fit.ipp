@@ -24,7 +24,7 @@ QUADRANT_DIAGNOSIS_DECL void fit_course::ask(std::vector<plant_model>& plants) {
             fitter::put(plants.back(), best_.parameters, x);
         }
     } else {
-        auto each = fitter::moved(best_, known_.count(), step_);
+        auto each = fitter_->moved(best_, known_.count(), step_);
         plants.insert(plants.end(), std::make_move_iterator(each.begin()), std::make_move_iterator(each.end()));
     }
 }

@@ -89,7 +89,7 @@ private:
     friend class fit_course;
 
     /// The model with each parameter moved by a step, from the `first` on.
-    static std::vector<plant_model> moved(const fit_result& r, std::size_t first, std::vector<double>& step);
+    std::vector<plant_model> moved(const fit_result& r, std::size_t first, std::vector<double>& step) const;
     static void to_slope(std::vector<double>& moved, const fit_result& r, double step);
     /// The blocks as quadratics with these slopes; without `curvature` that of the point before is kept.
     void quadratics(fit_result& r, const std::vector<viewed_signal>& own, const known_slopes& known,

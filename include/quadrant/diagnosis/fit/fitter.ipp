@@ -64,13 +64,19 @@ QUADRANT_DIAGNOSIS_DECL const parameter& fitter::p(const std::vector<parameter>&
 }
 
 QUADRANT_DIAGNOSIS_DECL std::vector<plant_model> fitter::moved(const fit_result& r, std::size_t first,
-                                                               std::vector<double>& step) {
+                                                               std::vector<double>& step) const {
+    // The numbers of a replayed drive nearly stand for one another: what their slopes are wrong by must be
+    // small beside what is left of them along that valley, or the fit stops where it reaches it. A difference
+    // to one side is wrong by its step, as a share.
+    constexpr double fine = 1e-6;
+    const bool replayed = predictor_.drive && !predictor_.closed;
     std::vector<plant_model> plants;
     step.clear();
     for (std::size_t i = first; i < r.parameters.size(); ++i) {
         const auto& q = r.parameters[i];
         const double x = r.x[static_cast<Eigen::Index>(i)];
-        step.push_back(x + q.step > q.to_fit(q.high) ? -q.step : q.step);
+        const double size = !replayed ? q.step : q.logarithmic ? fine : 1e-3 * q.step;
+        step.push_back(x + size > q.to_fit(q.high) ? -size : size);
         plants.push_back(r.plant);
         q.of(plants.back()) = q.from_fit(x + step.back());
     }

@@ -37,6 +37,19 @@ QUADRANT_DIAGNOSIS_DECL const rival& heading(const std::vector<rival>& group) {
     return *head;
 }
 
+/// A claim whose number, as it is applied, may lie inside its tolerance is calibration: it left the tolerance
+/// only beside suspects that are not applied. Whether one became a suspect so.
+inline bool suspect_what_stays_inside(const axis_case& c, std::vector<cause>& causes) {
+    bool any = false;
+    for (std::size_t i = 0; i < c.claims; ++i) {
+        const bool inside = c.models.is_calibration(c.applied(), c.best().effects[i]) ||
+                            may_be_inside_its_tolerance(c, causes[i].parameters);
+        if (inside) to_suspects({&causes[i], 1});
+        any = any || inside;
+    }
+    return any;
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight(axis_case& c) {
@@ -93,6 +106,10 @@ QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& ca
         detail::widen(alone, causes[i].parameters);
         causes[i].with_suspects = std::exchange(causes[i].parameters, std::move(alone));
     }
+    if (!detail::suspect_what_stays_inside(c, causes)) return;
+    for (cause& x : causes)
+        if (!x.with_suspects.empty()) x.parameters = std::exchange(x.with_suspects, {});
+    put_as_applied(c, causes, rivals);
 }
 
 } // namespace quadrant::inline v0::diagnosis

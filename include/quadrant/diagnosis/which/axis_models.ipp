@@ -36,7 +36,7 @@ QUADRANT_DIAGNOSIS_DECL axis_models::axis_models(const axis_record& record, cons
     given_.fit.x = Eigen::VectorXd(0);
     const fitter fit(record.observer, record.score);
     candidate start;
-    start.fit.parameters = calibration(axis, record.scale.give());
+    start.fit.parameters = calibration(axis, record.scale.give(), record.taps_force(given_.fit.plant.drive));
     // In the unit of a score that counts in full. Described numbers lie nearer the middle of their tolerance
     // than its ends: a triangle, of half the variance.
     if (record.closed())

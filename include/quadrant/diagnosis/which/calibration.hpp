@@ -35,8 +35,11 @@ inline bool is_of_record(const parameter& p) {
 /// The described machine's own numbers, free inside the owner's tolerance in every model: else a candidate is
 /// credited with correcting the calibration. Hard bounds at the tolerance, and a weak pull to the given value,
 /// which also settles what no log can identify: all forces, the mass and the force constant times one factor
-/// move the axis alike. `give`: of every contact, record_scales::give().
-QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give);
+/// move the axis alike. `give`: of every contact, record_scales::give(). `in_current`: what a velocity loop
+/// inside the drive gives was measured as a current. Then the log shows its force gains and its limit over the
+/// force constant only, and they lie in one box of tolerances with it.
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give,
+                                                           bool in_current = false);
 
 } // namespace quadrant::inline v0::diagnosis
 

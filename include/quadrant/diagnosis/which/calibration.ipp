@@ -84,6 +84,24 @@ inline void add_friction(std::vector<parameter>& out, const plant_description& d
     out.back().high = excess + play;
 }
 
+/// What the drive gives was measured as a current, whose force is known to the force constant's tolerance only:
+/// gains and limit of the drive's force, as that current shows them, move by it, too. A box of both tolerances,
+/// with the variance of both.
+inline void join_with_constant(std::vector<parameter>& out, const axis_description& axis) {
+    const double constant = std::min(axis.tolerance.of("force_constant"), 0.9);
+    if (!(constant > 0) || is_force(axis.command_unit)) return;
+    for (parameter& p : out)
+        if (p.key == "drive.velocity_gain_N_s_per_m" || p.key == "drive.velocity_integral_N_per_m") {
+            p.low *= 1 - constant;
+            p.high *= 1 + constant;
+            p.spread = std::hypot(p.spread, constant / std::numbers::sqrt3);
+        }
+    if (axis.drive.force_limit_N)
+        within_tolerance{out}(
+            "drive.force_limit_N", [](plant_model& p) -> double& { return p.drive.force_limit; },
+            *axis.drive.force_limit_N, constant);
+}
+
 /// Every contact gives way a little before it slips; up to ten times that it is no cause, nor is any
 /// presliding displacement of a friction that is not described at all. One that is described as giving way
 /// further, or element by element, stays as described.
@@ -104,7 +122,8 @@ inline void add_contact(std::vector<parameter>& out, const plant_description& d,
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give) {
+QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_description& axis, double give,
+                                                           bool in_current) {
     const plant_description& d = axis.plant;
     const tolerance_description& tolerance = axis.tolerance;
     std::vector<parameter> out;
@@ -132,6 +151,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
             if (key.of)
                 for (double value : numbers_of(axis, key, *e)) within(key.name, key.of, value, relative);
         }
+    if (in_current) detail::join_with_constant(out, axis);
     detail::add_contact(out, d, give);
     return out;
 }
