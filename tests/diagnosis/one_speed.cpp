@@ -131,7 +131,7 @@ TEST_CASE("search: a model without one of its effects has a force, and rivals be
     const search models(record, axis, {}, {}, [](const std::string&) {});
     const auto both = models.with({&suspect::coulomb_friction, &suspect::cogging});
     REQUIRE(both.effects.size() == 2);
-    CHECK(models.force_of(both, suspect::cogging) > 0.5 * cogging / std::sqrt(2.0)); // and finite
+    CHECK(rms(models.does(both, suspect::cogging)) > 0.5 * cogging / std::sqrt(2.0)); // and finite
     CHECK(models.plant_without(both, suspect::cogging).cogging.count == 0);
     const auto rest = models.without(both, &suspect::coulomb_friction);
     CHECK(rest.effects == std::vector<const effect*>{&suspect::cogging});

@@ -58,7 +58,7 @@ std::string joint_log() {
 
 TEST_CASE("rivals: a group is headed by a name whose numbers were found, not by one at the end of its search") {
     const auto named = [](const effect& e, double x, double weight) {
-        detail::rival r{.name = &e, .weight = weight, .same = true};
+        detail::rival r{.model = {}, .name = &e, .weight = weight, .same = true};
         r.model.fit.plant.friction.coulomb = r.model.fit.plant.friction.excess = 1;
         r.model.fit.parameters = {{.key = std::string(e.keys.begin()->name), .low = 0, .high = 1}};
         r.model.fit.x = Eigen::VectorXd::Constant(1, x);
