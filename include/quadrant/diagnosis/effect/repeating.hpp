@@ -144,11 +144,12 @@ std::vector<double> comb_periods_along(std::span<const double> signal, std::span
                                        double longest, double shortest, std::size_t skip) {
     std::vector<double> out = comb_periods<Count>(signal, z, longest, shortest, skip);
     const std::vector<double> everywhere(z.size(), 1);
-    const auto [low, high] = std::minmax_element(z.begin(), z.end());
+    const auto ends = std::minmax_element(z.begin(), z.end());
+    const double travelled = *ends.second - *ends.first;
     for (const double period : carried_peaks(signal, everywhere, z, longest, shortest, 1, skip)) {
         const auto holds = [&](double of) {
             const double order = std::round(of / period);
-            return order >= 1 && order <= Count && std::abs(order / of - 1 / period) * (*high - *low) < 0.5;
+            return order >= 1 && order <= Count && std::abs(order / of - 1 / period) * travelled < 0.5;
         };
         if (std::none_of(out.begin(), out.end(), holds)) out.push_back(period);
     }
