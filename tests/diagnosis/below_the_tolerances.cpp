@@ -32,11 +32,6 @@ TEST_CASE("below the tolerances: forces that no law of friction makes are named"
     CHECK(claimed_of([](machine& m) { m.friction_along = 0.05; }) == names{"position_dependent_friction"});
 }
 
-TEST_CASE("below the tolerances: a cyclic error of the reading is named beside noise of a third of it" *
-          doctest::test_suite("all")) {
-    CHECK(claimed_of([](machine& m) { m.cyclic = 3e-7; }) == std::vector<std::string>{"encoder_cyclic_error"});
-}
-
 TEST_CASE("below the tolerances: a friction of another law is no cause" * doctest::test_suite("all")) {
     for (const double share : {0.02, 0.04}) {
         machine real;

@@ -138,7 +138,11 @@ private:
             for (auto& c : out_.columns) read_cell(c, cells);
         }
         if (layout_.halscope && out_.line.size() > 1) drop_last();
-        if (out_.line.size() < 2) throw bad_input(name_, "holds no rows of numbers that the map can read");
+        if (out_.line.size() < 2)
+            throw bad_input(name_, lacking > 0
+                                       ? "holds no rows of numbers that the map can read: every row has an "
+                                         "empty cell or nan in a column that it asks for"
+                                       : "holds no rows of numbers that the map can read");
         if (lacking > 0)
             out_.notes.push_back(fmt::format("{} rows lack a value that the map asks for: left out", lacking));
         if (skipped > 0)

@@ -51,7 +51,7 @@ QUADRANT_DIAGNOSIS_DECL bool may_be_inside_its_tolerance(const axis_case& c,
 QUADRANT_DIAGNOSIS_DECL bool may_be_friction(const axis_case& c, const effect& e);
 
 /// Whether, on a machine that is within the owner's tolerances without any cause, an effect with all other
-/// numbers kept does less than twice of what is left above the noise, in every band: it led the fit, and the
+/// numbers kept does less than twice of what is left, in every band: it led the fit, and the
 /// others took the rest off.
 QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect& e);
 

@@ -189,10 +189,7 @@ QUADRANT_DIAGNOSIS_DECL bool drowns_in_the_rest(const axis_case& c, const effect
     auto &left = innovation[0], &does = innovation[1];
     for (std::size_t k = 0; k < does.size(); ++k) does[k] -= left[k];
     return std::all_of(c.record.score.channels.begin(), c.record.score.channels.end(),
-                       [&](const channel& band) {
-                           const double above_noise = square(rms(seen(left, band))) - band.of_noise(c.noise);
-                           return square(rms(seen(does, band))) < 4 * std::max(0.0, above_noise);
-                       });
+                       [&](const channel& band) { return rms(seen(does, band)) < 2 * rms(seen(left, band)); });
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail
