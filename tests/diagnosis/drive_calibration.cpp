@@ -63,6 +63,17 @@ machine_log log_of(const drive_simulator::machine& m, double pace, unsigned seed
     std::istringstream text(drive_simulator::log(takes::set_points, m, 1e-3, pace, seed, "m"));
     return read_log(text, "log.csv");
 }
+diagnosis_result found(const machine_description& machine, const machine_log& log, const machine_log& holdout) {
+    rules one;
+    one.threads = 1;
+    return diagnose(
+        machine, log, &holdout, [](const std::string&) {}, one);
+}
+void not_blamed(const machine_description& machine, const machine_log& log, const machine_log& holdout) {
+    const auto d = found(machine, log, holdout);
+    CHECK(d.verdict <= verdict::within_tolerance);
+    for (const cause& c : d.causes) CHECK_MESSAGE(c.group_probability < 0.5, c.effect);
+}
 const numbers described{100, 60, 30, 25132.741, 1263309.4, 40, 1e-3},
     tolerance{0.05, 0.2, 0.1, 0.03, 0.05, 0.03, 0.1}, ratio{0.976, 0.963, 0.98, 1.0234, 0.9665, 1.0269, 1.0898};
 constexpr double count = 5e-8;
@@ -101,12 +112,7 @@ TEST_CASE(
     const auto machine = file_of(described, tolerance, count, 1);
     const auto m = machine_of(off_by(described, ratio), count, 1);
     const machine_log log = log_of(m, 1, 3), holdout = log_of(m, 0.8, 4);
-    rules one;
-    one.threads = 1;
-    const auto d = diagnose(
-        machine, log, &holdout, [](const std::string&) {}, one);
-    CHECK(d.verdict <= verdict::within_tolerance);
-    for (const cause& c : d.causes) CHECK_MESSAGE(c.group_probability < 0.5, c.effect);
+    not_blamed(machine, log, holdout);
 }
 TEST_CASE(
     "position drive whose set-points come three periods late, where the file excludes the delay: neither more "
@@ -117,10 +123,7 @@ TEST_CASE(
     auto machine = file_of(described, tolerance, 1e-6, 1);
     machine.excluded_effects = {"command_delay"};
     const machine_log log = log_of(late, 1, 1), holdout = log_of(late, 0.8, 2);
-    rules one;
-    one.threads = 1;
-    const auto d = diagnose(
-        machine, log, &holdout, [](const std::string&) {}, one);
+    const auto d = found(machine, log, holdout);
     CHECK(d.verdict > verdict::within_tolerance);
     const auto check = [&](const std::vector<parameter_estimate>& found) {
         for (const auto& p : found) {
@@ -174,11 +177,6 @@ TEST_CASE("position drive with a measured current: a force constant inside its t
         CAPTURE(off);
         m.force_of_current = constant * (1 + off);
         const machine_log log = log_of(m, 1, 5), holdout = log_of(m, 0.8, 6);
-        rules one;
-        one.threads = 1;
-        const auto d = diagnose(
-            machine, log, &holdout, [](const std::string&) {}, one);
-        CHECK(d.verdict <= verdict::within_tolerance);
-        for (const cause& c : d.causes) CHECK_MESSAGE(c.group_probability < 0.5, c.effect);
+        not_blamed(machine, log, holdout);
     }
 }
