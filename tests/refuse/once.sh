@@ -7,4 +7,6 @@ shift
 mkdir -p "$folder"
 echo '#include "quadrant/base/literals.hpp"' >"$folder/once.hpp"
 case $1 in *clang*) suffix=pch ;; *) suffix=gch ;; esac
-"$@" -x c++-header -o "$folder/once.hpp.$suffix" "$folder/once.hpp"
+precompile() { "$@" -x c++-header -o "$folder/once.hpp.$suffix" "$folder/once.hpp"; }
+# g++ 12 saves it at an address that it draws, and breaks off ("in gt_pch_save") where that is taken: it draws again.
+precompile "$@" || precompile "$@"

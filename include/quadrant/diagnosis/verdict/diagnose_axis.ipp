@@ -117,8 +117,6 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     note_few_motions(out, c);
     add_read_off(causes, c);
     shrinks.measure(result, causes);
-    for (cause& x : causes) // what leaves more force than without it explains none
-        if (claimed(x) && x.shrink.value < 0) to_suspects({&x, 1});
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
     const verdict behind = result.verdict = judge(c, causes);

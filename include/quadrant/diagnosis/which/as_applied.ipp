@@ -37,15 +37,17 @@ QUADRANT_DIAGNOSIS_DECL const rival& heading(const std::vector<rival>& group) {
     return *head;
 }
 
-/// A claim whose number, as it is applied, may lie inside its tolerance is calibration: it left the tolerance
-/// only beside suspects that are not applied. Whether one became a suspect so.
-inline bool suspect_what_stays_inside(const axis_case& c, std::vector<cause>& causes) {
+/// What claims as they are applied do not hold without the suspects: a number that may lie inside its tolerance
+/// is calibration, and claims that do not take the gap of the machine file down explain nothing. Whether one
+/// became a suspect so.
+inline bool suspect_what_does_not_stand(const axis_case& c, std::vector<cause>& causes) {
+    const bool explain = c.models.shrinks(c.applied(), c.models.given());
     bool any = false;
     for (std::size_t i = 0; i < c.claims; ++i) {
-        const bool inside = c.models.is_calibration(c.applied(), c.best().effects[i]) ||
-                            may_be_inside_its_tolerance(c, causes[i].parameters);
-        if (inside) to_suspects({&causes[i], 1});
-        any = any || inside;
+        const bool stands = explain && !c.models.is_calibration(c.applied(), c.best().effects[i]) &&
+                            !may_be_inside_its_tolerance(c, causes[i].parameters);
+        if (!stands) to_suspects({&causes[i], 1});
+        any = any || !stands;
     }
     return any;
 }
@@ -106,7 +108,7 @@ QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& ca
         detail::widen(alone, causes[i].parameters);
         causes[i].with_suspects = std::exchange(causes[i].parameters, std::move(alone));
     }
-    if (!detail::suspect_what_stays_inside(c, causes)) return;
+    if (!detail::suspect_what_does_not_stand(c, causes)) return;
     for (cause& x : causes)
         if (!x.with_suspects.empty()) x.parameters = std::exchange(x.with_suspects, {});
     put_as_applied(c, causes, rivals);
