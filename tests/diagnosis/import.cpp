@@ -380,6 +380,35 @@ TEST_CASE("import: a mass that the record shows poorly is no unit") {
     CHECK(checked(8) == "accepted"); // half of the command is another force: 1/30 may be 1/15
 }
 
+TEST_CASE("import: the set-point of a velocity drive is no force, and says nothing of the mass") {
+    machine_description machine;
+    machine.axes.emplace_back().name = "x";
+    machine.axes[0].plant.mass_kg = 145;
+    machine.axes[0].plant.force_constant_N_per_V = 1; // as a machine file that gives none is read
+    const auto checked = [&](drive_kind drive, double command) {
+        machine.axes[0].drive.kind = drive;
+        machine_log log;
+        log.sample_period_s = 0.001;
+        axis_log a;
+        a.name = "x";
+        a.command_unit = "V";
+        for (int k = 0; k < 8000; ++k) { // 0.64 V s^2/m lead the motion: a loop of 20 Hz behind 12 V s/m
+            const double t = 0.001 * k, w = 12, w2 = 31;
+            a.position.push_back(std::sin(w * t) / (w * w) + std::sin(w2 * t) / (w2 * w2));
+            a.command.push_back(command * (12 * (std::cos(w * t) / w + std::cos(w2 * t) / w2) -
+                                           0.64 * (std::sin(w * t) + std::sin(w2 * t))));
+        }
+        a.reference = a.position;
+        log.axes = {a};
+        log.samples = a.position.size();
+        return said([&] { check_physics(machine, log); });
+    };
+    CHECK(checked(drive_kind::current, 1).find("of the mass of 145") != std::string::npos);
+    CHECK(checked(drive_kind::velocity, 1) == "accepted");
+    CHECK(checked(drive_kind::position, 1) == "accepted");
+    CHECK(checked(drive_kind::velocity, -1).find("pushes against the motion") != std::string::npos);
+}
+
 TEST_CASE("import: one number of a list that a cell holds") {
     const char* const map =
         R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "stamp", "unit": "us"},

@@ -7,9 +7,11 @@
 namespace quadrant::inline v0::diagnosis {
 
 /// What the owner knows of an axis, to check its units by: mass [kg] (or inertia [kg m^2]) and force constant
-/// [N per unit of the command] (or torque constant). 0: not known.
+/// [N per unit of the command] (or torque constant). 0: not known. Loops inside its drive follow the command,
+/// which is then a velocity or a position: no force, so that it says nothing of the mass.
 struct known_axis {
     double mass = 0, force_constant = 0;
+    drive_kind drive = drive_kind::current;
 };
 
 namespace detail {
@@ -41,7 +43,8 @@ public:
     void refuse_what_cannot_be() const {
         if (!(c_.travel > 0)) return;
         if (a_.has_reference && std::abs(c_.correlation) > 0.9) against_the_reference();
-        if (!c_.sign_is_known()) {
+        if (known_.drive == drive_kind::position || known_.drive == drive_kind::position_servo) return;
+        if (!c_.sign_is_known() || known_.drive == drive_kind::velocity) {
             against_the_motion();
             return;
         }
@@ -155,7 +158,7 @@ inline void check_physics(const machine_description& machine, const machine_log&
         for (const axis_log& a : log.axes)
             if (a.name == axis.name && !a.still && !axis.positions_only)
                 detail::axis_physics(a, log.sample_period_s, log.file,
-                                     {axis.plant.mass_kg, axis.plant.force_constant_N_per_V})
+                                     {axis.plant.mass_kg, axis.plant.force_constant_N_per_V, axis.drive.kind})
                     .refuse_what_cannot_be();
 }
 
