@@ -100,7 +100,12 @@ inline bool has_a_twin(std::string_view effect) {
 /// The effects that a population withholds, in the order of the list.
 inline std::vector<const quadrant::diagnosis::effect*> withheld_from(population of, logs how = logs::plain) {
     if (of == population::joint) return effects_of_a_joint();
-    if (!is_chain(of)) return withheld_effects(drive_of(of), how);
+    if (!is_chain(of)) {
+        auto out = withheld_effects(drive_of(of), how);
+        if (of == population::velocity_pi && how != logs::measured) // hidden_by_the_loop()
+            std::erase_if(out, [](const auto* e) { return e->name == "constant_force"; });
+        return out;
+    }
     const std::vector<std::string_view> gears{"lost_motion", "pitch_error", "scale_error", "travel_error",
                                               "encoder_cyclic_error"},
         forces{"wind_up", "motor_friction", "coulomb_friction", "viscous_friction", "mass", "constant_force"},

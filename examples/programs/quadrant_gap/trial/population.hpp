@@ -2,6 +2,7 @@
 // Long: draw() draws in the order that a seed stands for.
 #pragma once
 #include "gap_meter.hpp"
+#include "hidden.hpp"
 
 /// One machine of the trial: drawn, with its effects put in at a size measured against what its tolerances
 /// alone can do.
@@ -128,9 +129,13 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
             const auto into = [&](insertion& i) {
                 w.into(i);
                 i.vary(e);
+                if (p.what == kind::removed) i.truth.process.mean = 0; // a constant force, which is no lie
             };
             detail::put_in(m, e, w.low, w.high, into, target(), stream++);
         }
+        if (std::any_of(p.effects.begin(), p.effects.end(),
+                        [&](const std::string& e) { return detail::hidden_by_the_loop(m, e); }))
+            continue;
         const double least =
             p.what == kind::single || attempt > 5 ? 0 : 1.2; // a single one may hide in the cloud
         if (std::any_of(m.effects.begin(), m.effects.end(),
