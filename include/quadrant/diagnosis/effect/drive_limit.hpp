@@ -51,7 +51,12 @@ inline constexpr effect drive_limit{
             return {{detail::limit_below(s, key, of, most / largest, 0.9 * largest,
                                          {0.97 * largest, 0.99 * largest, largest})}};
         }
-        return {{detail::limit_below(s, key, of, most)}};
+        if (servo) return {{detail::limit_below(s, key, of, most)}};
+        const double taken = detail::most_taken(s) / most; // a law that winds up asks for a multiple of it
+        std::vector<double> starts{0.97, 0.9, 0.8, 0.65, 0.5, 0.35, 0.2};
+        for (const double share : {1.5, 1.2, 1.0, 0.8, 0.6})
+            if (share * taken < starts.back()) starts.push_back(share * taken);
+        return {{detail::limit_below(s, key, of, most, std::min(0.05, 0.3 * taken), std::move(starts))}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
         if (p.drive.kind == drive_kind::position_servo) return {{"drive.maximum_duty", {p.drive.maximum_duty}}};

@@ -35,6 +35,17 @@ inline double most_given(const screening& s) {
     return most;
 }
 
+/// The largest force that the measured motion needs of this machine [N]: about what a drive at its limit gave,
+/// whatever its law asks for.
+inline double most_taken(const screening& s) {
+    const plant_model& p = s.leader;
+    double most = 0;
+    for (std::size_t k = 0; k < s.record.velocity.size(); ++k)
+        most = std::max(most, std::abs(p.moving_mass() * s.record.acceleration[k] +
+                                       p.friction.viscous_slope * s.record.velocity[k]));
+    return most + p.friction.coulomb + p.friction.excess;
+}
+
 /// Of these numbers the one that a model has farthest from the described one, by ratio.
 inline std::vector<key_value> farthest(const plant_model& p,
                                        std::span<const std::pair<const char*, double drive_model::*>> keys) {
