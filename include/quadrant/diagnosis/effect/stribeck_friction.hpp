@@ -53,8 +53,10 @@ inline constexpr effect stribeck_friction{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double peak = s.record.scale.speed;
         std::vector<std::vector<parameter>> out;
-        for (double slow : {0.004, 0.02, 0.08}) {
-            const double velocity = slow * peak;
+        std::vector<double> velocities{0.004 * peak, 0.02 * peak, 0.08 * peak};
+        // A described curve that is only too low or too high keeps its speed.
+        if (s.leader.friction.excess > 0) velocities.push_back(s.leader.friction.stribeck_velocity);
+        for (double velocity : velocities) {
             const double force = detail::mean_residual(s,
                                                        [&](std::size_t k) {
                                                            const double v = s.record.velocity[k];

@@ -21,6 +21,8 @@ public:
           draws_(segment_draws(judged_.segments)) {}
 
     void measure(axis_result& result, std::vector<cause>& causes) const;
+    /// Whether 97.5 of 100 draws of the motions leave less force with this model than with the machine file.
+    bool surely_shrinks(const candidate& model) const;
     /// Position error times command error of the closed loop on the calibrated machine, and with each cause
     /// more. Empty where the loop cannot be closed, and where samples are lost: others in each run.
     std::vector<double> loop_errors() const;
@@ -33,6 +35,8 @@ private:
 
     /// The fitted plant, from where the record begins that is judged.
     plant_model plant_of(const candidate& model) const;
+    /// Residual force with this model.
+    std::vector<double> force(const candidate& model) const;
     stage at(const candidate& model, const std::optional<controller_description>& controller) const;
     std::optional<closed_loop_run> loop(const plant_model& plant,
                                         const std::optional<controller_description>& controller) const;

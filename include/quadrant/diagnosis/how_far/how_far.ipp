@@ -52,23 +52,27 @@ QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<c
         result.signals.command_added = case_.controller->added->waveform.values;
 }
 
+QUADRANT_DIAGNOSIS_DECL bool how_far::surely_shrinks(const candidate& model) const {
+    cause c;
+    compare(c, energy(force(case_.models.given())), energy(force(model)));
+    return c.shrink.low > 0;
+}
+
 QUADRANT_DIAGNOSIS_DECL plant_model how_far::plant_of(const candidate& model) const {
     return case_.holdout ? restarted(model.fit.plant, judged_) : model.fit.plant;
 }
 
 QUADRANT_DIAGNOSIS_DECL how_far::stage
 how_far::at(const candidate& model, const std::optional<controller_description>& controller) const {
-    stage s;
+    return {force(model), loop(plant_of(model), controller)};
+}
+
+QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::force(const candidate& model) const {
+    if (!case_.holdout) return case_.models.held_out_residual(model);
     const plant_model plant = plant_of(model);
-    if (case_.holdout) {
-        std::vector<double> e, a;
-        judged_.observer.run(plant, e, &a);
-        s.force = residual_of(judged_, plant, a);
-    } else {
-        s.force = case_.models.held_out_residual(model);
-    }
-    s.loop = loop(plant, controller);
-    return s;
+    std::vector<double> e, a;
+    judged_.observer.run(plant, e, &a);
+    return residual_of(judged_, plant, a);
 }
 
 QUADRANT_DIAGNOSIS_DECL std::optional<closed_loop_run>

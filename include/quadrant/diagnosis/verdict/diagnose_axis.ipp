@@ -112,6 +112,10 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     const how_far shrinks(c);
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
+    if (c.claims > 0 && !shrinks.surely_shrinks(c.applied())) { // by chance, in a motion or two
+        to_suspects(causes);
+        put_as_applied(c, causes, rivals);
+    }
     tell_turning_inertia(out, c, causes, others);
     tell_linked_arm(out, c, others);
     note_few_motions(out, c);

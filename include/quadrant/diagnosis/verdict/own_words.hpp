@@ -7,7 +7,7 @@
 
 namespace quadrant::inline v0::diagnosis::detail {
 
-/// Keys and sentences as the axis' own kind has them.
+/// Keys and sentences as the axis' own kind has them; intervals end at zero where the key does.
 QUADRANT_DIAGNOSIS_DECL void put_in_words(axis_kind kind, std::vector<parameter_estimate>& parameters);
 QUADRANT_DIAGNOSIS_DECL void put_in_words(axis_kind kind, std::vector<place>& places);
 QUADRANT_DIAGNOSIS_DECL void put_in_words(axis_kind kind, std::vector<cause>& causes);

@@ -9,6 +9,8 @@ QUADRANT_DIAGNOSIS_DECL void put_in_words(axis_kind kind, std::vector<parameter_
     for (auto& p : parameters) {
         const machine_key* key = key_named(p.key);
         p.key = key ? key->name_for(kind) : key_of(p.key, kind);
+        if (key && !key->rule.holds(-1e-9)) // no interval holds what the file may not
+            for (estimate& e : p.values) e.low = std::max(e.low, std::min(0.0, e.value));
     }
 }
 QUADRANT_DIAGNOSIS_DECL void put_in_words(axis_kind kind, std::vector<place>& places) {

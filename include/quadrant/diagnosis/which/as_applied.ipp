@@ -81,6 +81,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight
 
 QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& causes,
                                             std::vector<std::vector<detail::rival>>& rivals) {
+    for (cause& x : causes)
+        if (!x.with_suspects.empty()) x.parameters = std::exchange(x.with_suspects, {});
     std::vector<const effect*> claims, suspects;
     const auto effects = c.best().effects;
     for (std::size_t i = 0; i < causes.size(); ++i)
@@ -108,10 +110,7 @@ QUADRANT_DIAGNOSIS_DECL void put_as_applied(axis_case& c, std::vector<cause>& ca
         detail::widen(alone, causes[i].parameters);
         causes[i].with_suspects = std::exchange(causes[i].parameters, std::move(alone));
     }
-    if (!detail::suspect_what_does_not_stand(c, causes)) return;
-    for (cause& x : causes)
-        if (!x.with_suspects.empty()) x.parameters = std::exchange(x.with_suspects, {});
-    put_as_applied(c, causes, rivals);
+    if (detail::suspect_what_does_not_stand(c, causes)) put_as_applied(c, causes, rivals);
 }
 
 } // namespace quadrant::inline v0::diagnosis
