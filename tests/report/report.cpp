@@ -82,6 +82,13 @@ TEST_CASE("verdict sentence: names the effects, the axis and the gap before, aft
         CHECK(has(verdict_sentence(sample::unexplained()),
                   "the nearest suspect is cutting force (probability 22 %)"));
     }
+    SUBCASE("a suspect that takes most of the gap is not hidden behind \"no known effect\"") {
+        d = sample::unexplained();
+        d.causes[0].shrink.value = 0.89;
+        CHECK(has(verdict_sentence(d), "No known effect surely explains the gap of axis "));
+        CHECK(has(verdict_sentence(d),
+                  "; with the nearest suspect, cutting force (probability 22 %), it shrinks by 89 %."));
+    }
     SUBCASE("a cause that is claimed is said although it explains little of the gap") {
         d.verdict = d.axes[0].verdict = verdict::unexplained;
         CHECK(has(verdict_sentence(d),

@@ -133,6 +133,32 @@ inline std::string claim(const cause& c) {
 }
 
 namespace detail {
+/// suspect: the nearest one, or none. before, floor: of the gap.
+inline std::string sentence_without_a_claim(const axis_result& a, const cause* suspect,
+                                            const std::string& before, const std::string& floor) {
+    const bool takes_most = suspect && suspect->shrink.value > 0.5;
+    const char* nothing = a.cut        ? "The time was up before a known effect explained"
+                          : takes_most ? "No known effect surely explains"
+                                       : "No known effect explains";
+    const std::string unit = a.positions_only ? "" : " of force";
+    // Calibration alone took the rest: a suspect would have its share of it.
+    if (!suspect && !a.positions_only && a.gap_after.force_rms_N < 0.8 * a.gap.force_rms_N)
+        return fmt::format(
+            "{} what calibration leaves of the gap of axis {}: {} of {}{}, where sensor noise and "
+            "rounding leave {}.",
+            nothing, a.name, quantity(a.gap_after.force_rms_N, "N"), before, unit, floor);
+    std::string hint;
+    if (suspect) {
+        const std::string name = claim(*suspect), odds = probability(suspect->probability);
+        hint = takes_most
+                   ? fmt::format("; with the nearest suspect, {} (probability {}), it shrinks by {:.0f} %",
+                                 name, odds, 100 * suspect->shrink.value)
+                   : fmt::format("; the nearest suspect is {} (probability {})", name, odds);
+    }
+    return fmt::format("{} the gap of axis {}: {}{} where sensor noise and rounding leave {}{}.", nothing,
+                       a.name, before, unit, floor, hint);
+}
+
 inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {
     const std::string before = a.positions_only ? quantity(a.gap.position_rms_m, "m")
                                                 : quantity(a.gap.force_rms_N, "N"),
@@ -164,22 +190,7 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
             suspect = &c;
         }
     }
-    if (!first) {
-        const std::string hint = !suspect ? ""
-                                          : fmt::format("; the nearest suspect is {} (probability {})",
-                                                        claim(*suspect), probability(suspect->probability));
-        const char* nothing =
-            a.cut ? "The time was up before a known effect explained" : "No known effect explains";
-        const std::string unit = a.positions_only ? "" : " of force";
-        // Calibration alone took the rest: a suspect would have its share of it.
-        if (!suspect && !a.positions_only && a.gap_after.force_rms_N < 0.8 * a.gap.force_rms_N)
-            return fmt::format(
-                "{} what calibration leaves of the gap of axis {}: {} of {}{}, where sensor noise and "
-                "rounding leave {}.",
-                nothing, a.name, quantity(a.gap_after.force_rms_N, "N"), before, unit, floor);
-        return fmt::format("{} the gap of axis {}: {}{} where sensor noise and rounding leave {}{}.", nothing,
-                           a.name, before, unit, floor, hint);
-    }
+    if (!first) return sentence_without_a_claim(a, suspect, before, floor);
     const auto are = [](const auto& names) { return names.size() > 1 ? "are" : "is"; };
     std::string what;
     if (!missing.empty())
