@@ -21,7 +21,8 @@ public:
           draws_(segment_draws(judged_.segments)) {}
 
     void measure(axis_result& result, std::vector<cause>& causes) const;
-    /// Whether 97.5 of 100 draws of the motions leave less force with this model than with the machine file.
+    /// Whether 97.5 of 100 draws of the motions leave no more force with this model than with the machine file,
+    /// noise apart.
     bool surely_shrinks(const candidate& model) const;
     /// Position error times command error of the closed loop on the calibrated machine, and with each cause
     /// more. Empty where the loop cannot be closed, and where samples are lost: others in each run.
