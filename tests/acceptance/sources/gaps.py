@@ -4,7 +4,7 @@
 not know of, and what quadrant-gap says of it. Writes docs/explanation/gaps_of_the_sources.md, or compares with it. Fails where a machine with
 nothing different is blamed, and where a cause is claimed that is not there.
 usage: gaps.py SOURCE_LOGS QUADRANT_GAP FOLDER [--write PAGE] [NAME...]
-NAME: these cases only; without --write two cases, or all with QUADRANT_TESTS=all"""
+NAME: these cases only; without --write those of DEFAULT, or all with QUADRANT_TESTS=all"""
 import json, os, re, subprocess, sys, textwrap
 from concurrent.futures import ThreadPoolExecutor
 
