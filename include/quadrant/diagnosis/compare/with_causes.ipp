@@ -2,7 +2,6 @@
 #pragma once
 #include "../apply.hpp"
 #include "../effect/effect_list.hpp"
-#include "../effect/effects.hpp"
 #include "../text/bad_input.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail::beside {

@@ -3,7 +3,6 @@
 #include "../fit/spatial_spectrum.hpp"
 #include "effect.hpp"
 
-#include <Eigen/Dense>
 #include <complex>
 
 /// What the effects share whose force, friction or reading repeats along the travel or in time.
@@ -68,29 +67,7 @@ std::array<double, Count> comb(std::span<const double> signal, std::span<const d
 /// Whether the residual surely holds a harmonic beyond the first three of this period, all eight fitted side by
 /// side: its power is ten times what noise gives it, one case of e^10. The residual holds its noise below its
 /// bandwidth.
-inline bool holds_more_than_three(const screening& s, double period) {
-    constexpr int count = harmonics::most, numbers = 2 * count + 1;
-    Eigen::Matrix<double, numbers, numbers> squares = Eigen::Matrix<double, numbers, numbers>::Zero();
-    Eigen::Vector<double, numbers> with_force = Eigen::Vector<double, numbers>::Zero(), row;
-    double rows = 0, energy = 0;
-    for (std::size_t k = s.record.score.skip; k < s.residual.size(); ++k) {
-        const auto turn = std::polar(1.0, 2 * std::numbers::pi * s.record.position[k] / period);
-        auto phasor = turn;
-        for (int i = 0; i < count; ++i, phasor *= turn) row.segment<2>(2 * i) << phasor.real(), phasor.imag();
-        row[2 * count] = 1;
-        squares += row * row.transpose();
-        with_force += s.residual[k] * row;
-        energy += s.residual[k] * s.residual[k];
-        ++rows;
-    }
-    const Eigen::Vector<double, numbers> size = squares.ldlt().solve(with_force);
-    const double left = std::max(0.0, energy - size.dot(with_force)) / rows;
-    const double denser = std::max(1.0, 0.5 / (s.record.bandwidth_Hz * s.record.period));
-    const double by_noise = 4 * left * denser / rows;
-    for (int i = 3; i < count; ++i)
-        if (size.segment<2>(2 * i).squaredNorm() > 10 * by_noise) return true;
-    return false;
-}
+QUADRANT_DIAGNOSIS_DECL bool holds_more_than_three(const screening& s, double period);
 
 /// The two periods whose harmonics, down to `shortest`, gather most of the signal. A peak of the spectrum may
 /// be any harmonic, but a longer period gathers a line's own power again and must find more of its own, else it
@@ -223,3 +200,7 @@ inline double largest_command(const screening& s) {
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "repeating.ipp"
+#endif
