@@ -116,10 +116,12 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
     if (!c.settled && !c.record.closed()) gap.emplace(c, c.models.with(others));
     const double own = c.worth(c.best());
     const auto worth = [&](const candidate& m) {
-        // Of a path that no further name improves enough, a model with more names says nothing.
-        const bool longer = c.record.closed() && m.effects.size() > c.best().effects.size();
-        if (longer) return -std::numeric_limits<double>::infinity();
-        const double out = c.worth(m);
+        // Of a path that no further name improves enough, a model with more names says nothing; of forces, each
+        // further name is worth its place only beyond the margin.
+        const double more = std::max(
+            0.0, static_cast<double>(m.effects.size()) - static_cast<double>(c.best().effects.size()));
+        if (c.record.closed() && more > 0) return -std::numeric_limits<double>::infinity();
+        const double out = c.worth(m) - c.limits.margin * more;
         const bool matters = gap && out > own - 5 * score_temperature;
         const bool may_be = out > own - 5 * score_temperature && ignores_the_command(c, m);
         return may_be || (matters && !gap->is_taken_by(m)) ? -std::numeric_limits<double>::infinity() : out;
