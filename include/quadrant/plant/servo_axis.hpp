@@ -65,6 +65,12 @@ public:
             load += dx;
             v += dv;
         }
+        /// Who leads the axis along a motion moves what the motor drives: the second mass stays where it is.
+        void lead(Real dx, Real dv) noexcept {
+            shift(dx, dv);
+            second.q -= dx;
+            second.w -= dv;
+        }
         /// Another state in the lanes that `here` picks.
         void take(const mask& here, const state& other) noexcept {
             const auto put = [&](Real& to, const Real& from) { to = select(here, from, to); };

@@ -101,11 +101,13 @@ inline constexpr effect structural_resonance{
                       m.set("mode_damping", m.log_uniform(0.005, 0.06));
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
-        const double m = s.leader.mass, corner = s.record.scale.corner_Hz,
-                     highest = std::min(10 * corner, 0.3 / s.record.period);
+        const double m = s.leader.mass, corner = s.record.scale.corner_Hz, highest = 0.3 / s.record.period;
+        // A slower mode, or one that a third of its critical damping keeps from ringing, does what any force does
+        // that the model lacks.
+        const double lowest = 0.25 * corner;
         std::vector<std::vector<parameter>> out;
-        for (double f : detail::ringing_frequencies(s, 0.1 * corner, highest, 3))
-            for (double share : {0.03, 0.2})
+        for (double f : detail::ringing_frequencies(s, lowest, highest, 3))
+            for (double share : {0.03, 0.2, 0.33, 0.5}) // the axis rings above the frequency of the mode alone
                 out.push_back({{.key = "mode_mass_kg",
                                 .of = [](plant_model& p) -> double& { return p.mode.mass; },
                                 .start = share * m,
@@ -115,8 +117,8 @@ inline constexpr effect structural_resonance{
                                 .step = 1e-2},
                                {.key = "mode_frequency_Hz",
                                 .of = [](plant_model& p) -> double& { return p.mode.frequency_Hz; },
-                                .start = f,
-                                .low = 0.08 * corner,
+                                .start = f * std::sqrt(1 - share),
+                                .low = 0.8 * lowest,
                                 .high = highest,
                                 .logarithmic = true,
                                 .step = 1e-3},
@@ -124,7 +126,7 @@ inline constexpr effect structural_resonance{
                                 .of = [](plant_model& p) -> double& { return p.mode.damping; },
                                 .start = 0.05,
                                 .low = 0.002,
-                                .high = 0.6,
+                                .high = 0.33,
                                 .logarithmic = true,
                                 .step = 1e-2}});
         return out;

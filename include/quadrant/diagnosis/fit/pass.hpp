@@ -23,6 +23,7 @@ struct pass_input {
     const double* const* command_of = nullptr;  ///< one command a plant instead of one for all; null: none
     const double* other_acceleration = nullptr; ///< null: none
     double to_position = 0, to_velocity = 0;    ///< gains of the correction by the innovation
+    bool leads = false;                         ///< the correction is a motion that the axis is led along
     std::size_t plants = 0;
     const plant* plant_of = nullptr;
     double* const* innovation = nullptr;   ///< one array a plant
@@ -63,7 +64,11 @@ public:
         if (in.other_acceleration) now_.other_acceleration = Real(in.other_acceleration[k]);
         const Real e = Real(in.position[k]) - newer_.reading(state_);
         keep(in, in.innovation, k, e);
-        state_.shift(Real(in.to_position) * e, Real(in.to_velocity) * e);
+        const Real dx = Real(in.to_position) * e, dv = Real(in.to_velocity) * e;
+        if (in.leads)
+            state_.lead(dx, dv);
+        else
+            state_.shift(dx, dv);
         begun_at_ = state_.load;
         begun_with_ = newer_.load_velocity(state_);
     }

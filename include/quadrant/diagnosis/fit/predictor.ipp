@@ -163,6 +163,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::pass(std::span<const plant_model> plants
               .other_acceleration = other_acceleration.empty() ? nullptr : other_acceleration.data(),
               .to_position = by.to_position,
               .to_velocity = by.to_velocity,
+              .leads = by.heavier > 1,
               .plants = plants.size(),
               .plant_of = each.data(),
               .innovation = e.data(),

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSL-1.0
+#include "workshop.hpp"
+
+#include <quadrant/diagnosis/effect/effects.hpp>
+#include <quadrant/diagnosis/which/axis_case.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace quadrant::diagnosis;
+
+// A second mass that is a large part of the axis: the axis rings far above the mode's own frequency, that of
+// the mass with the axis held.
+
+TEST_CASE("structural_resonance: a large part of the mass on a spring is found with its frequency") {
+    struct mode {
+        double share, frequency;
+    };
+    for (const auto& [share, frequency] : {mode{0.3, 60}, mode{0.5, 160}}) {
+        workshop::machine real;
+        auto file = workshop::described(real); // the whole mass
+        const double whole = real.mass;
+        real.mode_mass = share * whole;
+        real.mass -= real.mode_mass;
+        real.mode_frequency = frequency;
+        real.mode_damping = 0.015;
+        real.control.velocity_gain /= 2;
+        real.control.position_gain *= 0.4;
+        const auto log = workshop::run(real, workshop::three_strokes);
+        const auto& axis = file.axes.front();
+        const auto record = for_machine(prepare(log, workshop::period, workshop::count,
+                                                scales_of(axis.plant, log, workshop::period, workshop::count)),
+                                        axis);
+        const search models(record, axis, {}, {}, [](const std::string&) {});
+        const plant_model found = models.with({&suspect::structural_resonance}).fit.plant;
+        CAPTURE(found.mode.mass / whole);
+        CAPTURE(found.mode.frequency_Hz);
+        CHECK(workshop::near(found.mode.mass, real.mode_mass, 0.05));
+        CHECK(workshop::near(found.mode.frequency_Hz, frequency, 0.02));
+    }
+}
+
+TEST_CASE("structural_resonance: led along the motion, a second mass needs its share of the force") {
+    const workshop::machine real;
+    const auto axis = workshop::described(real).axes.front();
+    const auto log = workshop::run(real, workshop::three_strokes);
+    const auto record = for_machine(prepare(log, workshop::period, workshop::count,
+                                            scales_of(axis.plant, log, workshop::period, workshop::count)),
+                                    axis);
+    const plant_model rigid(axis, record.scale.give());
+    plant_model sprung = rigid;
+    sprung.mode = {.mass = 0.4 * rigid.mass, .frequency_Hz = 150, .damping = 0.3};
+    const auto by = motion_to_lead(record, rigid);
+    const std::array plants{rigid, sprung};
+    std::array<std::vector<double>, 2> left;
+    record.observer.forces_beside(*by, plants, record.command, left);
+    auto share = acceleration_of(rigid, by->way, record.period);
+    for (std::size_t k = 0; k < share.size(); ++k) {
+        share[k] *= sprung.mode.mass * (by->counts[k] ? 1 : 0);
+        left[1][k] -= left[0][k];
+    }
+    CHECK(rms(left[1]) < 0.2 * rms(share)); // the smoothed motion, below 80 Hz, is slow beside the mode
+}
