@@ -28,13 +28,18 @@ inline void need_blocks(const axis_case& c, const std::string& file) {
 }
 
 /// Whether an axis is looked at again with models led along its motion: structure is left, and what was found
-/// leaves more of the forces along that motion than was there before, whatever it does to the predictions.
-/// Beside forces without a name a corrected model predicts best by standing still. A drive's loops are replayed
-/// with the readings.
+/// leaves more of the forces along that motion than was there before, and than the same machine without the
+/// names leaves, whatever it does to the predictions. Beside forces without a name a corrected model predicts
+/// best by standing still; numbers inside their tolerances that moved with a right name are no such case. A
+/// drive's loops are replayed with the readings.
 inline bool contradicts_motion(const axis_case& c) {
     if (c.best().effects.empty() || c.models.over() || c.axis.drive.closes() || !shows_along_motion(c.best()))
         return false;
-    return c.left_along_motion() > 1 / (1 - c.limits.least_shrink);
+    candidate unnamed = c.best();
+    for (const effect* e : c.best().effects) unnamed.fit.plant = c.models.plant_without(unnamed, *e);
+    const auto left =
+        c.left_along_motion(std::array{c.best().fit.plant, c.path.front().fit.plant, unnamed.fit.plant});
+    return left[0] * (1 - c.limits.least_shrink) > std::max(left[1], left[2]);
 }
 
 /// The same where the command was measured, and what was found makes the axis answer it less than described. A
