@@ -21,9 +21,9 @@ public:
           draws_(segment_draws(judged_.segments)) {}
 
     void measure(axis_result& result, std::vector<cause>& causes) const;
-    /// Whether 97.5 of 100 draws of the motions leave no more force with this model than with the machine file,
-    /// noise apart.
-    bool surely_shrinks(const candidate& model) const;
+    /// Whether 97.5 of 100 draws of the motions leave no more force with the model `to` than with `from`, noise
+    /// apart.
+    bool surely_shrinks(const candidate& from, const candidate& to) const;
     /// Position error times command error of the closed loop on the calibrated machine, and with each cause
     /// more. Empty where the loop cannot be closed, and where samples are lost: others in each run.
     std::vector<double> loop_errors() const;

@@ -52,8 +52,8 @@ QUADRANT_DIAGNOSIS_DECL void how_far::measure(axis_result& result, std::vector<c
         result.signals.command_added = case_.controller->added->waveform.values;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool how_far::surely_shrinks(const candidate& model) const {
-    const segment_energy before = energy(force(case_.models.given())), after = energy(force(model));
+QUADRANT_DIAGNOSIS_DECL bool how_far::surely_shrinks(const candidate& from, const candidate& to) const {
+    const segment_energy before = energy(force(from)), after = energy(force(to));
     const double floor = case_.floor_force(); // motions that show nothing speak for and against nothing
     const auto taken = [&](const auto& w) { return std::hypot(before.rms(w), floor) - after.rms(w); };
     return resampled(draws_, judged_.segments, taken).low > 0;

@@ -89,6 +89,18 @@ inline void add_rest(diagnosis_result& out, const axis_case& c, const axis_resul
     out.next.finding = text_of(out.next.finding, c.axis.kind);
 }
 
+/// Claims that only some of the motions hold up are suspects: all of them where they do not surely shrink the
+/// gap together, and the one that takes least where it does not surely shrink what the others leave.
+inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<cause>& causes,
+                              std::vector<std::vector<rival>>& rivals) {
+    while (c.claims > 0) {
+        const bool together = shrinks.surely_shrinks(c.models.given(), c.applied());
+        if (together && (c.claims == 1 || shrinks.surely_shrinks(c.path[c.claims - 1], c.applied()))) return;
+        to_suspects(together ? std::span(&causes[c.claims - 1], 1) : std::span(causes));
+        put_as_applied(c, causes, rivals);
+    }
+}
+
 QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
                                            const stages& stage, chain::two_encoders* of_transmission,
                                            const other_axes& others) {
@@ -112,10 +124,7 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     const how_far shrinks(c);
     if (std::any_of(causes.begin(), causes.end(), claimed)) doubt_by_loop(causes, shrinks.loop_errors());
     put_as_applied(c, causes, rivals);
-    if (c.claims > 0 && !shrinks.surely_shrinks(c.applied())) { // by chance, in a motion or two
-        to_suspects(causes);
-        put_as_applied(c, causes, rivals);
-    }
+    suspect_by_chance(shrinks, c, causes, rivals);
     tell_turning_inertia(out, c, causes, others);
     tell_linked_arm(out, c, others);
     note_few_motions(out, c);
