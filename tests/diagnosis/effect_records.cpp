@@ -50,7 +50,8 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
             CHECK(!k.meaning.empty());
             // A drive has one position gain: in 1/s, or as a duty. A play is known as well on either side.
             const bool first = k.tolerance && tolerances.insert(k.tolerance_name()).second;
-            CHECK((!k.tolerance || first || k.name == "drive.position_gain_per_m" || k.key() == "backlash_m"));
+            CHECK((!k.tolerance || first || k.name == "drive.position_gain_per_m" ||
+                   k.key() == "backlash_m"));
             CHECK(key_named(k.name_for(axis_kind::rotary)) == &k);
             if (e->law) CHECK(e->law->index_of(k.name) < e->law->count());
         }

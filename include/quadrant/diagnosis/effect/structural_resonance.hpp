@@ -102,8 +102,8 @@ inline constexpr effect structural_resonance{
                   }},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double m = s.leader.mass, corner = s.record.scale.corner_Hz, highest = 0.3 / s.record.period;
-        // A slower mode, or one that a third of its critical damping keeps from ringing, does what any force does
-        // that the model lacks.
+        // A slower mode, or one that a third of its critical damping keeps from ringing, does what any force
+        // does that the model lacks.
         const double lowest = 0.25 * corner;
         std::vector<std::vector<parameter>> out;
         for (double f : detail::ringing_frequencies(s, lowest, highest, 3))
