@@ -94,6 +94,25 @@ TEST_CASE("import: what it writes is what read_log reads, with the rounding that
         CHECK(std::abs(log.axes[0].position[k] - in.log.axes[0].position[k]) < 1e-12);
 }
 
+TEST_CASE("import: a command of a few set values keeps their digits") {
+    std::string text = "t,q,u\n";
+    for (int k = 0; k < 400; ++k)
+        text += fmt::format("{:.3f},{:.4f},{}\n", 0.001 * k, 1e-4 * k * k, k < 200 ? "0.05" : "-2.5e-2");
+    for (const char* unit : {"Nm", "mNm"}) {
+        const auto in = import_log(read_import_map(fmt::format(R"({{"schema": "quadrant.import/1",
+            "time": {{"column": "t", "unit": "s"}}, "axes": {{"m": {{"position": {{"column": "q", "unit": "rad"}},
+            "command": {{"column": "u", "unit": "{}"}}}}}}}})",
+                                                               unit),
+                                                   "map.json"),
+                                   text, "in.txt");
+        std::istringstream written(in.text);
+        const auto log = read_log(written, "out.csv");
+        CHECK(log.axes[0].command[0] == doctest::Approx(unit[0] == 'm' ? 5e-5 : 0.05));
+        CHECK(log.axes[0].command[399] == doctest::Approx(unit[0] == 'm' ? -2.5e-5 : -0.025));
+        CHECK(log.axes[0].command_step == 0); // set, not rounded
+    }
+}
+
 TEST_CASE("import: what is wrong in the log is told with file, line and column") {
     const auto with = [](const std::string& from, const std::string& to) {
         std::string text = rows;

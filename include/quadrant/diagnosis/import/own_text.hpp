@@ -47,9 +47,10 @@ private:
     static constexpr int most_decimals = 15;
 
     /// Digits behind the point that a column needs; no more than it had, where its factor is a power of ten, so
-    /// that its rounding is still seen. What was resampled has digits of its own.
+    /// that its rounding is still seen. What was resampled has digits of its own. Values that are set and stay,
+    /// as the steps of a command, were not rounded, and keep the digits that they had.
     std::pair<int, bool> decimals(const foreign_column& c) const {
-        const double step = c.written.step() > 0 ? c.written.step() : 1,
+        const double step = c.written.step() > 0 ? c.written.step() : c.written.last_digit(),
                      power = -std::log10(step * std::abs(c.factor));
         const bool exact = !resampled_ && std::abs(power - std::round(power)) < 1e-9;
         constexpr int guard = 3;

@@ -64,6 +64,10 @@ public:
         return power_of_ten(coarsest);
     }
 
+    /// Decimal unit of the last digit that stands in the column: what writes it again without loss, set values
+    /// too. 1: whole numbers.
+    double last_digit() const { return finest_ == none ? 1 : power_of_ten(finest_); }
+
 private:
     static constexpr int none = std::numeric_limits<int>::max(), top = 12;
 
