@@ -332,6 +332,23 @@ TEST_CASE("diagnose: one stroke of under a second names a cause that it shows, a
     }));
 }
 
+TEST_CASE("diagnose: of a record that goes back once, no piece that is left out takes a direction with it") {
+    constexpr double there_and_back = 1.85; // of motion() [s]
+    machine real;
+    real.coulomb = 0;
+    const auto file = described(real);
+    real.coulomb = machine{}.coulomb;
+    real.viscous_asymmetry = 0.3;
+    CHECK(claims(diagnosed(file, real, there_and_back)) ==
+          std::vector<std::string>{"coulomb_friction", "asymmetric_friction"}); // no drag beside them
+    real.viscous_asymmetry = 0;
+    real.constant_force = 30;
+    const auto d = diagnosed(file, real, there_and_back);
+    REQUIRE(claims(d) == std::vector<std::string>{"coulomb_friction", "constant_force"});
+    // At one speed a friction that differs by direction is the same force.
+    CHECK(d.causes[1].confusable_with == std::vector<std::string>{"asymmetric_friction"});
+}
+
 TEST_CASE("diagnose: same numbers, same result to the bit, whether they are metres or radians") {
     machine real;
     auto file = described(real);
