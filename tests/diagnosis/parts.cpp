@@ -583,21 +583,6 @@ TEST_CASE("fit: bounds hold, and a value beyond them is found once it is free") 
     CHECK(models.with({&suspect::mass}).fit.plant.mass == doctest::Approx(225).epsilon(0.02));
 }
 
-TEST_CASE("diagnose: a cause whose only number may have either sign is open, and so is one without a period") {
-    using quadrant::diagnosis::detail::is_undetermined;
-    const auto number = [](const char* key, double low, double high) {
-        return parameter_estimate{.key = key, .values = {{(low + high) / 2, low, high}}};
-    };
-    CHECK(is_undetermined({number("constant_force_N", -0.0106, 0.0109)}));
-    CHECK_FALSE(is_undetermined({number("constant_force_N", 0.001, 0.0109)}));
-    CHECK_FALSE(is_undetermined({number("constant_force_N", -0.0109, -0.001)}));
-    // Of two numbers one may make up for the other.
-    CHECK_FALSE(
-        is_undetermined({number("viscous_asymmetry", -0.1, 0.3), number("coulomb_asymmetry", -0.2, 0.5)}));
-    CHECK(is_undetermined({number("cogging_N", 1, 2), number("cogging_period_m", -0.01, 0.03)}));
-    CHECK_FALSE(is_undetermined({number("cogging_N", 1, 2), number("cogging_period_m", 0.01, 0.012)}));
-}
-
 TEST_CASE("diagnose: a value that stopped at the end of its range is marked, one inside is not") {
     candidate c;
     c.fit.parameters = {{.key = "mass_kg", .low = 1, .high = 4, .logarithmic = true},

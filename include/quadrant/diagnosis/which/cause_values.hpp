@@ -21,9 +21,8 @@ QUADRANT_DIAGNOSIS_DECL void add_model_error(std::vector<parameter_estimate>& va
 QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
                                    const std::vector<parameter_estimate>& other);
 
-/// Whether the record leaves a cause open: the interval of its frequency or period is as wide to either side as
-/// the value, so that none of a shorter period is distinguished from it; or its only number may have either
-/// sign, so that it may be nothing.
+/// Whether the record leaves the frequency or the period of a cause open: its interval is as wide to either
+/// side as the value, so that none of a shorter period is distinguished from it.
 QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimate>& values);
 
 } // namespace quadrant::inline v0::diagnosis::detail

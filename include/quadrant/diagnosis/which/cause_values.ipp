@@ -55,15 +55,10 @@ QUADRANT_DIAGNOSIS_DECL void widen(std::vector<parameter_estimate>& mine,
 }
 
 QUADRANT_DIAGNOSIS_DECL bool is_undetermined(const std::vector<parameter_estimate>& values) {
-    const auto of_cycle = [](const parameter_estimate& p) {
-        return p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
-    };
-    const bool no_cycle = std::any_of(values.begin(), values.end(), [&](const parameter_estimate& p) {
-        return of_cycle(p) && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
+    return std::any_of(values.begin(), values.end(), [](const parameter_estimate& p) {
+        const bool cycle = p.key.find("frequency") != p.key.npos || p.key.find("period") != p.key.npos;
+        return cycle && p.values[0].high - p.values[0].low > 2 * p.values[0].value;
     });
-    const bool one_number = values.size() == 1 && values.front().values.size() == 1;
-    return no_cycle ||
-           (one_number && values.front().values.front().low < 0 && values.front().values.front().high > 0);
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail
