@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
-#include "workshop.hpp"
+#include "claims.hpp"
 
 #include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/which/axis_case.hpp>
-
-#include <doctest/doctest.h>
 
 using namespace quadrant::diagnosis;
 
@@ -37,6 +35,22 @@ TEST_CASE("structural_resonance: a large part of the mass on a spring is found w
         CHECK(workshop::near(found.mode.mass, real.mode_mass, 0.05));
         CHECK(workshop::near(found.mode.frequency_Hz, frequency, 0.02));
     }
+}
+
+TEST_CASE("structural_resonance: a mode of half of the mass explains a record of strokes") {
+    workshop::machine real;
+    real.control.velocity_gain /= 2;
+    real.control.position_gain *= 0.4;
+    const auto file = workshop::described(real);
+    real.mass /= 2;
+    real.mode_mass = real.mass;
+    real.mode_frequency = 110;
+    real.mode_damping = 0.015;
+    const auto holdout = workshop::as_log(workshop::run(real, workshop::three_strokes, 7));
+    const auto d = diagnose(file, workshop::as_log(workshop::run(real, workshop::strokes)), &holdout);
+    CAPTURE(workshop::said(d));
+    CHECK(d.verdict == verdict::explained);
+    CHECK(workshop::claims(d) == std::vector<std::string>{"structural_resonance"});
 }
 
 TEST_CASE("structural_resonance: led along the motion, a second mass needs its share of the force") {
