@@ -67,6 +67,25 @@ TEST_CASE("closed drive: a profile velocity holds a servo back") {
     // The arm has swung out by then.
     CHECK((x[599] - x[499]) / (100 * period) == doctest::Approx(0.2).epsilon(1e-3));
 }
+TEST_CASE("a profile velocity is replayed, and closed on an axis, without being early by a part of a step") {
+    plant_model p = arm();
+    p.friction = {};
+    p.gravity.torque = 0;
+    p.mass = 1e9; // stands still
+    p.drive.delay = 0;
+    p.drive.rate_limit = 0.2; // [rad/s]
+    driven_motion m = asked(100);
+    m.set_point.assign(100, 1.0);
+    m.set_point[0] = 0;
+    m.find_velocity();
+    const auto given = m.given(p.drive);
+    const auto command = run_closed(p, m, period, 0, {}, [](std::size_t, double, const auto&) {});
+    for (const std::size_t k : {std::size_t{1}, std::size_t{10}, std::size_t{99}}) {
+        const double duty = 1.2 * 0.2 * period * (static_cast<double>(k) - 0.5); // mean over the row
+        CHECK(given[k] == doctest::Approx(duty).epsilon(1e-6));
+        CHECK(command[k] == doctest::Approx(7.4 * duty).epsilon(1e-6));
+    }
+}
 TEST_CASE("closed drive: what its velocity loop remembers takes a constant force over") {
     plant_description d;
     d.mass_kg = 100;

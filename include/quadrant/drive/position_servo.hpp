@@ -44,8 +44,12 @@ public:
     position_servo(const parameters& p, Real h, already_checked) noexcept
         : gain_(p.gain), minimum_(p.minimum), maximum_(p.maximum), step_(h * Real(p.rate)) {}
 
-    Real operator()(state& s, Real set_point, Real position) const noexcept {
+    /// A step in which no duty is asked for.
+    void follow(state& s, Real set_point) const noexcept {
         s.followed = limited_to(set_point, s.followed - step_, s.followed + step_);
+    }
+    Real operator()(state& s, Real set_point, Real position) const noexcept {
+        follow(s, set_point);
         const Real e = s.followed - position, none(0);
         const Real least = select(greater(e, none), minimum_, select(less(e, none), -minimum_, none));
         return limited_to(gain_ * e + least, maximum_);

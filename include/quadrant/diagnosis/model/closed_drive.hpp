@@ -55,7 +55,7 @@ public:
 
     closed_axis(const typename Axis::parameters& p, const loop_numbers<Real>& n, Real step)
         : numbers_(n), half_step_(Real(0.5) * step), mechanics_(p, step, already_checked()),
-          servo_(n.servo, step, already_checked()), outer_(n.loop, step, already_checked()),
+          servo_(n.servo, half_step_, already_checked()), outer_(n.loop, step, already_checked()),
           inner_(n.loop.velocity, step, already_checked()) {}
 
     /// Before the first step of a record: where axis and set-points are, and how fast the axis moves.
@@ -107,7 +107,11 @@ private:
         const auto moves = either(less(state_.v, Real(0)), greater(state_.v, Real(0)));
         const Real v = select(moves, state_.v + Real(0.5) * (state_.v - velocity_before_), state_.v);
         const Real x = state_.x + half_step_ * state_.v;
-        if (numbers_.kind == drive_kind::position_servo) return servo_(follower_, set_point, x);
+        if (numbers_.kind == drive_kind::position_servo) {
+            const Real duty = servo_(follower_, set_point, x);
+            servo_.follow(follower_, set_point); // its profile is in the middle of the step, too
+            return duty;
+        }
         if (numbers_.kind == drive_kind::velocity) return inner_(loop_, set_point, v);
         return outer_(loop_, set_point, its_velocity, x, v);
     }

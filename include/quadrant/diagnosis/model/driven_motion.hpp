@@ -335,14 +335,17 @@ private:
     }
     std::vector<double> duty(const drive_model& d) const {
         std::vector<double> out(position.size() * parts, 0.0);
-        const position_servo<> law(d.servo_numbers(), period / parts, already_checked());
+        // The mean over a part is what the law gives in its middle: half of the profile's way before it.
+        const position_servo<> law(d.servo_numbers(), 0.5 * period / parts, already_checked());
         auto s = position_servo<>::state::at(set_point[0]);
         each_part(d, [&](std::size_t k, std::size_t at, double r, double, double x, double) {
             const double on = share_on(d, at);
-            if (is_off(k) || on == 0)
+            if (is_off(k) || on == 0) {
                 s = position_servo<>::state::at(x);
-            else
-                out[at] = on * law(s, r, x);
+                return;
+            }
+            out[at] = on * law(s, r, x);
+            law.follow(s, r);
         });
         return out;
     }
