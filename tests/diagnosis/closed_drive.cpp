@@ -218,3 +218,21 @@ TEST_CASE("both motions: logs of different columns stay apart") {
     second.duty.assign(400, 0.0);
     CHECK_FALSE(both_motions(servo_of(p), first, second, period));
 }
+TEST_CASE(
+    "a servo that rests most of the time: what it gives otherwise than measured carries the rounding of the "
+    "position, which does not show there") {
+    constexpr double count = 1e-3;
+    const plant_model p = arm();
+    axis_log log = logged(p, 0.7, 1000);
+    for (std::size_t k = 300; k < 1000; ++k) log.reference[k] = log.position[k] = log.position[299];
+    log.duty.assign(1000, 0.0);
+    for (std::size_t k = 1; k < 1000; ++k) { // read as rows begin, with the set-point of the row before
+        log.duty[k] = p.drive.duty_gain * (log.reference[k - 1] - log.position[k]);
+        log.position[k] = count * std::round(log.position[k] / count);
+    }
+    log.duty_step = 1e-5;
+    axis_description servo = servo_of(p);
+    servo.encoder.resolution_m = count;
+    const axis_log ready = detail::with_drive(servo, log, period);
+    CHECK(ready.drive->to_position == doctest::Approx(1 / p.drive.duty_gain).epsilon(0.2));
+}

@@ -50,6 +50,11 @@ inline double reading_noise(std::span<const double> position, double resolution)
     }
     return std::max(std::sqrt(quantile(ms, 0.3) / 20), resolution / std::sqrt(12.0)); // 1 + 9 + 9 + 1 = 20
 }
+/// The same of what a servo gives otherwise than measured, in duty. The column is rounded to steps, and the
+/// replayed law reads a position that is rounded to counts: neither shows where the axis stands.
+inline double duty_noise(std::span<const double> beside, double step, double gain, double count) {
+    return reading_noise(beside, std::max(step, gain * count));
+}
 
 } // namespace detail
 

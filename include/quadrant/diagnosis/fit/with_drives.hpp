@@ -64,8 +64,8 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     if (motion->tapped() && d.kind == drive_kind::position_servo) {
         double most = 0;
         for (double u : motion->measured) most = std::max(most, std::abs(u));
-        motion->to_position =
-            reading_noise(log.position, count) / reading_noise(replay.beside, std::max(step, 1e-12 * most));
+        motion->to_position = reading_noise(log.position, count) /
+                              duty_noise(replay.beside, std::max(step, 1e-12 * most), model.duty_gain, count);
     }
     out.drive = std::move(motion);
     return out;

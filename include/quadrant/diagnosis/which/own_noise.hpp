@@ -23,7 +23,8 @@ inline std::vector<std::vector<double>> beside_own_noise(std::vector<std::vector
     double most = 0;
     for (double u : drive->measured) most = std::max(most, std::abs(u));
     const double step = std::max({log.duty_step, log.effort_step, 1e-12 * most});
-    const double own = drive->to_position * reading_noise(drive->run(plant.drive).beside, step),
+    const double own = drive->to_position *
+                       duty_noise(drive->run(plant.drive).beside, step, plant.drive.duty_gain, r.resolution),
                  times = own / reading_noise(r.position, r.resolution);
     for (std::size_t i = 0; i < ms.size(); ++i)
         if (r.score.channels[i].of_tap)
