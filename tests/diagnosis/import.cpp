@@ -113,6 +113,17 @@ TEST_CASE("import: a command of a few set values keeps their digits") {
     }
 }
 
+TEST_CASE("import: a command of zeros with an exponent beyond every double is zero") {
+    std::string text = "t,q,u\n";
+    for (int k = 0; k < 400; ++k) text += fmt::format("{:.3f},{:.4f},0E600\n", 0.001 * k, 1e-4 * k * k);
+    const auto in = import_log(read_import_map(R"({"schema": "quadrant.import/1",
+        "time": {"column": "t", "unit": "s"}, "axes": {"m": {"position": {"column": "q", "unit": "rad"},
+        "command": {"column": "u", "unit": "Nm"}}}})",
+                                               "map.json"),
+                               text, "in.txt");
+    CHECK(in.text.find(",0.000000000000000\n") != in.text.npos); // no digit says where it was rounded
+}
+
 TEST_CASE("import: what is wrong in the log is told with file, line and column") {
     const auto with = [](const std::string& from, const std::string& to) {
         std::string text = rows;

@@ -54,9 +54,8 @@ private:
                      power = -std::log10(step * std::abs(c.factor));
         const bool exact = !resampled_ && std::abs(power - std::round(power)) < 1e-9;
         constexpr int guard = 3;
-        return {std::clamp(static_cast<int>(exact ? std::round(power) : std::ceil(power) + guard), 0,
-                           most_decimals),
-                exact};
+        const double digits = exact ? std::round(power) : std::ceil(power) + guard; // of a step of 0: infinite
+        return {static_cast<int>(std::clamp(digits, 0.0, double{most_decimals})), exact};
     }
 
     const std::vector<foreign_table>& tables_;
