@@ -131,7 +131,7 @@ RIGHT = [
 NOT_YET = [
     # 18 slots and 24 magnets: their least common multiple. It comes at 61 Hz, above the forces that are judged.
     ("laas_off", "cogging of 72 a turn is claimed", lambda d: has_harmonic(d, 72)),
-    # As the other name of the coupling it is 0.35 N m there, with the links' own terms 0.14 (docs/real).
+    # As the other name of the coupling it is 0.5 N m (0.3 to 0.7), with the law of two links 0.14 (docs/real).
     ("two_joints", "Coulomb friction of 0.12 N m is claimed on joint 2",
      lambda d: meets(claimed(d, "coulomb_friction", "q2"), "coulomb_Nm", 0.12, 0.12)),
     ("two_joints", "Coulomb friction of 0.16 N m is claimed on joint 1",
