@@ -3,19 +3,13 @@
 #include "loop.hpp"
 #include "motion.hpp"
 #include "plan.hpp"
+#include "tolerances.hpp"
 
 /// A machine of the trial without its effects: values as machine tools have them, a controller tuned to them.
 namespace quadrant_gap::trial {
 
-struct tolerances {
-    double mass = 0.02, force_constant = 0.01, viscous = 0.1, coulomb = 0.05, at_rest = 0.05;
-};
-
-/// Of a joint's gravity and of the growth of its friction with the load.
-inline constexpr double tolerance_of_gravity = 0.03, tolerance_of_load = 0.1;
-
-/// Of a drive's own numbers.
-inline constexpr double tolerance_of_gains = 0.01, tolerance_of_supply = 0.02, tolerance_of_delay = 0.05;
+/// White noise of what is measured behind an amplifier or a drive's loops, of the peak; last digit of a duty.
+inline constexpr double noise_of_measured = 0.002, rounding_of_duty = 1e-5;
 
 struct drawn_effect {
     std::string name;
@@ -186,35 +180,6 @@ inline void give_joint(axis_truth& a, double period, dice& random) {
         if (q / period * c.velocity_gain * std::min(1.0, 2 * c.filter_Hz * period) < 0.15) counts.push_back(q);
     a.encoder.resolution = counts.empty() ? 2e-7 : random.one_of(counts);
     a.encoder.noise = a.encoder.resolution * random.log_uniform(0.05, 1);
-}
-
-inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
-    const auto moved = [&](double& value, double relative) {
-        value *= 1 + random.uniform(-relative, relative);
-    };
-    moved(a.mechanics.mass, t.mass);
-    if (a.drive.kind == drive_truth::drive_kind::current || a.drive.supply > 0 || a.drive.shows_current())
-        moved(a.actuator.force_constant, t.force_constant);
-    moved(a.friction.viscous, t.viscous);
-    moved(a.friction.coulomb, t.coulomb);
-    moved(a.friction.level_at_rest, t.at_rest);
-    if (a.friction.level_at_rest > 0)
-        a.friction.level_at_rest = std::max(a.friction.level_at_rest, a.friction.coulomb);
-    moved(a.friction.stribeck_velocity, 0.05);
-    if (a.turns) {
-        moved(a.mechanics.gravity, tolerance_of_gravity);
-        moved(a.friction.load, tolerance_of_load);
-    }
-    if (drive_truth& d = a.drive; d.closes()) {
-        for (double* gain :
-             {&d.velocity_per_V, &d.velocity_gain, &d.velocity_integral, &d.position_gain, &d.duty_gain})
-            moved(*gain, tolerance_of_gains);
-        moved(d.supply, tolerance_of_supply);
-        moved(d.delay, tolerance_of_delay);
-        return;
-    }
-    const double delay = std::min(2e-5, 0.05 * a.actuator.delay);
-    a.actuator.delay += random.uniform(-delay, delay);
 }
 
 /// The true values of an effect, after calibration has moved them too.

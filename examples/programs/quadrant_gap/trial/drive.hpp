@@ -9,7 +9,8 @@ namespace quadrant_gap::trial {
 class inner_loops {
 public:
     using drive_kind = drive_truth::drive_kind;
-    inner_loops(const drive_truth& d, double period, dice random) : d_(d), period_(period), random_(random) {}
+    inner_loops(const drive_truth& d, double period, dice random)
+        : d_(d), period_(period), random_(random), integral_(d.began) {}
 
     /// The next row's set-point: volts, or a position. A lost one repeats the one before.
     void set_point(double r) {

@@ -157,7 +157,7 @@ inline std::string log_file(const drawn_machine& m, const std::vector<axis_recor
             const drive_truth& d = m.described[i].drive;
             if (with_reference) out += fmt::format(",{:.12f}", a.reference[k]);
             const bool measured = m.how == logs::measured && !d.closes();
-            const double noise = 0.002 * m.described[i].controller.limit; // of what is measured
+            const double noise = noise_of_measured * m.described[i].controller.limit;
             out += fmt::format(",{:.9f}", a.position[k]);
             if (in_volts(d))
                 out += fmt::format(",{:.6f}", measured ? a.acting[k] + noise * random.normal() : a.command[k]);

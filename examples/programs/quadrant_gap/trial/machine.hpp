@@ -101,6 +101,7 @@ struct drive_truth {
     double position_gain = 0;                                                             ///< [1/s]
     double duty_gain = 0, supply = 0, minimum_duty = 0, maximum_duty = 1, rate_limit = 0; ///< rate 0: none
     double delay = 0, loss = 0, clock_slip = 0;
+    double began = 0;    ///< force of the velocity integral as the log begins
     bool linear = false; ///< set-points drawn as a line
     /// What is measured behind its loops is in the log, too: the duty, or the current; the latter as each row
     /// begins, or as the mean of the row.

@@ -102,7 +102,7 @@ inline std::vector<const quadrant::diagnosis::effect*> withheld_from(population 
     if (of == population::joint) return effects_of_a_joint();
     if (!is_chain(of)) {
         auto out = withheld_effects(drive_of(of), how);
-        if (of == population::velocity_pi && how != logs::measured) // hidden_by_the_loop()
+        if (of == population::velocity_pi && how != logs::measured) // shows_in_a_log(): where it began
             std::erase_if(out, [](const auto* e) { return e->name == "constant_force"; });
         return out;
     }

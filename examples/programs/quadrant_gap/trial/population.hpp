@@ -4,6 +4,8 @@
 #include "gap_meter.hpp"
 #include "hidden.hpp"
 
+#include <functional>
+
 /// One machine of the trial: drawn, with its effects put in at a size measured against what its tolerances
 /// alone can do.
 namespace quadrant_gap::trial {
@@ -11,18 +13,22 @@ namespace quadrant_gap::trial {
 namespace detail {
 
 /// Puts an effect into the machine at the amplitude whose own gap is `target` clouds, or as near as its range
-/// allows.
+/// allows. Returns what puts it into another machine of this description.
 template <class Into>
-void put_in(drawn_machine& m, const std::string& name, double low, double high, Into&& into, double target,
-            std::uint64_t seed) {
+std::function<void(axis_truth&)> put_in(drawn_machine& m, const std::string& name, double low, double high,
+                                        Into into, double target, std::uint64_t seed) {
     gap_meter meter(m);
     const surroundings s = around(m, meter);
     if (m.cloud == 0) m.cloud = tolerance_cloud(m, meter, dice(seed, 7));
+    const auto put = [=, described = m.described[0]](axis_truth& a, double amplitude) {
+        insertion i{a, described, amplitude, dice(seed, 8), s};
+        into(i);
+        return i.parameters;
+    };
     const auto size = [&](double amplitude) {
         drawn_machine tried = m;
         tried.truth = m.described;
-        insertion i{tried.truth[0], m.described[0], amplitude, dice(seed, 8), s};
-        into(i);
+        put(tried.truth[0], amplitude);
         std::vector<axis_truth> plain;
         for (std::size_t k = 0; k < tried.truth.size(); ++k) {
             plain.push_back(ideal(tried.truth[k]));
@@ -42,9 +48,8 @@ void put_in(drawn_machine& m, const std::string& name, double low, double high, 
         found = size(a);
     }
     if (!std::isfinite(found)) a = low, found = size(a);
-    insertion i{m.truth[0], m.described[0], a, dice(seed, 8), s};
-    into(i);
-    m.effects.push_back({name, found, i.parameters});
+    m.effects.push_back({name, found, put(m.truth[0], a)});
+    return [put, a](axis_truth& other) { put(other, a); };
 }
 
 inline double travel(const std::vector<double>& position) {
@@ -124,18 +129,16 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
                 m, "unknown", 1e-3, 1, [](insertion& i) { put_stranger(i); }, random.log_uniform(4, 15), own);
         if (m.how == logs::measured && m.truth[0].actuator.slew > 0) continue; // it is in the column already
         std::uint64_t stream = own;
+        std::vector<std::function<void(axis_truth&)>> put;
         for (const std::string& e : p.effects) {
             const auto& w = effect_named(e)->trial;
-            const auto into = [&](insertion& i) {
-                w.into(i);
+            const auto into = [into = w.into, e, what = p.what](insertion& i) {
+                into(i);
                 i.vary(e);
-                if (p.what == kind::removed) i.truth.process.mean = 0; // a constant force, which is no lie
+                if (what == kind::removed) i.truth.process.mean = 0; // a constant force, which is no lie
             };
-            detail::put_in(m, e, w.low, w.high, into, target(), stream++);
+            put.push_back(detail::put_in(m, e, w.low, w.high, into, target(), stream++));
         }
-        if (std::any_of(p.effects.begin(), p.effects.end(),
-                        [&](const std::string& e) { return detail::hidden_by_the_loop(m, e); }))
-            continue;
         const double least =
             p.what == kind::single || attempt > 5 ? 0 : 1.2; // a single one may hide in the cloud
         if (std::any_of(m.effects.begin(), m.effects.end(),
@@ -144,6 +147,14 @@ inline drawn_machine draw(std::uint64_t seed, std::size_t index, const planned& 
         if (m.cloud == 0) m.cloud = detail::tolerance_cloud(m, gap_meter(m), dice(own, 7));
         for (axis_truth& a : m.truth) detail::move_inside(a, m.tolerance, random);
         for (drawn_effect& e : m.effects) detail::read_again(e.parameters, m.truth[0]);
+        bool shown = true;
+        for (std::size_t k = 0; closes && shown && k < put.size() && attempt < 60; ++k) {
+            axis_truth without = m.described[0];
+            for (std::size_t other = 0; other < put.size(); ++other)
+                if (other != k) put[other](without);
+            shown = detail::shows_in_a_log(m, without);
+        }
+        if (!shown) continue;
         for (const char* c : {"backlash", "cutting_force", "sample_loss", "structural_resonance", "cogging"})
             if (random.chance(0.08) && !has(c)) m.excluded.emplace_back(c);
         if (p.what == kind::removed) m.excluded.push_back(p.effects.front());
