@@ -186,7 +186,9 @@ axis_description servo_of(const plant_model& p) {
 } // namespace
 
 TEST_CASE("both motions: the second log begins anew behind rows that say nothing, and a model goes both ways") {
-    const plant_model p = arm();
+    plant_model p = arm();
+    p.friction.drift_rate = -0.4; // warm in both of them after the same time
+    p.friction.drift_time = 1.5;
     const axis_log first = logged(p, 0.7, 400), second = logged(p, 1.1, 300);
     const auto both = both_motions(servo_of(p), first, second, period);
     REQUIRE(both);
@@ -210,6 +212,8 @@ TEST_CASE("both motions: the second log begins anew behind rows that say nothing
     CHECK(most(from, 730) < 1e-2);  // of 600 mrad: the velocity at the begin is a difference of three rows
     CHECK(most(670, 730) < 1e-4);   // and is forgotten
     CHECK(std::abs(e[415]) > 0.05); // the motion between is none of the machine's
+    const auto again = path(p, *both->drive);
+    for (std::size_t k = 670; k < 730; ++k) CHECK(std::abs(again[k] - second.position[k - from]) < 1e-4);
 }
 TEST_CASE("both motions: logs of different columns stay apart") {
     const plant_model p = arm();

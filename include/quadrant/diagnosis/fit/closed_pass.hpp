@@ -77,8 +77,9 @@ public:
         });
     }
 
-    /// The axes stand at the reading of row k, and move with this velocity.
+    /// A log begins: the axes stand at the reading of row k, and move with this velocity.
     void begin(std::size_t k, double velocity) {
+        first_ = k;
         plant_.begin(Real(in_.position[k]), Real(velocity),
                      gathered([&](const closed_input::plant& p) { return p.set_point[k * in_.steps]; }));
     }
@@ -87,7 +88,7 @@ public:
         const auto path = plant_.reading().each();
         for (std::size_t i = 0; i < width && i < in_.plants; ++i)
             in_.innovation[i][k] = in_.position[k] - path[i];
-        now_.time = Real(static_cast<double>(k) * in_.period);
+        now_.time = Real(static_cast<double>(k - first_) * in_.period);
         if (in_.other_acceleration) now_.other_acceleration = Real(in_.other_acceleration[k]);
     }
     /// Step j of the record, in row k.
@@ -112,6 +113,7 @@ private:
 
     closed_input in_;
     double h_;
+    std::size_t first_ = 0; ///< row of the log that runs
     closed_axis<Real, axis> plant_;
     bool alike_ = false;
     typename axis::surroundings now_{};

@@ -144,13 +144,15 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     std::vector<double> set_point = motion.set_point, command(n);
     set_point_clock clock(plant.drive, set_point, period);
     const double late = plant.drive.delay / period;
+    std::size_t first = 0; // row of the log that runs
     for (std::size_t k = 0; k < n; ++k) {
         if (anew != motion.begins.end() && anew->row == k) {
+            first = k;
             axis.begin(motion.position[k], anew->velocity, motion.set_point[k]);
             ++anew;
         }
         seen(k, axis.reading(), set_point);
-        plant_axis::surroundings now{.time = static_cast<double>(k) * period,
+        plant_axis::surroundings now{.time = static_cast<double>(k - first) * period,
                                      .other_acceleration =
                                          other_acceleration.empty() ? 0 : other_acceleration[k]};
         for (int i = 0; i < steps; ++i, now.time += h) {
