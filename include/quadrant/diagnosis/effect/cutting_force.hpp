@@ -70,8 +70,7 @@ inline constexpr effect cutting_force{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         const double duration = detail::recorded_time(s),
                      most = 10 * s.force_scale(); // the loop may be too slow to answer
-        std::vector<double> time(s.residual.size());
-        for (std::size_t k = 0; k < time.size(); ++k) time[k] = static_cast<double>(k) * s.record.period;
+        const auto time = detail::times_in_their_logs(s);
         const double cycle = 1 / s.record.scale.corner_Hz; // of the corner
         const double shortest = std::max(0.3 * cycle, 10 * s.record.period), longest = 30 * cycle;
         std::vector<std::vector<parameter>> out;

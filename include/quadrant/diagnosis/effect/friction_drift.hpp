@@ -43,9 +43,9 @@ inline constexpr effect friction_drift{
               .needs_coulomb = true},
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
-        const double duration = detail::recorded_time(s);
+        const auto n = static_cast<double>(detail::rows_of_first_log(s));
+        const double duration = n * s.record.period;
         const auto level = [&](double from, double to) {
-            const auto n = static_cast<double>(s.residual.size());
             double sum = 0, count = 0;
             for (auto k = static_cast<std::size_t>(from * n); k < static_cast<std::size_t>(to * n); ++k)
                 if (const double v = s.record.velocity[k]; v != 0) {

@@ -4,6 +4,7 @@
 #include "effect.hpp"
 
 #include <complex>
+#include <span>
 
 /// What the effects share whose force, friction or reading repeats along the travel or in time.
 namespace quadrant::inline v0::diagnosis::detail {
@@ -192,6 +193,29 @@ inline double travel(const screening& s) {
 }
 inline double recorded_time(const screening& s) {
     return s.record.period * static_cast<double>(s.record.position.size());
+}
+/// The logs behind the first one in the record of a drive.
+inline std::span<const log_start> other_logs(const screening& s) {
+    const auto& drive = s.record.observer.drive;
+    return drive ? drive->begins : std::span<const log_start>{};
+}
+inline std::size_t rows_of_first_log(const screening& s) {
+    const auto others = other_logs(s);
+    return others.empty() ? s.residual.size() : others.front().row;
+}
+/// Time of each row since its log began.
+inline std::vector<double> times_in_their_logs(const screening& s) {
+    std::vector<double> out(s.residual.size());
+    auto others = other_logs(s);
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        if (!others.empty() && others.front().row == k) {
+            first = k;
+            others = others.subspan(1);
+        }
+        out[k] = static_cast<double>(k - first) * s.record.period;
+    }
+    return out;
 }
 inline double largest_command(const screening& s) {
     double most = 0;

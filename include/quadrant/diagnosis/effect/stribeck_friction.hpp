@@ -73,7 +73,7 @@ inline constexpr effect stribeck_friction{
                             .of = [](plant_model& p) -> double& { return p.friction.excess; },
                             .start = start,
                             .low = 0.1 * scale,
-                            .high = 20 * start + 100 * scale,
+                            .high = std::max(20 * start, s.force_scale()), // what breaks away, the motor moves
                             .logarithmic = true,
                             .step = 1e-3},
                            {.key = "stribeck_velocity_m_per_s",

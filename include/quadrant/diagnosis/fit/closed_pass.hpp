@@ -17,7 +17,7 @@ struct closed_input {
     std::size_t rows = 0, steps = 1; ///< steps of a row
     const double* position = nullptr;
     double velocity = 0;                            ///< at the first row [m/s]
-    std::span<const driven_motion::start> begins{}; ///< where another log begins
+    std::span<const log_start> begins{}; ///< where another log begins
     const double* other_acceleration = nullptr;     ///< null: none
     const unsigned char* off = nullptr;             ///< rows in which the drive gives nothing; null: none
     std::size_t plants = 0;

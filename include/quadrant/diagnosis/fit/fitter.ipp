@@ -13,7 +13,7 @@ QUADRANT_DIAGNOSIS_DECL double fitter::score_ms(const std::vector<std::vector<do
     double sum = 0;
     for (std::size_t i = 0; i < ms.size(); ++i) {
         const channel& c = scoring_.channels[i];
-        for (double m : ms[i]) sum += 0.5 * c.nu * std::log(m + square(c.floor));
+        for (std::size_t b = 0; b < ms[i].size(); ++b) sum += 0.5 * c.nu * std::log(ms[i][b] + c.least(b));
     }
     return sum;
 }
@@ -121,7 +121,7 @@ QUADRANT_DIAGNOSIS_DECL void fitter::add(const block_quadratics& q, const channe
                                          Eigen::VectorXd& g) {
     Eigen::MatrixXd scratch;
     for (std::size_t b = 0; b < q.size(); ++b) {
-        const double w = c.nu / (q.ms[b] + square(c.floor));
+        const double w = c.nu / (q.ms[b] + c.least(b));
         a += w * q.curvature(b, scratch);
         g += w * q.gradient(b);
     }

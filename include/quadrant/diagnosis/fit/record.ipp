@@ -110,7 +110,7 @@ QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, 
             c.creeping.push_back(static_cast<double>(rows) / static_cast<double>(c.block));
         }
     if (log.drive && log.drive->tapped())
-        s.channels = detail::and_tap(std::move(s.channels), log.position.size());
+        s.channels = detail::and_tap(std::move(s.channels), log.position.size(), r.resolution);
     r.left_out = around(gaps.gap);
     s.segments = r.segments;
     return r;

@@ -26,7 +26,9 @@ struct channel {
     std::size_t mean = 1, block = 100; ///< rows a mean, rows a block
     double nu = 3;                     ///< effective independent samples of a block
     double floor = 0;                  ///< [m]
-    double noise_gain = 1;             ///< rms of the means for white noise of the reading with rms 1
+    /// Mean square below which nothing counts, of each block; empty: that of the floor in all of them.
+    std::vector<double> least_of_block{};
+    double noise_gain = 1; ///< rms of the means for white noise of the reading with rms 1
     double rounding =
         1; ///< share of a count that matters: while the axis creeps, rounding is a tone, here the worst
     double command_noise = 0; ///< rms of the means for the noise of a measured command [m]
@@ -37,6 +39,9 @@ struct channel {
     std::vector<std::size_t> first_of_block{};   ///< first row of each; blocks leave out what is not judged
     std::vector<std::size_t> segment_of_block{}; ///< motion segment of each
 
+    double least(std::size_t which) const {
+        return least_of_block.empty() ? floor * floor : least_of_block[which];
+    }
     /// Mean square of what rounding to counts of this size may leave in the means of a block as a tone.
     double of_rounding(double count, std::size_t which) const {
         const double tone = rounding * count / 2;
@@ -48,9 +53,10 @@ struct channel {
     }
 };
 
-/// How innovations become a score. A block of a channel counts nu/2 log(mean square + floor^2): free of scale,
-/// so that pulses and quiet stretches, fast and slow forces all count, each against the noise of its own band;
-/// bounded below by the floor. nu is far below the number of rows because innovations are correlated.
+/// How innovations become a score. A block of a channel counts nu/2 log(mean square + least): free of scale, so
+/// that pulses and quiet stretches, fast and slow forces all count, each against the noise of its own band;
+/// bounded below, by the square of the channel's floor or by what the block says. nu is far below the number of
+/// rows because innovations are correlated.
 struct scoring {
     std::size_t block = 100, skip = 100; ///< rows a block of the first channel, rows not scored at the start
     std::vector<channel> channels{};
@@ -148,8 +154,9 @@ std::vector<channel> channels_of(std::size_t mean, double resolution, double pol
 }
 
 /// The channels of a record and the same again for the rows behind it, in which a signal with white noise of
-/// the same size stands that no observer follows.
-inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t rows) {
+/// the same size stands that no observer follows. Where the axis rests, the rounding of its reading stays as it
+/// is, and no mean over rows is better than the floor; where it moves, the means are as good as their number.
+inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t rows, double resolution) {
     const std::size_t own = channels.size();
     for (std::size_t i = 0; i < own; ++i) {
         channel c = channels[i];
@@ -158,6 +165,10 @@ inline std::vector<channel> and_tap(std::vector<channel> channels, std::size_t r
         c.floor /= c.rounding;
         c.rounding = 1;
         c.noise_gain = 1 / std::sqrt(static_cast<double>(c.mean));
+        if (c.mean > 1)
+            for (double rests : c.creeping)
+                c.least_of_block.push_back(rests * c.floor * c.floor +
+                                           resolution * resolution / (12 * static_cast<double>(c.mean)));
         channels.push_back(std::move(c));
     }
     return channels;

@@ -142,7 +142,7 @@ std::vector<double> run_closed(const plant_model& plant, const driven_motion& mo
     axis.begin(motion.position[0], velocity, motion.set_point[0]);
     auto anew = motion.begins.begin();
     std::vector<double> set_point = motion.set_point, command(n);
-    set_point_clock clock(plant.drive, set_point, period);
+    set_point_clock clock(plant.drive, set_point, period, motion.begins);
     const double late = plant.drive.delay / period;
     std::size_t first = 0; // row of the log that runs
     for (std::size_t k = 0; k < n; ++k) {

@@ -14,12 +14,20 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+/// A row at which another log begins, and with which velocity [m/s]: the machine stands there anew, and its
+/// clocks begin.
+struct log_start {
+    std::size_t row;
+    double velocity;
+};
+
 /// The set-points of a record on the drive's clock: what its loops follow during each part of a row.
 class set_point_clock {
 public:
-    /// `values`: one a row, `period` seconds apart.
-    set_point_clock(const drive_model& d, std::span<const double> values, double period)
-        : values_(values), line_(d.between), loss_(std::clamp(d.loss, 0.0, 1.0)),
+    /// `values`: one a row, `period` seconds apart; `others`: the logs behind the first one.
+    set_point_clock(const drive_model& d, std::span<const double> values, double period,
+                    std::span<const log_start> others)
+        : values_(values), others_(others), line_(d.between), loss_(std::clamp(d.loss, 0.0, 1.0)),
           delay_((d.delay + d.read.age) / period),
           every_((d.set_point_period > 0 ? d.set_point_period / period : 1) *
                  (1 + std::clamp(d.clock_slip, -0.5, 0.5))),
@@ -31,7 +39,8 @@ public:
         double value, velocity;
     };
     stretch between(double begin, double end) {
-        const double a = (begin - delay_) / every_, b = (end - delay_) / every_;
+        if (!others_.empty() && begin >= static_cast<double>(others_.front().row)) begin_anew();
+        const double a = (begin - first_ - delay_) / every_, b = (end - first_ - delay_) / every_;
         stretch out{0, 0};
         for (double from = a; from < b;) { // pieces without an arrival
             const double to = std::min(b, static_cast<double>(next_));
@@ -49,6 +58,14 @@ public:
 private:
     using line_state = set_point_line<>::state;
 
+    void begin_anew() {
+        const std::size_t row = others_.front().row;
+        others_ = others_.subspan(1);
+        values_ = values_.subspan(row - static_cast<std::size_t>(first_));
+        first_ = static_cast<double>(row);
+        state_ = line_state::at(values_[0]);
+        next_ = 0;
+    }
     void arrive() {
         // The newest row: one comes twice, or never, where the two clocks differ.
         const auto row =
@@ -59,9 +76,11 @@ private:
         ++next_;
     }
 
-    std::span<const double> values_;
+    std::span<const double> values_; ///< of the log that runs, and of those behind it
+    std::span<const log_start> others_;
     set_point_line<> line_;
     double loss_, delay_, every_;
+    double first_ = 0; ///< row of the log that runs
     line_state state_;
     long next_ = 0; ///< the set-point that arrives next
 };
@@ -84,16 +103,17 @@ public:
         return *this;
     }
 
-    /// `set_point`: one a row, the same in every call.
+    /// `set_point`: one a row, the same in every call; `others`: the logs behind the first one, likewise.
     std::shared_ptr<const followed_set_points> of(const drive_model& d, std::size_t steps,
-                                                  std::span<const double> set_point, double period) const {
+                                                  std::span<const double> set_point, double period,
+                                                  std::span<const log_start> others) const {
         const timing asked{d.between, d.set_point_period, d.delay + d.read.age, d.loss, d.clock_slip, steps};
         {
             const std::lock_guard lock(mutex_);
             for (const auto& [of, points] : kept_)
                 if (of == asked) return points;
         }
-        auto made = std::make_shared<const followed_set_points>(follow(d, steps, set_point, period));
+        auto made = std::make_shared<const followed_set_points>(follow(d, steps, set_point, period, others));
         const std::size_t size = 2 * sizeof(double) * std::max<std::size_t>(1, steps * set_point.size());
         const std::size_t most = std::max(least, affordable / size);
         const std::lock_guard lock(mutex_);
@@ -114,9 +134,10 @@ private:
         bool operator==(const timing&) const = default;
     };
     static followed_set_points follow(const drive_model& d, std::size_t steps,
-                                      std::span<const double> set_point, double period) {
+                                      std::span<const double> set_point, double period,
+                                      std::span<const log_start> others) {
         followed_set_points out;
-        set_point_clock clock(d, set_point, period);
+        set_point_clock clock(d, set_point, period, others);
         const std::size_t all = set_point.size() * steps;
         out.value.reserve(all);
         out.velocity.reserve(all);
@@ -153,13 +174,8 @@ struct driven_motion {
     std::vector<double> added{};
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
-    /// Rows at which another log begins, and with which velocity [m/s]: the machine stands there anew.
-    struct start {
-        std::size_t row;
-        double velocity;
-    };
-    std::vector<start> begins{};
-    set_point_memory memory{}; ///< of set_point: not asked before that is whole
+    std::vector<log_start> begins{}; ///< other logs behind the first one
+    set_point_memory memory{};       ///< of set_point: not asked before that is whole
     double to_position =
         0; ///< of a position servo: scales duty given otherwise than measured to the noise of the reading [m]
 
@@ -180,7 +196,7 @@ struct driven_motion {
 
     /// What the loops of this drive follow in each step of each row, in the unit of `set_point`.
     std::shared_ptr<const followed_set_points> follows(const drive_model& d, std::size_t steps) const {
-        return memory.of(d, steps, set_point, period);
+        return memory.of(d, steps, set_point, period, begins);
     }
 
     /// What the law of this drive gives in each part of each row: duty of a position servo, else force [N].
@@ -295,7 +311,7 @@ private:
         const double before = d.read.tap == tap_reading::before_set_point ? moment : 0,
                      scale = in_volts ? d.velocity_per_V : 1;
         const auto points = follows(d, parts);
-        set_point_clock clock(d, set_point, period);
+        set_point_clock clock(d, set_point, period, begins);
         std::vector<double> out(measured.size());
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double row = static_cast<double>(k), part = std::max(0.0, row * parts - 0.5);

@@ -29,7 +29,7 @@ inline fold_sums sums_of(candidate& c, const scoring& s) {
     Eigen::MatrixXd scratch;
     each_channel(c.fit, s, [&](const auto& blocks, const channel& view) {
         for (std::size_t b = 0; b < blocks.size(); ++b) {
-            const double w = view.nu / (blocks.ms[b] + view.floor * view.floor);
+            const double w = view.nu / (blocks.ms[b] + view.least(b));
             auto& f = out.of[fold_of(view.segment_of_block[b])];
             const Eigen::MatrixXd& curvature = blocks.curvature(b, scratch);
             f.a += w * curvature;
@@ -105,7 +105,7 @@ QUADRANT_DIAGNOSIS_DECL void cross_validate(candidate& c, const scoring& s, bool
         for (std::size_t b = 0; b < blocks.size(); ++b) {
             const auto segment = view.segment_of_block[b];
             const double ms = closed ? blocks.ms[b] : blocks.at(b, step[fold_of(segment)], scratch);
-            c.held_out[segment] -= 0.5 * view.nu * std::log(ms + view.floor * view.floor);
+            c.held_out[segment] -= 0.5 * view.nu * std::log(ms + view.least(b));
             readings += view.nu / score_temperature;
         }
     });
