@@ -36,6 +36,8 @@ TEST_CASE("words: a number has the digits that its interval leaves, and the unit
     CHECK(quantity(0.0032, "m/s") == "3.2 mm/s");
     CHECK(quantity(12340, "N") == "12.3 kN");
     CHECK(change(81e-6, 6.3e-6, "m") == "81.0 → 6.3 µm");
+    CHECK(quantity_beside(0.078, 0.0438, "N m") == "0.044 N m"); // not 43.8 mN m beside 0.078 N m
+    CHECK(quantity_beside(3.2, 0.0031, "N") == "3.1 mN");
     CHECK(percent(estimate{0.81, 0.79, 0.83}) == "81 % (79 to 83)");
     CHECK(probability(0.9999) == "> 99 %");
     CHECK(lines_of(parameter_estimate{"stribeck_velocity_m_per_s", {{0.0022, 0.0022, 0.0022}}})[0] ==

@@ -68,11 +68,11 @@ inline std::vector<gap_row> gap_rows(const axis_result& a) {
         std::vector<gap_row> of_positions{
             row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")),
             row("position, peak", b.position_peak_m, c.position_peak_m, voice("m"))};
-        of_positions[0].floor = quantity(b.noise_floor_position_rms_m, voice("m"));
+        of_positions[0].floor = quantity_beside(b.position_rms_m, b.noise_floor_position_rms_m, voice("m"));
         return of_positions;
     }
     std::vector<gap_row> rows{row("force, rms", b.force_rms_N, c.force_rms_N, voice("N"))};
-    rows[0].floor = quantity(b.noise_floor_force_rms_N, voice("N"));
+    rows[0].floor = quantity_beside(b.force_rms_N, b.noise_floor_force_rms_N, voice("N"));
     if (!closed_loop(a)) return rows;
     rows.push_back(row("position, rms", b.position_rms_m, c.position_rms_m, voice("m")));
     rows.push_back(row("position, peak", b.position_peak_m, c.position_peak_m, voice("m")));

@@ -146,7 +146,8 @@ inline std::string sentence_without_a_claim(const axis_result& a, const cause* s
         return fmt::format(
             "{} what calibration leaves of the gap of axis {}: {} of {}{}, where sensor noise and "
             "rounding leave {}.",
-            nothing, a.name, quantity(a.gap_after.force_rms_N, "N"), before, unit, floor);
+            nothing, a.name, quantity_beside(a.gap.force_rms_N, a.gap_after.force_rms_N, "N"), before, unit,
+            floor);
     std::string hint;
     if (suspect) {
         const std::string name = claim(*suspect), odds = probability(suspect->probability);
@@ -162,8 +163,9 @@ inline std::string sentence_without_a_claim(const axis_result& a, const cause* s
 inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {
     const std::string before = a.positions_only ? quantity(a.gap.position_rms_m, "m")
                                                 : quantity(a.gap.force_rms_N, "N"),
-                      floor = a.positions_only ? quantity(a.gap.noise_floor_position_rms_m, "m")
-                                               : quantity(a.gap.noise_floor_force_rms_N, "N"),
+                      floor = a.positions_only
+                                  ? quantity_beside(a.gap.position_rms_m, a.gap.noise_floor_position_rms_m, "m")
+                                  : quantity_beside(a.gap.force_rms_N, a.gap.noise_floor_force_rms_N, "N"),
                       gap = a.positions_only ? "position gap" : "force gap";
     if (a.verdict == verdict::no_gap)
         return fmt::format("Simulation and machine agree on axis {}: the {} is {}, and sensor noise and "
@@ -206,14 +208,17 @@ inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const ax
                        : a.verdict == verdict::unexplained    ? ", but most of the gap stays unexplained"
                                                               : "";
     // The numbers are those of what is claimed, not of the suspects behind it.
-    if (first->gap_before_force_rms_N.value == 0) // two positions were compared
+    if (first->gap_before_force_rms_N.value == 0) { // two positions were compared
+        const double from = first->gap_before_position_rms_m.value;
         return fmt::format("{}: {} {}, the difference of the positions shrinks from {} to {}{}.", what, "with",
-                           first != last ? "them" : "it", quantity(first->gap_before_position_rms_m.value, "m"),
-                           quantity(last_of_positions->gap_after_position_rms_m.value, "m"), rest);
+                           first != last ? "them" : "it", quantity(from, "m"),
+                           quantity_beside(from, last_of_positions->gap_after_position_rms_m.value, "m"), rest);
+    }
+    const double from = first->gap_before_force_rms_N.value;
     return fmt::format("{}: {} {}, the force gap shrinks from {} to {} (floor {}){}.", what,
-                       first->waveform ? "without" : "with", first != last ? "them" : "it",
-                       quantity(first->gap_before_force_rms_N.value, "N"),
-                       quantity(last->gap_after_force_rms_N.value, "N"), floor, rest);
+                       first->waveform ? "without" : "with", first != last ? "them" : "it", quantity(from, "N"),
+                       quantity_beside(from, last->gap_after_force_rms_N.value, "N"),
+                       quantity_beside(from, a.gap.noise_floor_force_rms_N, "N"), rest);
 }
 
 } // namespace detail

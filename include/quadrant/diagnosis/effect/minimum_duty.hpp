@@ -33,9 +33,10 @@ inline constexpr effect minimum_duty{
         double& (*const of)(plant_model&) = [](plant_model& p) -> double& { return p.drive.minimum_duty; };
         return {{{.key = "drive.minimum_duty",
                   .of = of,
-                  .start = detail::best_start(s, of, {0.003 * most, 0.01 * most, 0.03 * most, 0.1 * most}),
+                  .start = detail::best_start(s, of,
+                                              {0.003 * most, 0.01 * most, 0.03 * most, 0.1 * most, 0.3 * most}),
                   .low = 0,
-                  .high = 0.5 * most,
+                  .high = most,
                   .step = 1e-4 * most}}};
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {
