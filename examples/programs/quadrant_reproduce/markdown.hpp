@@ -156,7 +156,7 @@ inline std::string markdown(const std::vector<section>& all) {
            "machine, or on the frequency response measured there, which has modes, cogging and friction of its "
            "own. "
            "Reference: a footnote, our own earlier computation from the source's parameters by another program "
-           "(`../shared/reference/`; asked is 2 % for loops and the memory, 10 % for friction). "
+           "(not in this repository; asked is 2 % for loops and the memory, 10 % for friction). "
            "A second program (`tests/reproduce/independent.py`) computes loops and a circle on GMS friction "
            "from the "
            "tables alone, figures that the reference does not hold among them; a test compares.\n\n"
