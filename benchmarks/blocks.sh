@@ -119,6 +119,8 @@ busy=$(cut -d' ' -f1 /proc/loadavg)
 cat <<EOF
 # Benchmarks
 
+For whoever asks what a block costs. You get its instructions and its time per sample, and those of whole loops.
+
 Instructions per sample, counted by callgrind (repeatable, independent of the machine's load), $(g++ -dumpfullversion | sed 's/^/g++ /'), -O3; nanoseconds
 per sample on one core of $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), cache warm, the shortest of 40 runs.
 The processor is shared: two virtual ones are threads of one core, and other programs ran on the second. For the measurement its session had a higher

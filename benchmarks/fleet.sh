@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
 # How a fleet scales on this computer: the table of docs/fleet.md. Wants quadrant-gap and, for the rows of MPI, quadrant-gap-mpi.
-# usage: fleet.sh FOLDER-OF-PROGRAMS FOLDER-OF-LOGS     (build/release/examples, ../shared/gap/practice)
+# usage: fleet.sh FOLDER-OF-PROGRAMS FOLDER-OF-LOGS     (build/release/examples, build/practice by tests/acceptance/practice_set.py)
 set -eu
 programs=$1 logs=$2
 cores=$(nproc)

@@ -39,6 +39,10 @@ says 'bring the file in with quadrant-gap import' "$program" simulate --machine 
 head -n 2000 "$data/log.csv" | python3 -c 'import sys; sys.stdout.buffer.write(sys.stdin.read().encode("utf-16-le"))' >utf16.csv
 says 'it is UTF-16 without a byte order mark' "$program" simulate --machine "$data/machine.json" --log utf16.csv
 
+"$program" import --quiet "$root/tests/diagnosis/tables/snappy.parquet" slow.csv
+says 'slow.csv: does not show what its machine is (axis x: --mass is missing' "$program" compare slow.csv "$data/log.csv"
+says 'give a machine file, which quadrant-gap init begins' "$program" compare slow.csv "$data/log.csv"
+
 # Progress without a terminal: lines in per cent with the time that is left.
 "$program" trial --machines 3 --jobs 1 --no-forecast >trial.txt 2>progress.txt
 ! grep -q "$(printf '\033')" progress.txt || fail 'escape codes without a terminal'

@@ -65,8 +65,8 @@ TEST_CASE("diagnose: a constant force, and its second reading") {
     // Coulomb friction that differs by direction is the same model (docs/formats.md), and is said to be.
     CHECK(d.causes.front().confusable_with == std::vector<std::string>{"asymmetric_friction"});
     // No motion is proposed for one model under two names.
-    CHECK(d.next.motion == "none: no motion of this axis tells constant force and "
-                           "friction that differs by direction apart");
+    CHECK(d.next.motion == "none: no motion of this axis distinguishes constant force and "
+                           "friction that differs by direction");
     CHECK(d.next.finding.find("known equivalence") != std::string::npos);
     CHECK(d.next.expected_gain == 0);
     CHECK(d.next.reference.empty());

@@ -239,8 +239,8 @@ def check_pictures():
 
 
 # --- 6. The first two lines say who needs a page and what he gets. ---
-# Pages of one kind have their own beginning: a block says what it does, an effect and a derivation what they are about.
-own_beginning = re.compile(r"docs/(blocks|effects|derivations)/|docs/(CHANGELOG|benchmarks|reproduction)\.md|README\.md$")
+# The page of a block begins with its header and what the block does.
+own_beginning = re.compile(r"docs/blocks/|docs/CHANGELOG\.md|README\.md$")
 
 
 def check_beginning(page):

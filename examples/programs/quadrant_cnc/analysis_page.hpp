@@ -194,7 +194,7 @@ inline std::string html_report(const machine_analysis& m) {
     }
     for (const std::string& note : m.notes) notes += fmt::format("<li>{}</li>", escape(note));
     const char* badge = !stable ? "<span class=\"badge unexplained\">not stable</span>"
-                        : !told ? "<span class=\"badge partly_explained\">stability not told</span>"
+                        : !told ? "<span class=\"badge partly_explained\">stability unknown</span>"
                         : !calm ? "<span class=\"badge partly_explained\">sensitivity above 2</span>"
                                 : "<span class=\"badge no_gap\">stable, sensitivity up to 2</span>";
     return quadrant_gap::fill(

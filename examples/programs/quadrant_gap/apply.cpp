@@ -53,7 +53,7 @@ void add_apply(CLI::App& app) {
     command->add_option("--at-least", o->at_least, "causes of at least this probability (default 0.5)")
         ->check(CLI::Range(0.0, 1.0))
         ->excludes(all);
-    add_terminal_options(*command, o->say, "the same as without: every change is told");
+    add_terminal_options(*command, o->say, "the same as without: every change is reported");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }
 

@@ -72,7 +72,7 @@ void add_export(CLI::App& app) {
                                       "write corrections of command and position over the position (CSV)");
     command->add_option("--log", o->log, "log of that machine: the table covers where it went; else one period")
         ->needs(table);
-    add_terminal_options(*command, o->say, "the same as without: what cannot be held is told");
+    add_terminal_options(*command, o->say, "the same as without: what the format cannot hold is reported");
     command->callback([o] { refuse_in_name_of(o->machine, [&] { run(*o); }); });
 }
 

@@ -149,7 +149,7 @@ void add_import(CLI::App& app) {
                      "force [N], or torque [N m], per unit of the command, to check the units by")
         ->check(CLI::PositiveNumber);
     command->add_flag("--unchecked", o->unchecked, "write it whatever physics says");
-    add_terminal_options(*command, o->say, "the same as without: everything assumed is told");
+    add_terminal_options(*command, o->say, "the same as without: everything assumed is reported");
     command->callback([o] { refuse_in_name_of(o->files.front(), [&] { run(*o); }); });
 }
 

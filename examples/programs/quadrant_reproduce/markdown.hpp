@@ -134,25 +134,29 @@ inline std::string agreement_markdown(const publication& p) {
         p.given.up_to(0) + p.given.zero, p.repeated, p.cannot);
 }
 
+inline constexpr const char* beginning =
+    "# Published figures, reproduced\n\n"
+    "For whoever asks how near the library comes to published figures. You get each printed number, ours "
+    "beside it, and the reason where there is none.\n\n"
+    "Written by `quadrant-reproduce --markdown docs/reproduction.md`; do not edit. Every figure under "
+    "\"ours\" is computed in the run (`--html` draws the pictures, `--json` has all digits). In brackets: "
+    "how "
+    "far ours lies from the figure before the bracket. "
+    "Where a source does not print a parameter, the section says what we took; only the modes of the "
+    "milling table are fitted, to its printed margins.\n\n"
+    "How near ours comes to what the three sources print, each number once:\n\n";
+
 inline std::string markdown(const std::vector<section>& all) {
     const printed_list list = printed_numbers();
     const row_index rows(all);
-    std::string out =
-        "# Published figures, reproduced\n\n"
-        "Written by `quadrant-reproduce --markdown docs/reproduction.md`; do not edit. Every figure under "
-        "\"ours\" is computed in the run (`--html` draws the pictures, `--json` has all digits). In brackets: "
-        "how "
-        "far ours lies from the figure before the bracket. "
-        "Where a source does not print a parameter, the section says what we took; only the modes of the "
-        "milling table are fitted, to its printed margins.\n\n"
-        "How near ours comes to what the three sources print, each number once:\n\n";
+    std::string out = beginning;
     out += agreement_markdown(publication(list, rows));
     out += "\nPublished, simulated: by the source in its own simulation or on its model. Published, measured: "
            "on its "
            "machine, or on the frequency response measured there, which has modes, cogging and friction of its "
            "own. "
            "Reference: a footnote, our own earlier computation from the source's parameters by another program "
-           "(`../shared/reference/`; asked is 2 % for loops and the memory, 10 % for friction). "
+           "(not in this repository; asked is 2 % for loops and the memory, 10 % for friction). "
            "A second program (`tests/reproduce/independent.py`) computes loops and a circle on GMS friction "
            "from the "
            "tables alone, figures that the reference does not hold among them; a test compares.\n\n"

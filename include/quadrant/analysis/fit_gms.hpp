@@ -24,7 +24,7 @@ template <std::size_t N> struct gms_fit {
     double residual;                                                        ///< rms of curve minus fit [N]
     std::string limits;                                ///< what cannot be distinguished; empty: nothing
     std::vector<std::array<double, 2 * N>> without;    ///< knots [m], stiffness [N/m] without one branch each
-    std::vector<std::pair<double, double>> systematic; ///< way [m], standard error [N]
+    std::vector<std::pair<double, double>> systematic; ///< displacement [m], standard error [N]
 
     /// sum k_i min(way, knot_i), with its interval of 95 %: branches left out one at a time, and the curve's
     /// systematic part.
@@ -168,7 +168,7 @@ template <std::size_t N> gms_fit<N> gms_elements(const std::vector<double>& x, d
 /// between knots are the sum of the stiffness that still sticks, [Jamaludin2008] eq. (3.9). Weighted least
 /// squares; starts from every choice of N knots out of 12 places (the stiffness is then linear), the best three
 /// refined in ln(knot), ln(k). Deterministic. `limits` says which knots lie within one encoder count (of the
-/// displacement back, so half of it here) or a tenth of each other: the curve is then known, the single k_i and
+/// displacement back: half a count here) or a tenth of each other: the curve is then known, the single k_i and
 /// forces are not. Throws with fewer than 4 points an element, or for a curve that no N springs in this order
 /// fit.
 template <std::size_t N> gms_fit<N> fit_gms(const virgin_curve& curve) {

@@ -31,8 +31,7 @@ template <signal_tag Command> struct compensation_verdict {
     std::string why; ///< it cannot be decided
 
     std::string text() const {
-        constexpr std::array sizes{"cannot tell", "wrong sign", "not at all",
-                                   "too weak",    "right",      "too strong"};
+        constexpr std::array sizes{"undecided", "wrong sign", "not at all", "too weak", "right", "too strong"};
         constexpr std::array times{"", ", too early", ", at the right time", ", too late"};
         const std::string out = std::string(sizes[std::size_t(size)]) + times[std::size_t(time)];
         return why.empty() ? out : out + ": " + why;

@@ -27,7 +27,7 @@ concept law_without_lead = axis_law<L> && !requires {
 /// Ports: those of a control law; the fourth argument is the measured acceleration. `feed_control` hands it
 /// over; asked with three arguments, the law takes the axis to accelerate as it is asked to.
 /// State: that of the law and of the filter. `reset`: both as new; `settle(x, u)`: at rest at x, held by u.
-/// `retune(next, reference, x, v, u)`: as `retunable_law` has it, where the law does; the law takes what the
+/// `retune(next, reference, x, v, u)`: as `retunable_law` says, where the law does; the law takes what the
 /// new gain changes. |u'[k] - u| is at most what the law says of its own, and gain' times the step of the
 /// filter's output.
 /// Range: gain >= 0. The measured acceleration is the mean of the last period, half a period late: with the

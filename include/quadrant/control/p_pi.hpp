@@ -24,11 +24,11 @@ namespace quadrant::inline v0 {
 /// in it.
 /// State: the integral of the velocity loop in units of the command; `reset` at rest at zero; `settle(x, u)`:
 /// it holds u.
-/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; the integral takes what the new gains change.
+/// `retune(next, reference, x, v, u)`: as `retunable_law` says; the integral takes what the new gains change.
 /// Then |u'[k] - u| <= Kp' |e'[k] - e'[k-1]| + Ki' T |e'[k]| + |Ka'| |a_ref[k] - a_ref[k-1]| + what the
 /// integral has beyond its new limit (+ T/tracking_time' times the excess), e' with the new gains.
 /// Range: Kv any finite, Kp and Ki >= 0, c and Ka finite (c = 0: follows late by 1/Kv). limit is that of the
-/// amplifier, for the integral; what was applied is told by applied(u).
+/// amplifier, for the integral; report what was applied with applied(u).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
 /// Throws "p_pi.velocity_weight = ...: must be finite", "p_pi.acceleration_gain = ...: ..."; the others as the
 /// boxes.

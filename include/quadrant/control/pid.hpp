@@ -25,16 +25,16 @@ enum class derivative_from {
 ///   u = Kp (b x_ref - x) + Ki T sum (x_ref - x) + Kd q,   q = lowpass(c v_ref - v)
 /// Source: [Yeung2006] Table 10 (derivative on the velocity error from the tachometer); weights and filter
 /// [Astrom1995] ch. 3.4.
-/// Ports: those of `axis_law`. The sum has the present sample in it. The acceleration of the reference is not
+/// Ports: those of `axis_law`. The sum includes the present sample. The acceleration of the reference is not
 /// used.
 /// State: the integral in units of the command, q, the last difference of positions; `reset` at rest at zero;
 /// `settle(x, u)`: the integral holds u.
-/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; the integral takes what the new gains change,
+/// `retune(next, reference, x, v, u)`: as `retunable_law` says; the integral takes what the new gains change,
 /// q stays. Then |u'[k] - u| <= Kp' |e[k] - e[k-1]| + Ki' T |e[k]| + Kp' |b' - 1| |x_ref[k] - x_ref[k-1]| +
 /// Kd' |q[k] - q[k-1]| + what the integral has beyond its new limit (+ T/tracking_time' times the excess).
 /// Range: gains >= 0, weights finite (b = c = 0: derivative and proportion on the measurement alone),
 /// derivative_corner > 0,
-/// infinite: no filter. limit is that of the amplifier, for the integral; what was applied is told by
+/// infinite: no filter. limit is that of the amplifier, for the integral; report what was applied with
 /// applied(u).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
 /// Throws "pid.<field> = ...: must ..." for derivative_gain, weights, derivative_corner; the others as
@@ -182,7 +182,7 @@ private:
 };
 static_assert(retunable_law<pid<>>);
 
-/// Where the poles of a `pid` loop shall lie: (s + real w)(s^2 + 2 damping w s + w^2), w = 2 pi natural.
+/// The poles that a `pid` loop is designed for: (s + real w)(s^2 + 2 damping w s + w^2), w = 2 pi natural.
 struct pid_poles {
     frequency natural; ///< > 0
     double damping = 1;

@@ -27,7 +27,7 @@ namespace quadrant::inline v0 {
 /// Ports: those of `axis_law`; lead() is the horizon.
 /// State: the coming references, position and speed of the sample before, the command applied. `reset`: at rest
 /// at zero; `settle(x, u)`: at rest at x, held by u, and so stays the reference.
-/// `retune(next, ..., u)`: as `retunable_law` has it, for the same horizon; it starts from u. |u'[k] - u| is
+/// `retune(next, ..., u)`: as `retunable_law` says, for the same horizon; it starts from u. |u'[k] - u| is
 /// the first move of the new plan, at most its rate_limit times T. Another horizon is refused as another
 /// period is: the references in store belong to it.
 /// Range: gain of the plant > 0 (else the command does not control the axis), damping >= 0, 1 <= horizon <=

@@ -46,7 +46,7 @@ struct rst_polynomials {
 /// State: past references, positions, commands applied. `reset` at rest at zero; `settle(x, u)`: at rest at x,
 /// held by u when R has a root at z = 1 (integral); else the command starts from u and goes where the position
 /// asks.
-/// `retune(next, ..., u)`: as `retunable_law` has it; the past of reference and position stays, that of the
+/// `retune(next, ..., u)`: as `retunable_law` says; the past of reference and position stays, that of the
 /// command is moved by as much as brings the last one to u. Then u'[k] - u = T'(1) (x_ref - x) - R'(1) u +
 /// sums of t', s', r', w' times differences of the last samples: with an integral, R'(1) = 0, the step that
 /// the new law would have made anyway.

@@ -23,13 +23,13 @@ namespace quadrant::inline v0 {
 /// Source: [Yeung2006] eqs. (20, 21); [Altintas2000].
 /// Ports: those of `axis_law`. The sum has the present sample in it.
 /// State: d, as the integral of a `proportional_integral`; `reset` at rest at zero; `settle(x, u)`: d holds u.
-/// `retune(next, reference, x, v, u)`: as `retunable_law` has it; d takes what the new gains change. Then
+/// `retune(next, reference, x, v, u)`: as `retunable_law` says; d takes what the new gains change. Then
 /// |u'[k] - u| <= what the new law without d makes of the change of its inputs, + rho' |e[k] - e[k-1]| +
 /// lambda' rho' T |e[k]| + what d has beyond its new limit (+ T/tracking_time' times the excess), e = x_ref -
 /// x.
 /// Range: B > 0, A >= 0, sliding > 0 in 1/s (not hertz), Ks >= 0, rho >= 0. limit is that of the amplifier, for
-/// d; what was applied is told by applied(u). What friction the reference will cause is best fed forward beside
-/// the law (`feed_control`).
+/// d; report what was applied with applied(u). Friction that the reference will cause is
+/// best fed forward beside the law (`feed_control`).
 /// NaN and infinities: holds the last command, keeps the state, raises faulted().
 /// Throws "sliding_mode.<field> = ...: must ..." for plant, sliding, gain, adaptation; limit as
 /// `proportional_integral`.

@@ -26,11 +26,11 @@ namespace quadrant::inline v0 {
 /// Ports: those of `axis_law`; the tachometer is not read.
 /// State: the three estimates and the command applied. `reset` at rest at zero; `settle(x, u)`: at rest at x,
 /// d^ = -u.
-/// `retune(next, ...)`: as `retunable_law` has it; the estimates stay (they are of the axis, not of the law),
+/// `retune(next, ...)`: as `retunable_law` says; the estimates stay (they are of the axis, not of the law),
 /// and nothing takes up what the gains change. Jump: (k1' - k1) (x_ref - x^) + (k2' - k2) (v_ref - v^) + (1/B'
 /// - 1/B) a_ref + (A'/B' - A/B) v_ref, and k1, k2, 1 times what the estimates of one sample differ by under
 /// the new model.
-/// Limits: nothing winds up, as the observer is told by applied(u) what drove the axis.
+/// Limits: nothing winds up, as applied(u) reports to the observer what drove the axis.
 /// Range: B > 0, A >= 0; k1, k2 such that the sampled loop on the true states is stable (with those of the
 /// observer these are all poles of the loop). encoder_noise and drift > 0: their ratio sets the observer, see
 /// `kalman`.

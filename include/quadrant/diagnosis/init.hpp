@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -61,7 +62,17 @@ inline initialised_machine machine_from_log(const machine_log& log) {
     ask.from_log = ask.unchecked = true;
     for (const axis_log& a : log.axes)
         if (!is_force(a.command_unit)) ask.values["force-constant"][a.name] = 1;
-    return init_machine(ask, &log);
+    try {
+        return init_machine(ask, &log);
+    } catch (const bad_input& why) {
+        constexpr std::string_view writer = "init: ";
+        std::string_view reason = why.what();
+        if (reason.starts_with(writer)) reason.remove_prefix(writer.size());
+        throw bad_input(log.file,
+                        fmt::format("does not show what its machine is ({}): give a machine file, which "
+                                    "quadrant-gap init begins",
+                                    reason));
+    }
 }
 
 } // namespace quadrant::inline v0::diagnosis

@@ -96,7 +96,7 @@ def page(cases):
     say("The three sources leave three questions open, and none of them published a log. So the question is turned around: which cause would have left "
         "such a figure, and would our diagnosis have named it from a log? For each candidate the machine of the source is simulated along the source's own "
         "motions with that one cause in it; the machine file does not know of it. What `quadrant-gap diagnose` says of the two logs stands beside it. A "
-        "simulation cannot tell what the real machine had. It tells what its log would have had to show.")
+        "simulation cannot show what the real machine had. It shows what its log would have had to contain.")
     say("How to read a row: the figure is what the source would have seen with this cause; a number behind a name is its probability. **named**: the cause, "
         "or an effect that says the same of this motion, is claimed with 0.5 or more, and nothing else is. **named in a group**: another name is the likelier "
         "one, and the diagnosis says that this record cannot distinguish the two. **wrong name**: something else is claimed, too. "

@@ -86,7 +86,7 @@ inline outcome ferraris_calibration_case(const std::string& id) {
          {},
          {},
          "sensitivity within 5 % of the mean; 100 Hz is the highest that is tried. Ours has noise "
-         "alone; why the thesis' sensor scatters above 40 Hz is not said"});
+         "alone; the thesis does not say why its sensor scatters above 40 Hz"});
     out.pictures = {ferraris_picture(std::move(gains), std::move(offsets))};
     return out;
 }

@@ -56,8 +56,8 @@ inline std::string told_by_reversals(const described_link& d, const outcome& o, 
     const double play = play_in(diagnose_link(exchanged, axis, excluded, limits));
     if (play == 0) return {};
     return words(d.from, d.to, play) +
-           fmt::format(R"( It is lost motion of the second end: write "ends": ["{}", "{}"].)",
-                       log.turn->second, log.turn->first);
+           fmt::format(R"( It is lost motion of the second end: write "ends": ["{}", "{}"].)", log.turn->second,
+                       log.turn->first);
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_result diagnose_positions(diagnosis_result& out, std::vector<cause>& causes,
@@ -120,10 +120,11 @@ QUADRANT_DIAGNOSIS_DECL two_encoders diagnose_transmission(const axis_descriptio
     auto d = motor_to_scale(axis, log, period, file);
     give_force(d, axis, log);
     if (!says_enough(readings(d.readings))) {
-        out.notes.push_back(fmt::format(
-            "axis {}: the force changes its sign too often to tell which side of the transmission is in contact: "
-            "the direction of the motion is taken for it, and nothing is said of the stiffness.",
-            axis.name));
+        out.notes.push_back(
+            fmt::format("axis {}: the force changes its sign too often to identify which side of the "
+                        "transmission is in contact: "
+                        "the direction of the motion is taken for it, and nothing is said of the stiffness.",
+                        axis.name));
         d = motor_to_scale(axis, log, period, file);
     }
     out.found = link_or_refusal(d, axis, file, excluded, limits);

@@ -228,7 +228,7 @@ QUADRANT_DIAGNOSIS_DECL outcome diagnose_link(const described_link& as_described
     out.places.push_back({"block",
                           "",
                           at_floor ? "noise and rounding of the two readings"
-                                   : fmt::format("between {} and {}: no cause tells which", d.from, d.to),
+                                   : fmt::format("between {} and {}: no cause says which", d.from, d.to),
                           {rest, rest, rest},
                           "replay"});
     out.verdict = verdict_of(out, at_floor, told.all_claimed);

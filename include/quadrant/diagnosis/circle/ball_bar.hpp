@@ -156,13 +156,13 @@ private:
         for (const circle_run& r : runs_)
             both[r.counterclockwise] = true, slow = std::min(slow, r.feed), fast = std::max(fast, r.feed);
         if (!both[0] || !both[1])
-            out_.notes.push_back(
-                fmt::format("All runs go {}: what differs by direction is told by the feed or not at "
-                            "all. Run the other way round too.",
-                            both[1] ? "counterclockwise" : "clockwise"));
+            out_.notes.push_back(fmt::format("All runs go {}: what differs by direction is identified by the "
+                                             "feed or not at all. Run the other way round too.",
+                                             both[1] ? "counterclockwise" : "clockwise"));
         if (fast < 1.2 * slow)
             out_.notes.push_back(
-                "One feed: what follows the feed (radius, amplitude) is not told from what does not. "
+                "One feed: what follows the feed (radius, amplitude) is not distinguished from what does "
+                "not. "
                 "Run at half or twice the feed too.");
         if (groups_.radii.size() < 2)
             out_.notes.push_back("One radius: whether radius and spikes follow v^2/R is assumed, not seen.");

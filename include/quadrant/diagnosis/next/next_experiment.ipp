@@ -147,11 +147,11 @@ QUADRANT_DIAGNOSIS_DECL experiment simulated_experiment(const axis_case& c,
             inside + "; else they stay one group" +
             (known ? ", for they are one model under two names but for that" : "");
     } else {
-        out.motion = "none: no motion of this axis tells " + listed(out.separates) + " apart";
+        out.motion = "none: no motion of this axis distinguishes " + listed(out.separates);
         out.finding =
             inside + worded(" were simulated, and the best separates them by a log-score of %.1f", best.gain) +
             (known ? ": a known equivalence, one model under two names; either corrects the simulation"
-                   : "; another load or another sensor would have to tell");
+                   : "; it needs another load or another sensor");
     }
     if (!axis.controller && !axis.drive.takes_position())
         out.finding += "; under a stand-in controller, as none is described";

@@ -26,7 +26,7 @@ inline void describe_rest(diagnosis_result& out, const axis_case& c, const axis_
         if (c.controller_open())
             text += std::string("the controller that ran is not the one described") +
                     (c.controller_unnamed ? ", which the machine file excludes; "
-                                          : " and no single key of it mends the replay; ");
+                                          : " and no single key of it corrects the replay; ");
     }
     if (c.count_unnamed)
         text += worded("the position moves in steps of %.4g m where %.4g m are described; ", c.count,

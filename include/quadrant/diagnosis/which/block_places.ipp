@@ -52,8 +52,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<place> block_places(const axis_case& c) {
             {"block", "",
              c.at_floor() ? "behind the command: calibration and noise"
              : c.axis.drive.closes()
-                 ? "behind the set-points (drive, actuator, mechanics, process or sensor): no cause tells which"
-                 : "behind the command (actuator, mechanics, process or sensor): no cause tells which",
+                 ? "behind the set-points (drive, actuator, mechanics, process or sensor): no cause says which"
+                 : "behind the command (actuator, mechanics, process or sensor): no cause says which",
              rest, "replay"});
     return out;
 }

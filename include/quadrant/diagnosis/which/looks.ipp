@@ -154,10 +154,10 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
         }
     }
     if (*why_along)
-        notes.push_back(fmt::format(
-            "axis {}: judged by the forces along the measured motion: models corrected by the readings "
-            "predicted best by {}.",
-            of.axis.name, why_along));
+        notes.push_back(
+            fmt::format("axis {}: evaluated on the forces along the measured motion: models corrected by the "
+                        "readings predicted best by {}.",
+                        of.axis.name, why_along));
     return found;
 }
 
