@@ -450,6 +450,15 @@ TEST_CASE(
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"drive_gain", "force_constant", "supply_voltage"});
 }
+TEST_CASE("position servo: another gain shows in the measured duty, where the path is one that the tolerances "
+          "allow") {
+    auto m = servo;
+    m.duty_gain = 18.4;
+    const cause* gain = nullptr;
+    const auto d = diagnosed(of_servo, recorded(takes::servo, m, true));
+    REQUIRE((gain = only_claim(d, "drive_gain")));
+    CHECK(value_of(*gain, "drive.position_gain_per_rad") == doctest::Approx(18.4).epsilon(0.01));
+}
 TEST_CASE("position servo: what its loop is said to have commanded, and nobody logged, judges no claim") {
     auto m = servo;
     m.duty_gain = 17; // the motion alone says so: the command of the described loop is no better with it

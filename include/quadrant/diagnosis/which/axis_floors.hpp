@@ -78,8 +78,8 @@ public:
     bool shrinks(const candidate& more, const candidate& less) const;
 
     /// The path of a loop closed on this model is off by more than those of machines inside the owner's
-    /// tolerances are from one another, in one standard deviation. Of a calibrated machine without a cause: it,
-    /// or the described one.
+    /// tolerances are from one another, in one standard deviation; or what was measured behind the drive is, in
+    /// two and noise apart. Of a calibrated machine without a cause: it, or the described one.
     bool differs_from_like_machines(const candidate& c) const;
 
 protected:
@@ -97,6 +97,10 @@ protected:
     /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted
     /// force [N].
     double friction_level(const plant_model& p) const;
+    /// Whether half of what stands above the noise in a channel goes.
+    bool shrinks_in(std::size_t channel, const candidate& more, const candidate& less) const;
+    /// The same in one of what was measured behind the drive.
+    bool shrinks_behind_drive(const candidate& more, const candidate& less) const;
     /// Whether the residual force falls in three of four segments. A transient that no name explains, such as a
     /// start, may hold most of the residual and hide what the rest of the record shows.
     bool shrinks_in_most_segments(const candidate& more, const candidate& less) const;

@@ -162,19 +162,31 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks(const candidate& more, const c
     if (record_.closed()) { // evaluated on its path; the forces of a gear that friction holds say little
         const double law = square(record_.score.channels.front().floor);
         const auto left = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms.front()) - law); };
-        return left(more) < square(1 - rules_.least_shrink) * left(less);
+        if (left(more) < square(1 - rules_.least_shrink) * left(less)) return true;
+        return left(more) <= left(less) && shrinks_behind_drive(more, less);
     }
     const double floor = square(floor_force(more)), fall = square(1 - rules_.least_shrink);
     const auto left = [&](const candidate& c) { return std::max(0.0, square(held_out_force(c)) - floor); };
     if (left(more) < fall * left(less)) return true;
     if (left(more) > left(less) / fall) return false;
-    const double sigma = noise(more);
-    for (std::size_t i = 0; i < more.fit.ms.size(); ++i) {
-        const double of_noise = record_.score.channels[i].of_noise(sigma);
-        const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[i]) - of_noise); };
-        if (above(more) < square(1 - rules_.least_shrink_of_band) * above(less)) return true;
-    }
+    for (std::size_t i = 0; i < more.fit.ms.size(); ++i)
+        if (shrinks_in(i, more, less)) return true;
     return shrinks_in_most_segments(more, less); // dear: asked last
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in(std::size_t channel, const candidate& more,
+                                                     const candidate& less) const {
+    const double of_noise = record_.score.channels[channel].of_noise(noise(more));
+    const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[channel]) - of_noise); };
+    return above(more) < square(1 - rules_.least_shrink_of_band) * above(less);
+}
+
+QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_behind_drive(const candidate& more,
+                                                               const candidate& less) const {
+    const auto& channels = record_.score.channels;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        if (channels[i].of_tap && shrinks_in(i, more, less)) return true;
+    return false;
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in_most_segments(const candidate& more,
@@ -197,7 +209,12 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::differs_from_like_machines(const candi
     // The 95th of 100 machines differs by two standard deviations.
     const candidate& before =
         c.effects.empty() && mean_of(given_.fit.ms.front()) > mean_of(c.fit.ms.front()) ? given_ : c;
-    return mean_of(before.fit.ms.front()) > tolerance_cloud().front() / 4;
+    if (mean_of(before.fit.ms.front()) > tolerance_cloud().front() / 4) return true;
+    const auto& channels = record_.score.channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) // the law of the drive is exact
+        if (channels[i].of_tap && left_in(c.fit.ms[i], channels[i], noise(c)) > tolerance_cloud()[i])
+            return true;
+    return false;
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_floors::left_in(const std::vector<double>& ms, const channel& c,

@@ -55,6 +55,30 @@ QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t whi
     return std::sqrt(left) / between(std::sqrt(before), std::sqrt(left));
 }
 
+QUADRANT_DIAGNOSIS_DECL double left_behind_drive(const axis_case& c, std::size_t which) {
+    std::vector<const effect*> others = c.best().effects;
+    std::erase(others, c.best().effects[which]);
+    const auto& channels = c.record.score.channels;
+    double out = std::numeric_limits<double>::infinity();
+    if (std::none_of(channels.begin(), channels.end(), [](const channel& x) { return x.of_tap; })) return out;
+    const candidate without = others.empty() ? c.path.front() : c.models.with(others);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        if (!channels[i].of_tap) continue;
+        const auto above_noise = [&](const candidate& m) {
+            const auto& ms = m.fit.ms[i];
+            const double mean = std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size());
+            return std::max(0.0, mean - channels[i].of_noise(c.noise));
+        };
+        const double before = above_noise(without), after = above_noise(c.best());
+        if (before > after) out = std::min(out, std::sqrt(after / (before - after)));
+    }
+    return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL double left_of_readings(const axis_case& c, std::size_t which) {
+    return std::min(left_of_paths(c, which), left_behind_drive(c, which));
+}
+
 QUADRANT_DIAGNOSIS_DECL std::size_t names_as_likely(const axis_case& c, const effect& e) {
     double all = 0;
     const auto suspects = c.models.suspects();
@@ -81,7 +105,7 @@ inline candidate without_standing(const axis_case& c, std::size_t which) {
 QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
     const std::size_t names = names_as_likely(c, *c.best().effects[which]);
     if (!c.tested_apart()) {
-        if (c.record.closed()) return by_chance(names, left_of_paths(c, which));
+        if (c.record.closed()) return by_chance(names, left_of_readings(c, which));
         const double out = by_chance(names, doubtful_beside(c, explained_by(c, which)));
         // Nothing is below what chance does at the noise.
         return out > by_chance(names, 0)
@@ -97,7 +121,7 @@ QUADRANT_DIAGNOSIS_DECL double unknown(const axis_case& c, std::size_t which) {
         beside_path(*c.second, restarted(c.best().fit.plant, *c.second)) >
             beside_path(*c.second, restarted(c.models.given().fit.plant, *c.second)))
         return doubt;
-    if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_paths(c, which)));
+    if (c.record.closed()) return with_gain(by_chance(names, c.excused ? 0 : left_of_readings(c, which)));
     const double machine = c.second_log(c.path.front()).force; // calibrated, without any cause
     const double here = explained_by(c, which), there = between(std::min(before.force, machine), after.force);
     double out = by_chance(names, doubtful_beside(c, std::max(here, there)));
@@ -118,8 +142,8 @@ QUADRANT_DIAGNOSIS_DECL double against_others(const axis_case& c, const std::vec
     const auto worth = [&](const candidate& m) {
         // Of a path that no further name improves enough, a model with more names says nothing; of forces, each
         // further name is worth its place only beyond the margin.
-        const double more = std::max(
-            0.0, static_cast<double>(m.effects.size()) - static_cast<double>(c.best().effects.size()));
+        const double more =
+            std::max(0.0, static_cast<double>(m.effects.size()) - static_cast<double>(c.best().effects.size()));
         if (c.record.closed() && more > 0) return -std::numeric_limits<double>::infinity();
         const double out = c.worth(m) - c.limits.margin * more;
         const bool matters = gap && out > own - 5 * score_temperature;
