@@ -84,8 +84,8 @@ inline std::string quantity(double value, std::string_view unit) {
     return with_unit(number(value * s.factor), s.unit);
 }
 
-/// In the unit in which `other` is said, so that two numbers of one sentence are compared at a glance; in its own
-/// below a hundredth of that.
+/// In the unit in which `other` is said, so that two numbers of one sentence are compared at a glance; in its
+/// own below a hundredth of that.
 inline std::string quantity_beside(double other, double value, std::string_view unit) {
     const scale s = scale_of(unit, std::abs(value) < 0.01 * std::abs(other) ? value : other);
     return with_unit(number(value * s.factor), s.unit);

@@ -98,8 +98,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double> how_far::loop_errors() const {
         const std::vector<double> all(judged_.segments, 1.0);
         const double way = energy(difference(run->position, log_.position)).rms(all);
         // A drive's command that was not recorded is what its described loops make of the motion: the motion
-        // stands for both. So it does for a servo's duty: read at a moment of each row, while set-points arrive in
-        // steps, it is not the row's mean, by more than a gain makes of it.
+        // stands for both. So it does for a servo's duty: read at a moment of each row, while set-points arrive
+        // in steps, it is not the row's mean, by more than a gain makes of it.
         const auto* const drive = judged_.observer.drive;
         const bool recorded =
             !drive || (drive->tapped() && case_.axis.drive.kind != drive_kind::position_servo);

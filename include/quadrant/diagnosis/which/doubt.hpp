@@ -17,11 +17,11 @@ QUADRANT_DIAGNOSIS_DECL double doubtful_beside(const axis_case& c, double explai
 QUADRANT_DIAGNOSIS_DECL double beside_path(const axis_record& r, const plant_model& plant);
 /// What the best model leaves of both logs' paths beside what the cause number `which` explains of them.
 QUADRANT_DIAGNOSIS_DECL double left_of_paths(const axis_case& c, std::size_t which);
-/// The same of what was measured behind the drive, above its noise, where it explains most; infinite: nothing was
-/// measured there, or the cause explains none of it.
+/// The same of what was measured behind the drive, above its noise, where it explains most; infinite: nothing
+/// was measured there, or the cause explains none of it.
 QUADRANT_DIAGNOSIS_DECL double left_behind_drive(const axis_case& c, std::size_t which);
-/// In the readings in which less is left: a gain of the drive may be sure in its duty, where the tolerances allow
-/// any such path.
+/// In the readings in which less is left: a gain of the drive may be sure in its duty, where the tolerances
+/// allow any such path.
 QUADRANT_DIAGNOSIS_DECL double left_of_readings(const axis_case& c, std::size_t which);
 
 /// The probability that the cause is none of the suspects: on the log, beside what the name explains here or
