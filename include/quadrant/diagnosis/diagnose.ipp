@@ -3,6 +3,7 @@
 #include "chain/diagnose_chain.hpp"
 #include "effect/effect_list.hpp"
 #include "fit/both_motions.hpp"
+#include "fit/late_command.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/turned_beam.hpp"
 #include "fit/with_drives.hpp"
@@ -108,8 +109,22 @@ struct ready_axis {
     std::optional<axis_log> both{}; ///< six seconds of it hold a dozen readings: none to spare for a test
 
 private:
+    void read_command_in_time(std::vector<std::string>& notes);
     void thin(double band, const rules& r, std::vector<std::string>& notes);
 };
+
+/// A measured command that was recorded late is read as it acted: else a mode or a lag stands in for it.
+inline void ready_axis::read_command_in_time(std::vector<std::string>& notes) {
+    if (axis.actuator.command_is != command_origin::measured || axis.drive.closes()) return;
+    const double late = lateness_of_command(log, period);
+    if (late == 0) return;
+    notes.push_back(
+        fmt::format("axis {}: the measured command stands {:.2g} ms later in the log than the motion "
+                    "that it makes; it is read as so much earlier.",
+                    axis.name, 1e3 * late));
+    log = read_earlier(std::move(log), late, period);
+    if (holdout) holdout = read_earlier(std::move(*holdout), late, period);
+}
 
 inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged, const read_logs& logs,
                               const rules& r, std::vector<std::string>& notes)
@@ -134,6 +149,7 @@ inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged,
             period, band);
     for (const auto* axes : {&logs.log.axes, &logs.log.beside})
         for (const axis_log& each : *axes) others.logs.push_back(&each);
+    read_command_in_time(notes);
     thin(band, r, notes);
     soft = axis.drive.kind == drive_kind::position_servo && at_motor.drive;
     if (soft && holdout && !transmission)

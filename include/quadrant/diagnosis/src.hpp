@@ -68,6 +68,8 @@
 #include "fit/record.ipp"
 #include "fit/regression.hpp"
 #include "fit/regression.ipp"
+#include "fit/late_command.hpp"
+#include "fit/late_command.ipp"
 #include "fit/residual_force.hpp"
 #include "fit/residual_force.ipp"
 #include "fit/spatial_spectrum.hpp"

@@ -18,8 +18,11 @@ struct regressed {
 /// The last term is asked of a rotary axis only.
 struct axis_regression {
     regressed acceleration, speed, direction, mean, weight;
-    double phase = 0;   ///< position at which the weight hangs down [rad]
-    double band_Hz = 0; ///< of the low-pass on all signals; 0: nothing can be said
+    regressed lateness;      ///< of the command behind the motion [s], where it is asked for
+    double left = 1;         ///< of the command's variance
+    double left_in_time = 1; ///< the same without a lateness
+    double phase = 0;        ///< position at which the weight hangs down [rad]
+    double band_Hz = 0;      ///< of the low-pass on all signals; 0: nothing can be said
 };
 
 namespace detail {
@@ -44,8 +47,9 @@ struct regression_part {
 
 /// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
 /// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
-/// have any size there.
-QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period);
+/// have any size there. With `and_lateness` a command is looked for that stands by a little later than what it
+/// does: on its slope, too, and without rows near a change of direction, where friction builds up late.
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, bool and_lateness = false);
 
 } // namespace quadrant::inline v0::diagnosis
 

@@ -40,12 +40,13 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period) {
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, bool and_lateness) {
     axis_regression out;
     out.band_Hz = detail::regression_band(log, period);
     if (!(out.band_Hz > 0)) return out;
     const auto q = zero_phase(log.position, out.band_Hz, period), v = derivative(q, period),
-               a = derivative(v, period), u = zero_phase(log.command, out.band_Hz, period);
+               a = derivative(v, period), u = zero_phase(log.command, out.band_Hz, period),
+               slope = derivative(u, period);
     const auto largest = [](const std::vector<double>& x) {
         return std::max(std::abs(*std::max_element(x.begin(), x.end())),
                         std::abs(*std::min_element(x.begin(), x.end())));
@@ -64,15 +65,19 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     constexpr std::size_t parts = 16;
     const std::size_t rows = q.size() / parts;
     if (rows < 8 || !(strongest > 0)) return {};
-    const Eigen::Index n = log.kind == axis_kind::rotary ? 6 : 4;
+    const bool turns = log.kind == axis_kind::rotary;
+    const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (and_lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+    double energy = 0; // of the command
     for (std::size_t k = 0; k < parts * rows; ++k) {
-        if (std::abs(v[k]) < 0.03 * fastest) continue;
+        if (std::abs(v[k]) < 0.03 * fastest || (and_lateness && std::abs(direction[k]) < 0.98)) continue;
         Eigen::VectorXd row(n);
         row.head<4>() << a[k], v[k], direction[k], 1;
-        if (n == 6) row.tail<2>() << sine[k], cosine[k];
+        if (turns) row.segment<2>(4) << sine[k], cosine[k];
+        if (and_lateness) row[of_axis] = -slope[k];
         sums[k / rows].left += row * row.transpose();
         sums[k / rows].right += u[k] * row;
+        energy += u[k] * u[k];
     }
     const auto solution = [&](std::size_t without) {
         Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n);
@@ -94,7 +99,20 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     out.speed = number(1);
     out.direction = number(2);
     out.mean = number(3);
-    if (n == 6) {
+    if (and_lateness) {
+        out.lateness = number(of_axis);
+        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+        for (const auto& part : sums) {
+            left += part.left;
+            right += part.right;
+        }
+        const double all = energy - right[3] * right[3] / left(3, 3);
+        const auto in_time = left.topLeftCorner(of_axis, of_axis);
+        out.left = (energy - right.dot(whole)) / all;
+        out.left_in_time = (energy - right.head(of_axis).dot(solved(in_time, right.head(of_axis)))) / all;
+    }
+    if (turns) {
         out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};
         out.phase = std::atan2(-whole[5], whole[4]);
     }
