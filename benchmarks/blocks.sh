@@ -1,8 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
-# usage: blocks.sh >docs/benchmarks.md      instructions and time per sample of every block, of the whole axis, of both axes, of
+# usage: [REPETITIONS=40] [ROUNDS=450] blocks.sh >docs/benchmarks.md
+#                                           instructions and time per sample of every block, of the whole axis, of both axes, of
 #                                           what one would write or take instead, and how the times of the two-axis loop are
-#                                           distributed; ten minutes on a quiet machine
+#                                           distributed; on a quiet machine. Fewer repetitions and rounds: to try the script.
+# The loops of both axes are timed once, in turns, for each compiler and -march (peers.sh march): every table and sentence about
+# them takes its figures from that measurement, and a sentence that says a ratio is written here from it.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=${QUADRANT_BUILD:-$root/build}
@@ -28,8 +31,8 @@ per_sample() { # PROGRAM WHICH [MOTION]
     many=$(instructions "$1" "$2" $((first + 4000)) ${3-})
     awk "BEGIN { printf \"%.1f\", ($many - $few) / 4000 }"
 }
-shortest() { # PROGRAM [FILTER]: name and nanoseconds a sample, the shortest of 40: short ones, which other programs leave alone
-    "$1" --benchmark_filter="${2:-.}" --benchmark_min_time=0.005 --benchmark_repetitions=40 --benchmark_format=csv 2>/dev/null |
+shortest() { # PROGRAM [FILTER]: name and nanoseconds a sample, the shortest of REPETITIONS: short ones, which other programs leave alone
+    "$1" --benchmark_filter="${2:-.}" --benchmark_min_time=0.005 --benchmark_repetitions="${REPETITIONS:-40}" --benchmark_format=csv 2>/dev/null |
         awk -F'"' '/^"/ { t = $NF; sub(/.*,/, "", t); t *= 1e9
             if (!($2 in best)) order[++n] = $2
             if (!($2 in best) || t < best[$2]) best[$2] = t }
@@ -47,31 +50,35 @@ rows() { # the names that begin with = are loops and comparisons, with ~ sums
         echo "| $name | $counted | $at_rest | $time | $rest |"
     done <"$here/list.txt"
 }
+has() { sed -n 's/^flags[^:]*: *//p' /proc/cpuinfo | head -n 1 | tr ' ' '\n' | grep -qx "$1"; } # FLAG of the processor
+timed() { # COMPILER MARCH NAME [FIELD]: of that measurement in turns: ns a sample; 3: that by the expert's; 4: median of the ratios
+    [ -e "$here/turns-$1-$2" ] || return 0
+    awk -F'|' -v name="xy_loop/$3" -v field="${4:-2}" '$1 == name { print $field }' "$here/turns-$1-$2"
+}
+by() { awk "BEGIN { printf \"%.2f\", $1 / $2 }"; }
 both_axes() {
-    shortest "$here/benchmarks/xy_loop" >"$here/xy_times.txt"
     for fir in '' _without_fir; do
         hand=$(per_sample "$here/benchmarks/xy_loop_count" hand_written$fir)
         for kind in typed typed_lanes hand_written virtual_graph; do
-            name=xy_loop/$kind${fir:+/without_fir}
+            name=$kind${fir:+/without_fir}
             counted=$(per_sample "$here/benchmarks/xy_loop_count" $kind$fir)
-            awk -F'|' -v name="$name" -v n="$counted" -v hand="$hand" \
-                '$1 == name { printf "| %s | %s | %.3f | %s |\n", name, n, n / hand, $2 }' "$here/xy_times.txt"
+            echo "| xy_loop/$name | $counted | $(awk "BEGIN { printf \"%.3f\", $counted / $hand }") | $(timed g++ x86-64 $name) |"
         done
     done
     for motion in standing reversing; do # parked for 32 000 periods; turning round every ten
         hand=$(per_sample "$here/benchmarks/xy_loop_count" hand_written $motion)
         for kind in typed typed_lanes hand_written virtual_graph; do
             counted=$(per_sample "$here/benchmarks/xy_loop_count" $kind $motion)
-            awk -F'|' -v name="xy_loop/$kind/$motion" -v n="$counted" -v hand="$hand" \
-                '$1 == name { printf "| %s | %s | %.3f | %s |\n", name, n, n / hand, $2 }' "$here/xy_times.txt"
+            echo "| xy_loop/$kind/$motion | $counted | $(awk "BEGIN { printf \"%.3f\", $counted / $hand }") | $(timed g++ x86-64 $kind/$motion) |"
         done
     done
-    sed -n 's/^\(xy_loop\/hal_chain[^|]*\)|\(.*\)/| \1 | | | \2 |/p' "$here/xy_times.txt" # where LinuxCNC is installed
+    shortest "$here/benchmarks/xy_loop" hal_chain |
+        sed -n 's/^\(xy_loop\/hal_chain[^|]*\)|\(.*\)/| \1 | | | \2 |/p' # where LinuxCNC is installed
 }
-plant_passes() { # by instruction set; the program's own counter, the shortest of 20
+plant_passes() { # by instruction set; the program's own counter, the shortest of REPETITIONS
     for set in sse2 avx2 avx512f; do
-        [ -x "$here/benchmarks/plant_pass_$set" ] && grep -q $set /proc/cpuinfo || continue
-        "$here/benchmarks/plant_pass_$set" --benchmark_min_time=0.02 --benchmark_repetitions=20 --benchmark_format=csv 2>/dev/null |
+        [ -x "$here/benchmarks/plant_pass_$set" ] && has $set || continue
+        "$here/benchmarks/plant_pass_$set" --benchmark_min_time=0.02 --benchmark_repetitions="${REPETITIONS:-40}" --benchmark_format=csv 2>/dev/null |
             awk -F, -v set="$set" '/^"plant_pass/ && !/_(mean|median|stddev|cv)"/ { gsub(/"/, "", $1); t = $NF * 1e9
                 if (!($1 in best)) order[++n] = $1
                 if (!($1 in best) || t < best[$1]) best[$1] = t }
@@ -79,38 +86,97 @@ plant_passes() { # by instruction set; the program's own counter, the shortest o
     done
 }
 both_axes_v3() { # the same for x86-64-v3, products and sums fused where the compiler likes, beside an expert's loop
-    grep -q avx2 /proc/cpuinfo || { echo "| (no AVX2 here) | | | | |"; return; }
+    [ -e "$here/turns-g++-x86-64-v3" ] || { echo "| (left out: this processor has no AVX2, FMA and BMI2) | | | | | | | |"; return; }
     for compiler in g++ clang++; do
         command -v $compiler >/dev/null || continue
-        for program in xy_loop_count xy_loop; do
-            [ $program = xy_loop_count ] && libraries= || libraries="-lbenchmark -lpthread -ldl"
-            $compiler -std=c++20 -O3 -DNDEBUG -march=x86-64-v3 -ffp-contract=fast -rdynamic -I"$root/include" -I"$root/examples/programs" \
-                -o "$here/v3_$program" "$root/benchmarks/$program.cpp" $libraries 2>>"$here.log" || { cat "$here.log" >&2; exit 1; }
-        done
+        $compiler -std=c++20 -O3 -DNDEBUG -march=x86-64-v3 -ffp-contract=fast -I"$root/include" -I"$root/examples/programs" \
+            -o "$here/v3_xy_loop_count" "$root/benchmarks/xy_loop_count.cpp" 2>>"$here.log" || { cat "$here.log" >&2; exit 1; }
         "$here/v3_xy_loop_count" same_commands || exit 1
-        shortest "$here/v3_xy_loop" 'typed|hand_written|expert' >"$here/v3_times.txt"
-        expert=$(per_sample "$here/v3_xy_loop_count" expert)
-        for kind in typed typed_lanes hand_written expert; do
-            counted=$(per_sample "$here/v3_xy_loop_count" $kind)
-            awk -F'|' -v kind="xy_loop/$kind" -v c="$compiler" -v n="$counted" -v expert="$expert" '
-                { time[$1] = $2 }
-                END { printf "| %s, %s | %s | %.3f | %s | %s | %s |\n", kind, c, n, n / expert, time[kind], time[kind "/standing"], time[kind "/reversing"] }' \
-                "$here/v3_times.txt"
-        done
-        expert=$(per_sample "$here/v3_xy_loop_count" expert_without_fir)
-        for kind in typed_lanes expert; do
-            counted=$(per_sample "$here/v3_xy_loop_count" ${kind}_without_fir)
-            awk -F'|' -v kind="xy_loop/$kind/without_fir" -v c="$compiler" -v n="$counted" -v expert="$expert" '
-                { time[$1] = $2 }
-                END { printf "| %s, %s | %s | %.3f | %s | %s | %s |\n", kind, c, n, n / expert, time[kind], time[kind "/standing"], time[kind "/reversing"] }' \
-                "$here/v3_times.txt"
+        for fir in '' _without_fir; do
+            kinds='typed typed_lanes hand_written expert'
+            [ -z "$fir" ] || kinds='typed_lanes expert'
+            expert=$(per_sample "$here/v3_xy_loop_count" expert$fir)
+            for kind in $kinds; do
+                counted=$(per_sample "$here/v3_xy_loop_count" $kind$fir)
+                name=$kind${fir:+/without_fir}
+                echo "| xy_loop/$name, $compiler | $counted | $(awk "BEGIN { printf \"%.3f\", $counted / $expert }") | $(timed $compiler x86-64-v3 $name) | $(timed $compiler x86-64-v3 $name/standing) | $(timed $compiler x86-64-v3 $name/reversing) | $(timed $compiler x86-64-v3 $name 3) | $(timed $compiler x86-64-v3 $name 4) |"
+            done
         done
     done
 }
+counted_v3() { # KIND COMPILER COLUMN: of that table
+    awk -F' *[|] *' -v name="xy_loop/$1, $2" -v column="$3" '$2 == name { print $(column + 2) }' "$here/xy_v3_rows.txt"
+}
+each_compiler() { # FUNCTION ARGUMENTS...: "A (g++) and B (clang++)", of those that were measured
+    first=1
+    for compiler in g++ clang++; do
+        of=$("$@" $compiler)
+        [ -n "$of" ] || continue
+        [ $first = 1 ] || printf ' and '
+        first=0
+        printf '%s (%s)' "$of" $compiler
+    done
+}
+instructions_by_expert() { counted_v3 "$1" "$2" 2; }
+instructions_above() { # how many more than 1.10 times the expert's
+    lanes=$(counted_v3 "$1" "$2" 1) expert=$(counted_v3 expert/without_fir "$2" 1)
+    [ -z "$lanes" ] || awk "BEGIN { printf \"%.0f\", $lanes - 1.10 * $expert }"
+}
+time_by_expert() { timed "$2" x86-64-v3 "$1" 3; }
+median_by_expert() { timed "$2" x86-64-v3 "$1" 4; }
+lanes_by_typed() { # time of the lanes with v3 by that of the typed loop without -march
+    lanes=$(timed "$1" x86-64-v3 typed_lanes) typed=$(timed "$1" x86-64 typed)
+    [ -z "$lanes" ] || by "$lanes" "$typed"
+}
+native_by_v3() { # KIND COMPILER
+    native=$(timed "$2" native "$1") v3=$(timed "$2" x86-64-v3 "$1")
+    [ -z "$v3" ] || by "$native" "$v3"
+}
+narrow_by_native() { # KIND COMPILER
+    narrow=$(timed "$2" native,-mprefer-vector-width=256 "$1") native=$(timed "$2" native "$1")
+    [ -z "$narrow" ] || by "$narrow" "$native"
+}
+expert_text() {
+    [ -e "$here/turns-g++-x86-64-v3" ] || return 0
+    cat <<EOT
+\`typed_lanes\` takes $(each_compiler time_by_expert typed_lanes) times the expert's time (the shortest of ${ROUNDS:-450} rounds of both),
+$(each_compiler median_by_expert typed_lanes) as the median of the ratios of neighbours in a round; turning round $(each_compiler time_by_expert typed_lanes/reversing),
+median $(each_compiler median_by_expert typed_lanes/reversing); without the FIR filters $(each_compiler time_by_expert typed_lanes/without_fir),
+median $(each_compiler median_by_expert typed_lanes/without_fir). There it is the work that the expert does not do: 20 wires that can be read, faults by axis,
+and what lets states die out; the filters hide it.
+EOT
+}
+march_text() {
+    [ -e "$here/turns-g++-x86-64-v3" ] || { echo "- This processor has no AVX2, FMA and BMI2: no row of x86-64-v3 or of the expert's loop was measured."; return; }
+    cat <<EOT
+- Take \`-march=x86-64-v3\` where the processor has AVX2 and FMA (Intel since 2013, AMD since 2015), and the lanes: $(each_compiler lanes_by_typed)
+  times the time of the typed loop without \`-march\`.
+- \`-march=native\` is \`$(g++ -march=native -Q --help=target | sed -n 's/^ *-march= *//p' | head -n 1)\` here. It takes $(each_compiler native_by_v3 typed) times what v3 takes for the typed loop,
+  $(each_compiler native_by_v3 typed_lanes) for the lanes, $(each_compiler native_by_v3 hand_written) for \`hand_written\`.
+EOT
+    if has avx512f; then
+        cat <<EOT
+  With \`-mprefer-vector-width=256\` the typed loop takes $(each_compiler narrow_by_native typed) times what it takes with \`native\` alone, \`hand_written\`
+  $(each_compiler narrow_by_native hand_written). Our reading, which no hardware counter has confirmed: with AVX-512 g++ sums FIR filters that are written
+  as plain loops in registers of 512 bits; such a load spans the sample that has just been stored, and waits until the store has reached the cache.
+EOT
+    else
+        echo "  This processor has no AVX-512: nothing is said here about what \`native\` does with it."
+    fi
+    echo "- Blocks alone, with g++ and \`-march=x86-64-v3\`: \`-fno-tree-slp-vectorize\` takes $(awk -F'|' '{ printf "%s`%s` from %s to %s ns", NR > 1 ? ", " : "", $1, $2, $3 }' "$here/slp")."
+    echo "  Our reading: g++ stores two states in one register and loads them one by one in the next sample, or the reverse, and waits for the store."
+}
+left_out() { # what has no row here
+    has avx2 || echo 'AVX2 is not there: no row of it, of x86-64-v3 and of the expert.'
+    has avx512f || echo 'AVX-512 is not there: it has no row.'
+    command -v clang++ >/dev/null || echo 'clang++ is not there: it has no row.'
+}
+before=$(cut -d' ' -f1 /proc/loadavg)
+rm -f "$here"/turns-* "$here/slp"
+TURNS=$here sh "$root/benchmarks/peers.sh" >"$here/peers_and_march.txt"
 rows >"$here/rows.txt"
 both_axes >"$here/xy_rows.txt"
 both_axes_v3 >"$here/xy_v3_rows.txt"
-sh "$root/benchmarks/peers.sh" >"$here/peers_and_march.txt"
 sed '/^$/,$d' "$here/peers_and_march.txt" >"$here/peers.txt"
 sed '1,/^$/d' "$here/peers_and_march.txt" >"$here/march.txt"
 busy=$(cut -d' ' -f1 /proc/loadavg)
@@ -122,10 +188,11 @@ cat <<EOF
 For whoever asks what a block costs. You get its instructions and its time per sample, and those of whole loops.
 
 Instructions per sample, counted by callgrind (repeatable, independent of the machine's load), $(g++ -dumpfullversion | sed 's/^/g++ /'), -O3; nanoseconds
-per sample on one core of $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), cache warm, the shortest of 40 runs.
-The processor is shared: two virtual ones are threads of one core, and other programs ran on the second. For the measurement its session had a higher
-priority (\`setsid sh -c 'echo -8 >/proc/self/autogroup; sh benchmarks/blocks.sh'\`, as root). A busy second thread makes a loop up to 1.3 times slower, so
-compare rows of one table, and take the instructions where a few percent matter.
+per sample on one of $(nproc) cores of $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), cache warm, the shortest of ${REPETITIONS:-40} runs.
+The kernel lists these extensions of it: $(for flag in sse2 sse4_1 avx avx2 fma bmi2 avx512f avx512dq avx512bw avx512vl; do ! has $flag || printf '%s ' $flag; done | sed 's/ $//').
+$(left_out)
+Programs that wanted to run in the minute before: $before; priority of the session (autogroup): $(sed -n 's/.*nice //p' /proc/self/autogroup 2>/dev/null || true).
+Other programs and a virtual machine's neighbours make a loop slower, so compare rows of one table, and take the instructions where a few percent matter.
 Written by \`sh benchmarks/blocks.sh >docs/benchmarks.md\`; the parameters are those of \`tests/conformance/blocks.hpp\`.
 Input is noise of the amplitude that the list gives. The call and the summing loop are included: \`through\` shows what
 passing a number costs. Library functions (\`sin\`, \`exp\`) are counted as what they execute.
@@ -183,15 +250,19 @@ turning round (looked at before anything is counted), and nothing else: no wire 
 retune, track or fade, and no protection from subnormal numbers at rest. \`typed_lanes\` has all of that, and its exponential is right to one unit in the
 last place. That is what it pays for: 20 wires and tests for what has died out. Where both axes have the same taps, each coefficient is loaded once, as
 the expert does; other taps are loaded for each axis. The ratio is that of the instructions to \`expert\`; \`sh benchmarks/callgrind.sh\` fails
-above 1.10. At rest, where the expert's loop does nothing against subnormal numbers, that ratio is not asked, and without the FIR filters neither:
-there it is 1.32 (g++) and 1.24 (clang++), and the code that g++ makes says why. Instructions of a sample by kind, the expert's in brackets: arithmetic
-123 (117), loads 64 (51), stores 85 (39), comparisons and selections 50 (25), branches 26 (9), moves, shuffles and addresses 94 (94). The arithmetic alone
-is 1.05 times the expert's. The stores are 20 wires that can be read after the sample, and the states of what can be reset, settled and retuned; one of
-them is a spilled register. Selections and branches are what takes states to zero at rest. None of it can go without the feature that it serves, and
-these 74 instructions above 1.10 are hidden in the whole loop, where the FIR filters take 160 to 220 in both.
+above 1.10, on the circle and turning round. At rest, where the expert's loop does nothing against subnormal numbers, that ratio is not asked, and
+without the FIR filters neither: there it is $(each_compiler instructions_by_expert typed_lanes/without_fir), and the code of g++ 12.2 says why. Instructions of a
+sample by kind, counted in it once by hand, the expert's in brackets: arithmetic 123 (117), loads 64 (51), stores 85 (39), comparisons and selections
+50 (25), branches 26 (9), moves, shuffles and addresses 94 (94). The stores are 20 wires that can be read after the sample, and the states of what can be
+reset, settled and retuned; one of them is a spilled register. Selections and branches are what takes states to zero at rest. None of it can go without
+the feature that it serves, and what is above 1.10, $(each_compiler instructions_above typed_lanes/without_fir) instructions, is hidden in the whole loop beside the FIR filters.
 
-| | instructions | ratio | ns | ns, standing | ns, reversing |
-|---|---|---|---|---|---|
+The times were taken in turns: a tenth of the motion by each loop, then the next tenth, ${ROUNDS:-450} rounds, every other one backwards. Each is the shortest of
+its rounds; the last two columns are the time by the expert's on the circle: shortest by shortest, and the median of the ratios round by round.
+$(expert_text)
+
+| | instructions | ratio | ns | ns, standing | ns, reversing | ns by expert's | median |
+|---|---|---|---|---|---|---|---|
 $(cat "$here/xy_v3_rows.txt")
 
 ## Beside what others use
@@ -206,20 +277,12 @@ $(cat "$here/peers.txt")
 
 ## Which -march
 
-The loop of both axes (\`sh benchmarks/peers.sh march\`), -O3 -ffp-contract=fast, nanoseconds a sample, CPU time, the shortest of 40 runs:
+The loop of both axes (\`sh benchmarks/peers.sh march\`), -O3 -ffp-contract=fast, nanoseconds a sample, CPU time, the shortest of ${ROUNDS:-450} rounds in turns
+(rows of one line ran in turns, lines one after the other; the same measurement as in the tables above):
 
 $(cat "$here/march.txt")
 
-- Take \`-march=x86-64-v3\` where the processor has AVX2 and FMA (Intel since 2013, AMD since 2015), and the lanes: less than half the time of the typed
-  loop without \`-march\`.
-- \`-march=native\` is slower on processors with AVX-512 for what is not in lanes; \`-mprefer-vector-width=256\` takes that away (172.4 for 208.9 ns).
-  Our reading, which no hardware counter has confirmed: g++ then sums the FIR filters in registers of 512 bits, such a load spans the sample that has
-  just been stored, and waits until the store has reached the cache. In lanes \`native\` and \`v3\` differ by less than 2 ns. clang++ prefers
-  256 bits by itself.
-- Blocks alone, with g++: \`-fno-tree-slp-vectorize\`. Our reading: g++ stores two states in one register and loads them one by one in the next sample,
-  or the reverse, and waits for the store. With \`-march=x86-64-v3\` it takes \`backward_difference\` from 4.4 to 1.4 ns, \`pid\` from 8.5 to 4.4, \`notch\` from 10.1 to 8.1.
-- \`typed_lanes\` takes 1.01 (g++) and 1.04 (clang++) times the expert's time, 1.36 and 1.45 without FIR filters (both in turns in one run, the shortest of
-  450). There it is the work that the expert does not do: 20 wires that can be read, faults by axis, and what lets states die out; the filters hide it.
+$(march_text)
 
 ## The most instructions of a sample
 
@@ -236,7 +299,7 @@ $("$here/examples/quadrant-latency" --bound)
 
 One row of one plant in the pass of a diagnosis over a log: an observer that the readings correct, around a \`servo_axis\` with Stribeck friction whose
 delay splits each period, so that a row is two steps of it; \`undelayed\`: one step; \`cogging\`: two steps with four harmonics over the position.
-\`scalar\`: one plant alone; \`lanes\`: 16 plants in one pass, the time divided by 16. Programs choose the instruction set when they start
+\`standing\`: one that rests; \`scalar\`: one plant alone; \`lanes\`: 16 plants in one pass, the time divided by 16. Programs choose the instruction set when they start
 (\`build/bench/benchmarks/plant_pass_avx2\` and its sisters; the target must be named when they are built).
 
 | | ns a lane and row |
@@ -247,7 +310,7 @@ $(plant_passes)
 
 One axis of 340 kg on Stribeck friction, 25 sub-steps a period of 500 us, driven back and forth and stopping on the way (\`sh benchmarks/sub_steps.sh times\`).
 \`typed\`: \`stick_slip\` in a loop. \`motor\`: \`linear_motor\`, with delay, limit, DAC and encoder. \`plain\`: C that is semi-implicit. Both are of first order; the
-error over 20 s is that beside 1000 sub-steps. \`plain_as_accurate\`: the same C with the 48 sub-steps that it takes for the error of \`typed\`.
+error over 20 s is that beside 1000 sub-steps. \`plain_as_accurate\`: the same C with the 48 sub-steps that it takes for the error of \`typed\`. Last column: the axis rests, after a second of motion.
 
 \`\`\`
 $(sh "$root/benchmarks/sub_steps.sh" times)

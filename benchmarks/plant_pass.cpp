@@ -46,9 +46,10 @@ plant_model cogging() {
     return model;
 }
 
-void plant_pass(benchmark::State& state, std::size_t plants, const plant_model& model) {
-    std::vector<double> position(rows), command(rows);
-    for (std::size_t k = 0; k < rows; ++k) {
+/// `stands`: all rows at one position, without a command.
+void plant_pass(benchmark::State& state, std::size_t plants, const plant_model& model, bool stands = false) {
+    std::vector<double> position(rows, 0.01), command(rows);
+    for (std::size_t k = 0; k < rows && !stands; ++k) {
         const double t = period * static_cast<double>(k);
         position[k] = std::round(0.03 * std::sin(4.4 * t) / 2.5e-7) * 2.5e-7;
         command[k] = 0.14 * (std::cos(4.4 * t) > 0 ? 1 : -1) - 0.13 * std::sin(4.4 * t);
@@ -86,6 +87,8 @@ void plant_pass(benchmark::State& state, std::size_t plants, const plant_model& 
 
 BENCHMARK_CAPTURE(plant_pass, scalar, 1, stribeck())->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plant_pass, lanes, 16, stribeck())->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(plant_pass, scalar_standing, 1, stribeck(), true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(plant_pass, lanes_standing, 16, stribeck(), true)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plant_pass, scalar_undelayed, 1, undelayed())->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plant_pass, lanes_undelayed, 16, undelayed())->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plant_pass, scalar_cogging, 1, cogging())->Unit(benchmark::kMicrosecond);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS     simulates so many seconds of an axis on
-// Stribeck
-//                                           friction with a period of 500 us; sub_steps.sh counts the instructions
+// usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS [standing]     simulates so many seconds of an
+//                                           axis on Stribeck friction with a period of 500 us; sub_steps.sh
+//                                           counts the instructions. Standing: no command after a second
 //        sub_steps errors                   how far each is from itself with 1000 sub-steps, over 20 s, in um
 //        sub_steps times                    CPU time of each, and how many times real time that is
 // typed: `stick_slip` alone, in a loop of 25 sub-steps. motor: `linear_motor`, with delay, limit, DAC and
@@ -90,10 +90,11 @@ private:
     double h, inertia, k;
 };
 
-template <class Axis> std::vector<double> path(std::size_t n, std::size_t seconds) {
+template <class Axis> std::vector<double> path(std::size_t n, std::size_t seconds, bool stands = false) {
     Axis axis(n);
     std::vector<double> x(seconds * samples_of_a_second);
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = axis.step(command(k));
+    for (std::size_t k = 0; k < x.size(); ++k)
+        x[k] = axis.step(stands && k >= samples_of_a_second ? 0 : command(k));
     return x;
 }
 /// In um.
@@ -121,8 +122,8 @@ template <class Axis> void time_of(const char* name, std::size_t n = sub_steps) 
     std::printf("%s: %.1f ns a sub-step, %.0f times real time, CPU time, the shortest of 20 runs (%.3g)\n",
                 name, 1e9 * best / double(u.size() * n), 20 / best, sum);
 }
-template <class Axis> int run(std::size_t seconds, std::size_t n = sub_steps) {
-    std::printf("%.17g\n", path<Axis>(n, seconds).back());
+template <class Axis> int run(std::size_t seconds, bool stands, std::size_t n = sub_steps) {
+    std::printf("%.17g\n", path<Axis>(n, seconds, stands).back());
     return 0;
 }
 
@@ -131,10 +132,11 @@ template <class Axis> int run(std::size_t seconds, std::size_t n = sub_steps) {
 int main(int argc, char** argv) {
     const std::string_view which = argc > 1 ? argv[1] : "";
     const std::size_t seconds = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 0;
-    if (seconds > 0 && which == "typed") return run<typed>(seconds);
-    if (seconds > 0 && which == "motor") return run<motor>(seconds);
-    if (seconds > 0 && which == "plain") return run<plain>(seconds);
-    if (seconds > 0 && which == "plain_as_accurate") return run<plain>(seconds, as_accurate);
+    const bool stands = argc > 3 && std::string_view(argv[3]) == "standing";
+    if (seconds > 0 && which == "typed") return run<typed>(seconds, stands);
+    if (seconds > 0 && which == "motor") return run<motor>(seconds, stands);
+    if (seconds > 0 && which == "plain") return run<plain>(seconds, stands);
+    if (seconds > 0 && which == "plain_as_accurate") return run<plain>(seconds, stands, as_accurate);
     if (which == "errors") {
         std::printf("typed %.3f\nmotor %.3f\nplain %.3f\nplain_as_accurate %.3f\n", error<typed>(),
                     error<motor>(), error<plain>(), error<plain>(as_accurate));
@@ -147,6 +149,8 @@ int main(int argc, char** argv) {
         time_of<plain>("plain_as_accurate", as_accurate);
         return 0;
     }
-    std::fprintf(stderr, "usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS, or errors, or times\n");
+    std::fprintf(
+        stderr,
+        "usage: sub_steps typed|motor|plain|plain_as_accurate SECONDS [standing], or errors, or times\n");
     return 2;
 }

@@ -8,9 +8,9 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 command -v valgrind >/dev/null || { echo "no valgrind: skipped"; exit 77; }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-count() { # PROGRAM WHICH: instructions a period; a second has 2000
-    for seconds in 1 2; do
-        valgrind --tool=callgrind --callgrind-out-file=/dev/null "$1" "$2" $seconds 2>&1 >/dev/null |
+count() { # PROGRAM WHICH [standing]: instructions a period; a second has 2000, and the axis rests from the third on
+    for seconds in $([ -z "${3-}" ] && echo 1 2 || echo 2 3); do
+        valgrind --tool=callgrind --callgrind-out-file=/dev/null "$1" "$2" $seconds ${3-} 2>&1 >/dev/null |
             sed -n 's/.*Collected : *\([0-9]*\).*/\1/p'
     done | awk 'NR == 1 { few = $1 } NR == 2 { printf "%.1f", ($1 - few) / 2000 }'
 }
@@ -19,11 +19,12 @@ for compiler in ${COMPILERS:-g++ clang++}; do
     command -v $compiler >/dev/null || continue
     $compiler -std=c++20 -O3 -DNDEBUG -ffp-contract=off "-I$root/include" "$root/benchmarks/sub_steps.cpp" -o "$dir/sub_steps"
     "$dir/sub_steps" errors >"$dir/errors"
-    printf '%-20s %-10s %26s %16s\n' sub_steps compiler 'instructions a period' 'error, um'
+    printf '%-20s %-10s %26s %16s %10s\n' sub_steps compiler 'instructions a period' 'error, um' standing
     for which in typed motor plain plain_as_accurate; do
         counted=$(count "$dir/sub_steps" $which)
         off=$(sed -n "s/^$which //p" "$dir/errors")
-        printf '%-20s %-10s %26s %16s\n' $which $compiler "$counted" "$off"
+        at_rest=$(count "$dir/sub_steps" $which standing)
+        printf '%-20s %-10s %26s %16s %10s\n' $which $compiler "$counted" "$off" "$at_rest"
         echo "$which $counted $off" >>"$dir/$compiler"
     done
     awk -v compiler=$compiler '{ n[$1] = $2; off[$1] = $3 }
