@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one simulator of a drive and its records, and the findings of each kind of drive.
 // Machines whose drive closes loops of its own, from a simulator that shares nothing with the library
 // (drive_simulator.hpp), through the diagnosis.
 #include "drive_simulator.hpp"

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: main() writes and compares one kind of MAT file after the other.
 """MAT-files through `quadrant-gap import`: as MATLAB saves them with -v6 and -v7, and damaged.
 usage: mat_file_test.py PROGRAM"""
 import math

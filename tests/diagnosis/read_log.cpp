@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one reader: a case for each rule of a log.
 #include "quadrant/diagnosis/read_log.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one reader: a case for each rule of a machine file, all against one example.
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/machine_file/machine_keys.hpp"
 #include "quadrant/diagnosis/match.hpp"
