@@ -9,6 +9,7 @@ when it says so. What quadrant-latency measures differs from run to run, and so 
 the same when they are whole.
 """
 import hashlib
+import math
 import os
 import re
 import shutil
@@ -17,7 +18,7 @@ import sys
 from pathlib import Path
 
 root = Path(__file__).resolve().parents[3]
-compiler, scratch, programs = sys.argv[1], Path(sys.argv[2]).resolve(), {Path(p).name: Path(p).resolve() for p in sys.argv[3:]}
+compiler, scratch, programs = sys.argv[1], Path(sys.argv[2]).resolve(), {Path(p).name: Path(p).resolve() for p in sys.argv[3:] if p}
 shutil.rmtree(scratch, ignore_errors=True)
 scratch.mkdir(parents=True)
 shim = scratch / "fail_nth.so"
@@ -25,12 +26,29 @@ subprocess.run([compiler, "-std=c++20", "-O1", "-shared", "-fPIC", "-o", shim, P
 
 data, imports = root / "examples/data", root / "examples/import"
 mill = root / "examples/programs/quadrant_cnc/mill.json"
-# What each program is asked for: its arguments, and the files that it writes.
+everything = os.environ.get("QUADRANT_TESTS") == "all"
+of_machine, found = ["--machine", data / "machine.json"], root / "tests/fuzz/diagnosis.json"
+circles = scratch / "circles.csv"
+with circles.open("w") as file:  # three turns each way; the encoder of x counts 100 um/m too much
+    print("t_s,x_ref_m,x_pos_m,y_ref_m,y_pos_m", file=file)
+    for k in range(6000):
+        angle = (1 if k < 3000 else -1) * 2 * math.pi * k / 1000
+        x, y = 0.03 * math.cos(angle), 0.03 * math.sin(angle)
+        print(f"{k / 500:.3f},{x:.9f},{x * (1 + 1e-4):.7f},{y:.9f},{y:.7f}", file=file)
+# What each program is asked for: its arguments, the files that it writes, and a folder that it finds, if it needs one.
 asked = {
     "quadrant-gap": [
         (["import", "--map", imports / "halsampler.map.json", imports / "halsampler.txt", "log.csv"], ["log.csv"]),
-        (["simulate", "--machine", data / "machine.json", "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+        (["simulate", *of_machine, "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+        (["init", "--log", data / "log.csv", "--unchecked", "--mass", "1", "--force-constant", "1", "--out", "begun.json"],
+         ["begun.json", "begun.md"]),
+        (["apply", *of_machine, "--diagnosis", found, "--out", "corrected.json"], ["corrected.json"]),
+        (["export", *of_machine, "--mjcf", "axis.xml", "--linuxcnc", "axis.txt", "--drive", "drive.csv", "--compensation", "table.csv"],
+         ["axis.xml", "axis.txt", "drive.csv", "table.csv"]),
+        (["forecast", *of_machine, "--diagnosis", found, "--motion", data / "log.csv", "--json", "forecast.json"], ["forecast.json"]),
+        (["circle", "--log", circles, "--json", "circle.json", "--report", "circle.html"], ["circle.json", "circle.html"]),
     ],
+    "quadrant-gap-mpi": [],
     "quadrant-cnc": [
         (["analyse", "--cnc", mill, "--axis", "x", "--json", "figures.json", "--report", "axis.html"], ["figures.json", "axis.html"]),
     ],
@@ -42,9 +60,28 @@ asked = {
         (["--seconds", "0.1", "--period_us", "1000", "--html", "latency.html"], ["latency.html"]),
     ],
 }
-if os.environ.get("QUADRANT_TESTS") == "all":  # a whole diagnosis each time
-    shipped = ["--machine", data / "machine.json", "--log", data / "log.csv", "--json", "found.json"]
-    asked["quadrant-gap"].append((["diagnose", "--fast", "--threads", "1", *shipped, "--report", "page.html"], ["found.json", "page.html"]))
+if everything:  # seconds each time: whole diagnoses, whole runs
+    shipped, quick = [*of_machine, "--log", data / "log.csv"], ["--fast", "--threads", "1"]
+    asked["quadrant-gap"] += [
+        (["diagnose", *quick, *shipped, "--json", "found.json", "--report", "page.html"], ["found.json", "page.html"]),
+        (["compensate", *shipped, "--diagnosis", found, "--json", "gains.json", "--controller", "keys.json"], ["gains.json", "keys.json"]),
+        (["compare", *quick, *of_machine, data / "log.csv", data / "holdout.csv", "--json", "differs.json", "--report", "page.html"],
+         ["differs.json", "page.html"]),
+    ]
+    asked["quadrant-cnc"] += [
+        (["run", "--cnc", mill, "--path", root / "examples/path/diamond.nc", "--json", "run.json", "--report", "run.html", "--log", "run.csv",
+          "--export-gap-machine", "machine.json"], ["run.json", "run.html", "run.csv", "machine.json"]),
+    ]
+    # A fleet whose log is diagnosed already: what is left is its overview, and the state that it keeps.
+    if "quadrant-gap" in programs:
+        fleet = scratch / "fleet"
+        (fleet / "logs/a").mkdir(parents=True)
+        shutil.copy(data / "machine.json", fleet / "logs")
+        shutil.copy(data / "log.csv", fleet / "logs/a")
+        subprocess.run([programs["quadrant-gap"], "fleet", "--jobs", "1", "--out", "results", "logs"], cwd=fleet, capture_output=True, check=True)
+        again = (["logs", "--jobs", "1", "--out", "results"], ["results/fleet.html"], fleet)
+        asked["quadrant-gap"].append((["fleet", *again[0]], *again[1:]))
+        asked["quadrant-gap-mpi"].append(again)
 UNDRAWN_MARK = b"gnuplot could not draw this"
 UNDRAWN = "a whole page that says that a picture is not drawn"
 PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
@@ -65,10 +102,13 @@ def seen(data):
     return hashlib.sha256(data).hexdigest()
 
 
-def run(folder, program, arguments, outputs, **more):
+def run(folder, program, arguments, outputs, found_there, **more):
     """Exit code, both outputs, the files: everything that a user would see afterwards."""
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
+    if found_there:
+        shutil.copytree(found_there, folder)
+    else:
+        folder.mkdir()
     for name in outputs:
         (folder / name).write_text(OLD)
     before = more.pop("before", [])
@@ -76,7 +116,7 @@ def run(folder, program, arguments, outputs, **more):
     if done.returncode == 1 and re.search(ANSWER, done.stdout):
         done.returncode = 0  # the machine was busy: an answer as any other
     done.printed, done.stderr = seen(done.stdout), done.stderr.decode(errors="replace")
-    files = {p.name: seen(p.read_bytes()) for p in folder.iterdir()}
+    files = {str(p.relative_to(folder)): seen(p.read_bytes()) for p in folder.rglob("*") if p.is_file()}
     return done, files
 
 
@@ -105,27 +145,28 @@ def hold(what, done, files, good, good_files, old, outputs):
 
 traces = shutil.which("strace") and subprocess.run(["strace", "-o", "/dev/null", "true"], capture_output=True).returncode == 0
 for name, program in programs.items():
-    for arguments, outputs in asked[name]:
+    for arguments, outputs, *found_there in asked[name]:
+        found_there = found_there[0] if found_there else None
         called = f"{name} {arguments[0]}"
         folder, old = scratch / "run", seen(OLD.encode())
-        good, good_files = run(folder, program, arguments, outputs)
+        good, good_files = run(folder, program, arguments, outputs, found_there)
         if good.returncode != 0 or any(good_files[o] == old for o in outputs):
             faults.append(f"{called}: does not work with all memory: {good.stderr[-300:]}")
             continue
         count = scratch / "count"
-        run(folder, program, arguments, outputs, env={**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_COUNT_TO": str(count)})
+        run(folder, program, arguments, outputs, found_there, env={**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_COUNT_TO": str(count)})
         for n in places(int(count.read_text())):
             more = {**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_FAIL_AT": str(n)}
-            hold(f"{called}, allocation {n} fails", *run(folder, program, arguments, outputs, env=more), good, good_files, old, outputs)
+            hold(f"{called}, allocation {n} fails", *run(folder, program, arguments, outputs, found_there, env=more), good, good_files, old, outputs)
         if not traces:
             continue
         trace = scratch / "trace"
-        run(folder, program, arguments, outputs, before=["strace", "-qq", "-o", trace, "-e", "trace=write,writev"])
+        run(folder, program, arguments, outputs, found_there, before=["strace", "-qq", "-o", trace, "-e", "trace=write,writev"])
         writes = [line for line in trace.read_text().splitlines() if "write" in line]
         for n in places(len(writes)):
             to_stderr = " standard error" if f"{' '.join(writes[n - 1].split()[:1])}".startswith("write(2,") else ""
             inject = ["strace", "-qq", "-o", "/dev/null", "-e", "trace=write,writev", "-e", f"inject=write,writev:error=ENOSPC:when={n}"]
-            hold(f"{called}, write {n}{to_stderr} fails", *run(folder, program, arguments, outputs, before=inject), good, good_files, old, outputs)
+            hold(f"{called}, write {n}{to_stderr} fails", *run(folder, program, arguments, outputs, found_there, before=inject), good, good_files, old, outputs)
 
 for fault in faults:
     print("FAILED:", fault)
