@@ -3,9 +3,15 @@
 #include "workshop.hpp"
 
 #include <quadrant/diagnosis/controller/cascade_p_pi.hpp>
+#include <quadrant/diagnosis/effect/effects.hpp>
+#include <quadrant/diagnosis/fit/spatial_spectrum.hpp>
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>
 #include <quadrant/diagnosis/how_far/how_far.hpp>
 #include <quadrant/diagnosis/where/controller_floor.hpp>
+#include <quadrant/diagnosis/where/places.hpp>
+#include <quadrant/diagnosis/which/causes.hpp>
+#include <quadrant/friction/stribeck.hpp>
+#include <quadrant/plant/linear_motor.hpp>
 
 #include <doctest/doctest.h>
 
