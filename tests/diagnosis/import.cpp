@@ -142,7 +142,7 @@ TEST_CASE("import: what is wrong in the log is told with file, line and column")
           std::string::npos);
     CHECK(with("u;", "Soll;").find("is there twice") != std::string::npos);
     CHECK(with("Zeit", "Tid") ==
-          "in.txt: no line begins with \"Zeit\", as the map says of the names of the columns");
+          "in.txt: no line begins with \"Zeit\", where the map expects the names of the columns");
     CHECK(of_log("Zeit;Soll;u;Zaehler\n") == "in.txt: holds no rows of numbers that the map can read");
     CHECK(of_log("") != "accepted");
     const auto overrun =
