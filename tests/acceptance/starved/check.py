@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 
 root = Path(__file__).resolve().parents[3]
-compiler, scratch, programs = sys.argv[1], Path(sys.argv[2]).resolve(), {Path(p).name: Path(p).resolve() for p in sys.argv[3:] if p}
+compiler, scratch, programs = sys.argv[1], Path(sys.argv[2]).resolve(), {Path(p).name: Path(p).resolve() for p in sys.argv[3:]}
 shutil.rmtree(scratch, ignore_errors=True)
 scratch.mkdir(parents=True)
 shim = scratch / "fail_nth.so"
@@ -35,7 +35,7 @@ with circles.open("w") as file:  # three turns each way; the encoder of x counts
         angle = (1 if k < 3000 else -1) * 2 * math.pi * k / 1000
         x, y = 0.03 * math.cos(angle), 0.03 * math.sin(angle)
         print(f"{k / 500:.3f},{x:.9f},{x * (1 + 1e-4):.7f},{y:.9f},{y:.7f}", file=file)
-# What each program is asked for: its arguments, the files that it writes, and a folder that it finds, if it needs one.
+# What each program is asked for: its arguments, and the files that it writes.
 asked = {
     "quadrant-gap": [
         (["import", "--map", imports / "halsampler.map.json", imports / "halsampler.txt", "log.csv"], ["log.csv"]),
@@ -48,7 +48,6 @@ asked = {
         (["forecast", *of_machine, "--diagnosis", found, "--motion", data / "log.csv", "--json", "forecast.json"], ["forecast.json"]),
         (["circle", "--log", circles, "--json", "circle.json", "--report", "circle.html"], ["circle.json", "circle.html"]),
     ],
-    "quadrant-gap-mpi": [],
     "quadrant-cnc": [
         (["analyse", "--cnc", mill, "--axis", "x", "--json", "figures.json", "--report", "axis.html"], ["figures.json", "axis.html"]),
     ],
@@ -72,16 +71,6 @@ if everything:  # seconds each time: whole diagnoses, whole runs
         (["run", "--cnc", mill, "--path", root / "examples/path/diamond.nc", "--json", "run.json", "--report", "run.html", "--log", "run.csv",
           "--export-gap-machine", "machine.json"], ["run.json", "run.html", "run.csv", "machine.json"]),
     ]
-    # A fleet whose log is diagnosed already: what is left is its overview, and the state that it keeps.
-    if "quadrant-gap" in programs:
-        fleet = scratch / "fleet"
-        (fleet / "logs/a").mkdir(parents=True)
-        shutil.copy(data / "machine.json", fleet / "logs")
-        shutil.copy(data / "log.csv", fleet / "logs/a")
-        subprocess.run([programs["quadrant-gap"], "fleet", "--jobs", "1", "--out", "results", "logs"], cwd=fleet, capture_output=True, check=True)
-        again = (["logs", "--jobs", "1", "--out", "results"], ["results/fleet.html"], fleet)
-        asked["quadrant-gap"].append((["fleet", *again[0]], *again[1:]))
-        asked["quadrant-gap-mpi"].append(again)
 UNDRAWN_MARK = b"gnuplot could not draw this"
 UNDRAWN = "a whole page that says that a picture is not drawn"
 PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
@@ -102,13 +91,10 @@ def seen(data):
     return hashlib.sha256(data).hexdigest()
 
 
-def run(folder, program, arguments, outputs, found_there, **more):
+def run(folder, program, arguments, outputs, **more):
     """Exit code, both outputs, the files: everything that a user would see afterwards."""
     shutil.rmtree(folder, ignore_errors=True)
-    if found_there:
-        shutil.copytree(found_there, folder)
-    else:
-        folder.mkdir()
+    folder.mkdir()
     for name in outputs:
         (folder / name).write_text(OLD)
     before = more.pop("before", [])
@@ -145,28 +131,27 @@ def hold(what, done, files, good, good_files, old, outputs):
 
 traces = shutil.which("strace") and subprocess.run(["strace", "-o", "/dev/null", "true"], capture_output=True).returncode == 0
 for name, program in programs.items():
-    for arguments, outputs, *found_there in asked[name]:
-        found_there = found_there[0] if found_there else None
+    for arguments, outputs in asked[name]:
         called = f"{name} {arguments[0]}"
         folder, old = scratch / "run", seen(OLD.encode())
-        good, good_files = run(folder, program, arguments, outputs, found_there)
+        good, good_files = run(folder, program, arguments, outputs)
         if good.returncode != 0 or any(good_files[o] == old for o in outputs):
             faults.append(f"{called}: does not work with all memory: {good.stderr[-300:]}")
             continue
         count = scratch / "count"
-        run(folder, program, arguments, outputs, found_there, env={**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_COUNT_TO": str(count)})
+        run(folder, program, arguments, outputs, env={**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_COUNT_TO": str(count)})
         for n in places(int(count.read_text())):
             more = {**os.environ, "LD_PRELOAD": str(shim), "QUADRANT_FAIL_AT": str(n)}
-            hold(f"{called}, allocation {n} fails", *run(folder, program, arguments, outputs, found_there, env=more), good, good_files, old, outputs)
+            hold(f"{called}, allocation {n} fails", *run(folder, program, arguments, outputs, env=more), good, good_files, old, outputs)
         if not traces:
             continue
         trace = scratch / "trace"
-        run(folder, program, arguments, outputs, found_there, before=["strace", "-qq", "-o", trace, "-e", "trace=write,writev"])
+        run(folder, program, arguments, outputs, before=["strace", "-qq", "-o", trace, "-e", "trace=write,writev"])
         writes = [line for line in trace.read_text().splitlines() if "write" in line]
         for n in places(len(writes)):
             to_stderr = " standard error" if f"{' '.join(writes[n - 1].split()[:1])}".startswith("write(2,") else ""
             inject = ["strace", "-qq", "-o", "/dev/null", "-e", "trace=write,writev", "-e", f"inject=write,writev:error=ENOSPC:when={n}"]
-            hold(f"{called}, write {n}{to_stderr} fails", *run(folder, program, arguments, outputs, found_there, before=inject), good, good_files, old, outputs)
+            hold(f"{called}, write {n}{to_stderr} fails", *run(folder, program, arguments, outputs, before=inject), good, good_files, old, outputs)
 
 for fault in faults:
     print("FAILED:", fault)
