@@ -1,5 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSL-1.0
+# Long: writes one page from top to bottom.
 # usage: [REPETITIONS=40] [ROUNDS=450] blocks.sh >docs/benchmarks.md
 #                                           instructions and time per sample of every block, of the whole axis, of both axes, of
 #                                           what one would write or take instead, and how the times of the two-axis loop are

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop by hand, whole: what the typed one is measured against.
 #pragma once
 #include <math.h>
 #include <stdbool.h>

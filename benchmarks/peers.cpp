@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: each block beside its peers; all() is their list.
 // usage: peers list            numbers and names; exit code 1 when two of one group do not give the same
 //        peers I SAMPLES       runs number I; peers.sh counts the instructions
 //        peers times           nanoseconds a sample of each, CPU time, the shortest of 60 runs

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSL-1.0
+# Long: population() draws, diagnoses and counts the machines of one kind.
 """Two encoders, and motion without a command, through the program: raw CSV of machines from encoders_machine.py, whose truth is known.
 
   encoders.py PROGRAM             one machine of each kind, refusals, apply

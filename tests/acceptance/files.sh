@@ -82,7 +82,7 @@ awk "BEGIN { exit !($after < 0.7 * $before) }"
 refuses 'axis x is rotary in the log, linear in' diagnose --machine "$data/machine.json" --log turning.csv
 sed 's/coulomb_Nm/coulomb_N/' turning.json >mixed.json
 refuses 'mixed.json:6:' diagnose --machine mixed.json --log turning.csv
-refuses 'axes.x.plant.coulomb_N: is of a linear axis; this one is rotary: coulomb_Nm' diagnose --machine mixed.json --log turning.csv
+refuses 'axes.x.plant.coulomb_N: belongs to a linear axis; this one is rotary: coulomb_Nm' diagnose --machine mixed.json --log turning.csv
 
 # The diagnosis knows its files: apply says when the machine file is another one.
 [ "$(sed -n '/"machine"/,/}/s/.*"sha256": "\(.*\)".*/\1/p' found.json)" = "$(sha256sum <"$data/machine.json" | cut -d' ' -f1)" ]
@@ -155,9 +155,9 @@ grep -q 'moving inertia' asked.txt
 grep -q '"inertia_kg_m2": 0.02' rotary.json
 refuses 'axis c: --inertia is missing' init --out no.json --log odrive.csv
 grep -q '"delay_s": 0.0004' asked.json
-refuses '--mass is missing; the log speaks of about 8' init --out no.json --log halsampler.csv --force-constant 400
+refuses '--mass is missing; the log indicates about 8' init --out no.json --log halsampler.csv --force-constant 400
 refuses 'is not a number of kg' init --out no.json --log halsampler.csv --mass 80mm --force-constant 400
-refuses 'cannot be of this log' init --out no.json --log halsampler.csv --mass 80000 --force-constant 400
+refuses 'contradict this log' init --out no.json --log halsampler.csv --mass 80000 --force-constant 400
 [ ! -e no.json ]
 
 # The same options and exit codes everywhere; the completion offers what the help has.

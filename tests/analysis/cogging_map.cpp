@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one call; TEST_CASE() of the published record checks harmonic by harmonic.
 #include <quadrant/analysis/cogging_map.hpp>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/feedforward/cogging_harmonics.hpp>

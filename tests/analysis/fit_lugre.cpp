@@ -32,7 +32,7 @@ const gains soft{bryson_weights(30_um, 10_mmps, 0.01_V), 5_N};
 
 /// The loop on a stage with this friction, along reference(t), from `place` on.
 template <class Reference>
-axis_log<> follow(const gains& g, const lugre<>::parameters& friction, quantity<si::mass> mass,
+test_run<> follow(const gains& g, const lugre<>::parameters& friction, quantity<si::mass> mass,
                   quantity<si::length> encoder, quantity<si::length> place, const Reference& reference,
                   std::size_t samples) {
     linear_motor<lugre<>> motor(
@@ -42,7 +42,7 @@ axis_log<> follow(const gains& g, const lugre<>::parameters& friction, quantity<
     motor.settle(place), law.settle(place, 0_V), speed.settle(place);
     auto measured = place;
     quantity<si::electric_potential> u{};
-    axis_log<> log;
+    test_run<> log;
     for (std::size_t k = 0; k < samples; ++k) {
         log.position.push_back(measured);
         const auto v = speed(measured, u);
@@ -76,7 +76,7 @@ using commands = std::vector<quantity_of<signal::voltage>>;
 
 TEST_CASE("fit_lugre: static curve and bristles of a stage with a 1 um encoder lie in their intervals, mass 1 "
           "% off") {
-    std::vector<axis_log<>> slow;
+    std::vector<test_run<>> slow;
     for (const double v : {0.5e-3, 1e-3, 2e-3, 3.5e-3, 6e-3, 10e-3, 20e-3, 40e-3})
         for (const double way : {1.0, -1.0}) {
             const auto ramp = [&](double t) { return place_and_speed{way * v * t, way * v}; };

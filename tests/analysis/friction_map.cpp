@@ -34,8 +34,8 @@ private:
 };
 /// Speeds up for 0.3 s, runs 4 s with a force that settles, brakes for 0.2 s; pushed by 8 N whichever way it
 /// goes.
-axis_log<> run(double v, unsigned seed, double shape = 1) {
-    axis_log<> out;
+test_run<> run(double v, unsigned seed, double shape = 1) {
+    test_run<> out;
     noise n(seed, 2, 0.9);
     double x = 0;
     for (int i = 0; i < 9000; ++i) {
@@ -49,8 +49,8 @@ axis_log<> run(double v, unsigned seed, double shape = 1) {
     }
     return out;
 }
-std::vector<axis_log<>> runs(std::initializer_list<double> speeds, unsigned seed, double shape = 1) {
-    std::vector<axis_log<>> out;
+std::vector<test_run<>> runs(std::initializer_list<double> speeds, unsigned seed, double shape = 1) {
+    std::vector<test_run<>> out;
     for (const double v : speeds)
         for (const double way : {1.0, -1.0}) out.push_back(run(way * v, seed++, shape));
     return out;
@@ -129,7 +129,7 @@ TEST_CASE("friction map: mean of both directions at constant speed, run in and b
 TEST_CASE("friction map: a run that jerks, rests, or has no counterpart is left out and named") {
     auto some = runs({0.001, 0.003}, 1);
     some.pop_back();            // 3: 3 mm/s, backwards
-    axis_log<> jerks = some[0]; // half of the time at rest, then twice as fast
+    test_run<> jerks = some[0]; // half of the time at rest, then twice as fast
     for (std::size_t i = 0; i < jerks.position.size(); ++i) {
         const double t = double(i % 500) / 500, whole = double(i / 500);
         jerks.position[i] = 2.5e-4 * (whole + std::max(0.0, 2 * t - 1)) * 1_m;

@@ -28,11 +28,11 @@ double virgin(double um, double level = 122) {
     return std::min(30 * um, 0.5 * level) + std::min(6 * um, 0.3 * level) + std::min(1 * um, 0.2 * level);
 }
 /// The law alone, moved along the sinusoid; encoder and force noise if asked for.
-axis_log<> sinusoid(const law::parameters& p, double amplitude, double count, double noise, unsigned seed) {
+test_run<> sinusoid(const law::parameters& p, double amplitude, double count, double noise, unsigned seed) {
     law friction(p, T);
     std::mt19937 random(seed);
     std::normal_distribution<double> gauss;
-    axis_log<> out;
+    test_run<> out;
     double before = 0;
     for (int i = 0; i < 4 * 20000; ++i) {
         const double x = amplitude * (1 - std::cos(2 * std::numbers::pi * 0.1 * i * 5e-4));

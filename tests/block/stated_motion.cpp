@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a list, a case for each statement.
 // As stated.cpp: motions, plants and what observes them.
 #include "dice.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a list, an entry for each block.
 #pragma once
 #include "entry.hpp"
 #include "motion_blocks.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the laws with a design of their own, on the same axis and with the same checks.
 // p_pi, state_feedback, rst and its designs: pole placement, zero phase error tracking, generalized predictive
 // control, lead-lag.
 #include <quadrant/analysis/law_loop.hpp>

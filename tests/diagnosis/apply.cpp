@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: what is written back: one machine with its diagnosis, a case for each rule.
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/controller/cascade_p_pi.hpp"
 #include "quadrant/diagnosis/machine_file/machine_keys.hpp"

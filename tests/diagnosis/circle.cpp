@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
 #include <quadrant/diagnosis/circle/ball_bar.hpp>
-#include <quadrant/diagnosis/circle/find_circles.hpp>
-#include <quadrant/diagnosis/circle/read_radius.hpp>
 
 #include <doctest/doctest.h>
 
@@ -34,112 +32,9 @@ machine encoders() {
     m.source = circle_source::encoder;
     return m;
 }
-const auto cos2 = [](double a) { return 2 * std::cos(2 * a); };
-const auto sin2 = [](double a) { return 2 * std::sin(2 * a); };
 const auto one = [](double) { return 1.0; };
 
 } // namespace
-
-// ---- the symmetry table, by simulation alone: no diagnosis in these cases ----
-
-TEST_CASE("circle table: scale is cos 2t and squareness sin 2t, the same both ways and at every feed") {
-    machine scale, square;
-    scale.geometry = [](double& x, double&, double, double, double) { x *= 1 + 1e-4; };
-    square.geometry = [](double& x, double& y, double, double, double) { x -= 1e-4 * y; };
-    for (const auto& r : all_runs(scale)) CHECK(near(part(r, cos2), r.radius * 1e-4 / 2, 0.03));
-    for (const auto& r : all_runs(square)) CHECK(near(part(r, sin2), -r.radius * 1e-4 / 2, 0.03));
-}
-TEST_CASE("circle table: servo mismatch is sin 2t, changes its sign with the direction and follows the feed") {
-    machine m;
-    m.x = lag(50), m.y = lag(60);
-    for (const auto& r : all_runs(m))
-        CHECK(near(part(r, sin2), r.turning() * r.feed * (1 / 50.0 - 1 / 60.0) / 2, 0.02));
-}
-TEST_CASE("circle table: the radius changes by v^2/R; lags that differ also make cos 2t of that size, as a "
-          "scale does at one feed") {
-    machine m;
-    m.x = lag(50), m.y = lag(60);
-    for (const auto& r : all_runs(m)) {
-        const double x = -0.5 / 2500, y = -0.5 / 3600,
-                     c = r.feed * r.feed / r.radius; // -tau^2/2, exact to second order
-        CHECK(near(part(r, one), c * (x + y) / 2, 0.03));
-        CHECK(near(part(r, cos2), c * (x - y) / 2, 0.03));
-    }
-}
-TEST_CASE("circle table: play steps outward by all of it after each reversal and stays; it is mirrored, and "
-          "constant with the feed") {
-    machine m;
-    m.x = with_play(rigid(), 6e-6);
-    for (const auto& r : all_runs(m)) {
-        const double s = r.turning();
-        CHECK(near(at(r, -s * 4) * -1, 3e-6, 0.06)); // before the reversal at x+, whichever way it is passed
-        CHECK(near(at(r, s * 6), 3e-6, 0.06));       // after it
-        for (const double a : {30.0, 60.0, 120.0})
-            CHECK(std::abs(at(r, a) - s * 3e-6 * std::cos(a * pi / 180)) < 1.5e-7);
-    }
-}
-TEST_CASE("circle table: lateral play moves a half turn each way and the other way round clockwise; a bow has "
-          "three lobes") {
-    machine play, bow;
-    play.geometry = [](double&, double& y, double vx, double, double) { y += vx > 0 ? 2e-6 : -2e-6; };
-    bow.geometry = [](double& x, double& y, double, double, double) { y += 8e-6 * (1 - x * x / 0.0036); };
-    for (const auto& r : all_runs(play)) {
-        CHECK(near(at(r, 90), -r.turning() * 2e-6, 0.08));
-        CHECK(near(at(r, -90), -r.turning() * 2e-6, 0.08));
-        CHECK(std::abs(at(r, 1)) < 2e-7);
-    }
-    for (const auto& r : all_runs(bow))
-        CHECK(near(part(r, [](double a) { return 2 * std::sin(3 * a); }),
-                   -8e-6 / 4 * r.radius * r.radius / 0.0036, 0.08));
-}
-TEST_CASE(
-    "circle table: a spike of friction comes after the reversal, outward, both ways, and grows with the feed") {
-    machine m = encoders();
-    m.x = m.y = mass_with({.coulomb = 0.1}, 100, 200, 8000);
-    const auto spike = [&](const circle_run& r,
-                           double s) { // the highest of the ten degrees after x+ over the next thirty
-        double most = 0;
-        for (double a = 1; a < 12; ++a) most = std::max(most, at(r, s * a));
-        return most - at(r, s * 40);
-    };
-    const auto runs = all_runs(m);
-    CHECK(spike(runs[0], 1) > 2e-6);
-    CHECK(near(spike(runs[0], 1), spike(runs[1], -1), 0.1)); // mirrored
-    CHECK(std::abs(at(runs[0], -3) - at(runs[0], -40)) < 3e-7);
-    CHECK(spike(runs[2], 1) > 1.15 * spike(runs[0], 1)); // twice the feed
-}
-TEST_CASE("circle table: an encoder's cyclic error is constant to an instrument, but its own signal shows it "
-          "with the feed") {
-    // The loop follows what the encoder reads, so the reading hides what is slower than the loop; the table
-    // carries it.
-    const double period = 4e-3, kv = 60;
-    const auto error = [=](double x) { return 2e-6 * std::cos(2 * pi * x / period); };
-    const auto amplitude = [&](double feed, bool seen_by_encoder) {
-        machine m = encoders();
-        m.noise = 0, m.resolution = 0, m.y = lag(kv);
-        m.x = [=, loop = lag(kv, error)](double r, double dt) mutable {
-            const double reading = loop(r, dt);
-            double table = reading;
-            for (int k = 0; k < 20; ++k) table = reading - error(table);
-            return seen_by_encoder ? reading : table;
-        };
-        const auto r = drive(m, 0.06, feed, true);
-        double cc = 0, c = 0, s = 0;
-        for (std::size_t k = 0; k < r.angle.size(); ++k) {
-            const double x = r.radius * std::cos(r.angle[k]), along = std::cos(r.angle[k]);
-            if (std::abs(along) < 0.1 || std::abs(along) > 0.5)
-                continue; // where x is about as fast as the feed
-            cc += along * along / 2, c += along * std::cos(2 * pi * x / period) * r.deviation[k];
-            s += along * std::sin(2 * pi * x / period) * r.deviation[k];
-        }
-        return std::hypot(c, s) / cc;
-    };
-    CHECK(near(amplitude(0.004, false), 2e-6, 0.15));
-    CHECK(amplitude(0.004, true) < 0.5e-6);
-    CHECK(amplitude(0.2, true) > 1.5e-6);
-}
-
-// ---- the diagnosis ----
 
 TEST_CASE("ball_bar: noise and quantization alone are blamed on nothing") {
     for (const unsigned seed : {1u, 2u})
@@ -313,88 +208,4 @@ TEST_CASE("ball_bar: says what one direction, one feed or an encoder cannot dist
     }
     CHECK_THROWS_AS(ball_bar({}), bad_input);
     CHECK_THROWS_AS(ball_bar({drive(m, 0.06, 0.05, true), drive(encoders(), 0.06, 0.05, true)}), bad_input);
-}
-
-// ---- where the runs come from ----
-
-TEST_CASE("find_circles: whole circles at constant feed are found among lines, rests and other radii") {
-    machine_log log;
-    log.file = "a.csv", log.sample_period_s = 1e-3;
-    axis_log x, y;
-    x.name = "x", y.name = "y";
-    const auto go = [&](double px, double py) {
-        for (auto [a, p] : {std::pair{&x, px}, std::pair{&y, py}}) {
-            a->reference.push_back(1e-7 * std::round(1e7 * p));
-            a->position.push_back(p + 1e-6);
-        }
-    };
-    for (int k = 0; k < 500; ++k) go(0.01, -0.03);            // rest
-    for (int k = 0; k < 400; ++k) go(0.01 + 5e-5 * k, -0.03); // a line at the same speed
-    const auto arc = [&](double radius, double cx, double cy, double from, double turn, double feed) {
-        const int n = int(std::abs(turn) * radius / feed * 1000);
-        for (int k = 0; k < n; ++k)
-            go(cx + radius * std::cos(from + turn * k / n), cy + radius * std::sin(from + turn * k / n));
-    };
-    arc(0.03, 0.03, 0, -pi / 2, 5.1 * pi, 0.05); // tangential, two and a half turns
-    arc(0.01, 0.01, 0, 0, pi, 0.05);             // half a circle of another radius
-    for (int k = 0; k < 300; ++k) go(0, 0);
-    arc(0.02, -0.02, 0, 0, -2 * pi, 0.1); // one turn clockwise
-    for (int k = 0; k < 300; ++k) go(0, 0);
-    log.samples = x.reference.size(), x.reference_step = y.reference_step = 1e-7;
-    log.axes = {x, y};
-    const auto runs = find_circles(log, 3);
-    REQUIRE(runs.size() == 2);
-    CHECK(near(runs[0].radius, 0.03, 1e-5));
-    CHECK(near(runs[0].feed, 0.05, 0.01));
-    CHECK(runs[0].counterclockwise);
-    CHECK(runs[0].turns == 2);
-    CHECK(runs[0].log == 3);
-    CHECK(near(std::abs(runs[0].angle.back() - runs[0].angle.front()), 4 * pi, 0.002));
-    CHECK(runs[0].start_s > 1.5);                              // half a turn and more is run in
-    CHECK(near(at(runs[0], 45), 1e-6 * std::sqrt(2.0), 0.02)); // both axes stand a micrometre off
-    CHECK(near(runs[1].radius, 0.02, 1e-5));
-    CHECK(!runs[1].counterclockwise);
-    CHECK(near(runs[1].feed, 0.1, 0.01));
-    log.axes[1].still = true;
-    CHECK_THROWS_WITH_AS(find_circles(log), "a.csv: a circle needs two axes that move, here 1 does", bad_input);
-    log.axes[1] = log.axes[0], log.axes[1].name = "y";
-    CHECK_THROWS_WITH_AS(find_circles(log), "a.csv: axes x and y follow no whole circle at constant feed",
-                         bad_input);
-}
-TEST_CASE("read_radius: runs both ways in one file; what is wrong is refused with its place") {
-    std::string text = "t_s,angle_deg,radius_m,nominal_radius_m,note\n";
-    int row = 0;
-    const auto add = [&](double angle, double radius) {
-        text += fmt::format("{:.3f},{:.4f},{:.7f},0.1,\n", 0.01 * row++, std::remainder(angle, 360), radius);
-    };
-    for (int k = 0; k <= 900; ++k) add(0.5 * k, 0.1 + 1e-6); // a quarter more than a turn
-    for (int k = 0; k <= 800; ++k) add(90 - 0.5 * k, 0.1 - 2e-6);
-    CHECK(is_radius_file(text));
-    CHECK(!is_radius_file("t_s,x_ref_m,x_pos_m,x_cmd_V\n"));
-    const auto runs = read_radius(text, "b.csv", 1);
-    REQUIRE(runs.size() == 2);
-    CHECK(runs[0].counterclockwise);
-    CHECK(!runs[1].counterclockwise);
-    CHECK(runs[0].source == circle_source::instrument);
-    CHECK(near(runs[0].feed, 0.1 * 50 * pi / 180, 0.01));
-    CHECK(runs[0].turns == 1);
-    CHECK(near(at(runs[0], 100), 1e-6, 1e-6));
-    CHECK(near(at(runs[1], 100), -2e-6, 1e-6));
-    const auto refuses = [&](std::string changed, const char* words) {
-        try {
-            read_radius(changed, "b.csv");
-            FAIL("accepted: ", words);
-        } catch (const bad_input& e) {
-            CHECK(std::string(e.what()).find(words) != std::string::npos);
-        }
-    };
-    refuses("t_s,angle_deg,radius_m\n0,0,1\n", "b.csv:1:23: column nominal_radius_m is missing");
-    refuses(text.substr(0, 4000) + "\n", "b.csv:");
-    std::string bad = text;
-    bad.replace(bad.find("0.1000010,0.1", 300), 9, "nan      ");
-    refuses(bad, "radius_m: \"nan\" is not finite");
-    bad = text;
-    bad.replace(bad.find("0.1000010,0.1", 300), 9, "-0.100000");
-    refuses(bad, "radius_m must be above 0");
-    refuses(text.substr(0, text.find('\n', 8000) + 1), "holds no whole turn");
 }

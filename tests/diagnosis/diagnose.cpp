@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one call: a case for each thing that a diagnosis may say.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/effect/effect_list.hpp>

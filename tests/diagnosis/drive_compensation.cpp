@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one simulator of a drive; what each kind of drive is told, forecast and achieved.
 // What a drive with loops of its own is told against what was found: forecast, then done on a machine of the
 // other simulator (drive_simulator.hpp). What was found is not right either: each value of a cause stands a few
 // per cent off, with an interval that holds the truth.

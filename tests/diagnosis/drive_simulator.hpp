@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: log() is one drive with its axis, step by step.
 #pragma once
 #include <algorithm>
 #include <cmath>

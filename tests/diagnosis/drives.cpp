@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one simulator of a drive and its records, and the findings of each kind of drive.
 // Machines whose drive closes loops of its own, from a simulator that shares nothing with the library
 // (drive_simulator.hpp), through the diagnosis.
 #include "drive_simulator.hpp"
@@ -528,7 +529,7 @@ TEST_CASE("what no drive has is refused by key, value and rule") {
           "\"position\", \"position_servo\"; did you mean velocity?");
     CHECK(refused(R"("kind": "velocity")") == "m.json: axes.q.drive.velocity_gain_N_s_per_m: is missing");
     CHECK(refused(of_p + R"(, "supply_V": 12)") ==
-          "m.json: axes.q.drive.supply_V: is of a drive of kind position_servo; this one is velocity");
+          "m.json: axes.q.drive.supply_V: belongs to a drive of kind position_servo; this one is velocity");
     CHECK(refused(of_p + R"(, "velocity_gian": 1)").find("unknown key") != std::string::npos);
     CHECK(refused(of_position + R"(, "set_point_period_s": 0.0001)").find("must be at least sample_period_s") !=
           std::string::npos);

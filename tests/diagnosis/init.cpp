@@ -83,14 +83,14 @@ TEST_CASE(
     "init: a mass that the log contradicts is refused, one that is missing is asked for with the log's own") {
     const auto log = workshop_log();
     for (double mass : {1.8, 180000.0})
-        CHECK(refusal(request(mass), &log).find("cannot be of this log") != std::string::npos);
+        CHECK(refusal(request(mass), &log).find("contradict this log") != std::string::npos);
     auto r = request();
     r.values.erase("mass");
     const auto said = refusal(r, &log);
-    CHECK(said.find("init: axis x: --mass is missing; the log speaks of about 1") == 0); // 180 kg
+    CHECK(said.find("init: axis x: --mass is missing; the log indicates about 1") == 0); // 180 kg
     r = request();
     r.values.erase("force-constant");
-    CHECK(refusal(r, &log).find("--force-constant is missing; the log speaks of about 1") != std::string::npos);
+    CHECK(refusal(r, &log).find("--force-constant is missing; the log indicates about 1") != std::string::npos);
 }
 
 TEST_CASE("init: what does not fit together is refused, what is unusual is asked about") {
@@ -141,7 +141,7 @@ TEST_CASE("init: unchecked, a mass that the log contradicts makes a note, and th
     r.unchecked = true;
     const auto begun = init_machine(r, &log);
     CHECK(begun.machine["axes"]["x"]["plant"]["mass_kg"] == 1.8);
-    CHECK(says(begun.notes, "1.8 kg and 1100 N/V cannot be of this log"));
+    CHECK(says(begun.notes, "1.8 kg and 1100 N/V contradict this log"));
 }
 TEST_CASE("init: a rotary axis takes its gravity by option, a linear one refuses it") {
     init_request r;
@@ -197,6 +197,6 @@ TEST_CASE("init: a mass of which the log is not sure is told with its standard d
     init_request r;
     r.from_log = true;
     const std::string said = refusal(r, &log);
-    CHECK(said.find("init: axis x: --mass is missing; the log is not sure of it (") == 0);
+    CHECK(said.find("init: axis x: --mass is missing; the log does not determine it well enough (") == 0);
     CHECK(said.find("kg with a standard deviation of") != std::string::npos);
 }

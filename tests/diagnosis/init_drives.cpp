@@ -125,7 +125,7 @@ TEST_CASE("init: with a measured current the force constant of a drive is per am
 TEST_CASE("init: a drive whose numbers nothing fixes is refused with what is missing") {
     const auto volts = recorded(takes::volts, p_drive), goals = recorded(takes::servo, servo, true);
     CHECK(refusal(asked(drive_kind::velocity, {}), &volts) ==
-          "init: axis q: --mass is missing: the motion shows the gains of a drive beside the mass only");
+          "init: axis q: --mass is missing: the motion shows the gains of a drive only relative to the mass");
     CHECK(refusal(asked(drive_kind::velocity, {{"mass", 100}, {"force-constant", 20}}), &volts) ==
           "init: axis q: --force-constant is newtons per ampere of a measured current, and the log has none: "
           "leave it out");
@@ -137,7 +137,7 @@ TEST_CASE("init: a drive whose numbers nothing fixes is refused with what is mis
     CHECK(refusal(asked(drive_kind::velocity, {{"mass", 100}}), &goals).find("q_cmd_rad_per_s is missing") !=
           std::string::npos);
     CHECK(refusal(asked(drive_kind::position, {{"mass", 100}, {"supply", 12}}), &volts)
-              .find("supply_V: is of a drive of kind position_servo; this one is position") !=
+              .find("supply_V: belongs to a drive of kind position_servo; this one is position") !=
           std::string::npos);
     auto against = volts;
     for (double& u : against.axes[0].command) u = -u;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: main() writes and compares one kind of MAT file after the other.
 """MAT-files through `quadrant-gap import`: as MATLAB saves them with -v6 and -v7, and damaged.
 usage: mat_file_test.py PROGRAM"""
 import math
@@ -107,11 +108,11 @@ def main(program):
         for name, contents, words in (
                 ("cut short", whole[:-100], f"byte {len(whole) - len(record()[-1])}: an element of"),
                 ("cut in a tag", whole[:128 + 4], "byte 132: ends in the middle of a variable"),
-                ("a changed byte", bytes(broken), f"byte {len(packed) - 4}: the sum of the zlib stream is another"),
+                ("a changed byte", bytes(broken), f"byte {len(packed) - 4}: the checksum of the zlib stream does not match"),
                 ("no zlib stream", packed[:136] + b"ab" + packed[138:], "byte 136: no zlib stream begins here"),
-                ("another sum", packed[:-1] + bytes([packed[-1] ^ 1]), f"byte {len(packed) - 4}: the sum of the zlib stream is another"),
+                ("another sum", packed[:-1] + bytes([packed[-1] ^ 1]), f"byte {len(packed) - 4}: the checksum of the zlib stream does not match"),
                 ("another size", bytes(wrong_size), "t_s: 399 by 1 numbers of 8 bytes are not 3200 bytes"),
-                ("no such type", whole[:128] + struct.pack("<II", 77, 8) + bytes(8), "byte 128: no element has the type 77"),
+                ("no such type", whole[:128] + struct.pack("<II", 77, 8) + bytes(8), "byte 128: 77 is no type of an element"),
                 ("complex", complex_, "byte 136: t_s: is complex"),
                 ("a bomb of a size", whole[:128] + variable("a", [[1.0]]).replace(struct.pack("<ii", 1, 1), struct.pack("<ii", 2 ** 30, 2 ** 30)),
                  "a: has more numbers than the file has bytes"),

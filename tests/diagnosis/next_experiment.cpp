@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one call: a case for each thing that decides the next motion.
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/effect/effects.hpp>

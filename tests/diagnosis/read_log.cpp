@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one reader: a case for each rule of a log.
 #include "quadrant/diagnosis/read_log.hpp"
 
 #include <doctest/doctest.h>
@@ -81,8 +82,8 @@ TEST_CASE("read_log: unknown columns are ignored with a note, whatever they hold
                           "0.1,0,nan,1,0,\n");
     CHECK(log.axes[0].position == std::vector{0.0, 1.0});
     REQUIRE(log.notes.size() == 2);
-    CHECK(log.notes[0] == "log.csv: column \"remark\" is not one of the format's and is ignored.");
-    CHECK(log.notes[1] == "log.csv: column \"\" is not one of the format's and is ignored.");
+    CHECK(log.notes[0] == "log.csv: column \"remark\" is not part of the format and is ignored.");
+    CHECK(log.notes[1] == "log.csv: column \"\" is not part of the format and is ignored.");
 }
 
 TEST_CASE("read_log: the velocities of reference and axis are read; other optional columns get a note") {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one reader: a case for each rule of a machine file, all against one example.
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/machine_file/machine_keys.hpp"
 #include "quadrant/diagnosis/match.hpp"
@@ -176,10 +177,10 @@ TEST_CASE("read_machine: an axis that mixes linear and rotary keys is refused, w
     };
     const std::string rule = " (an axis has m, N and kg, or rad, Nm and kg_m2, throughout)";
     CHECK(machine_with(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
-          "machine.json:3:33: axes.c.plant.coulomb_N: is of a linear axis; this one is rotary: coulomb_Nm" +
+          "machine.json:3:33: axes.c.plant.coulomb_N: belongs to a linear axis; this one is rotary: coulomb_Nm" +
               rule);
     CHECK(machine_with(R"("mass_kg": 1, "coulomb_Nm": 2)") ==
-          "machine.json:3:27: axes.c.plant.coulomb_Nm: is of a rotary axis; this one is linear, without "
+          "machine.json:3:27: axes.c.plant.coulomb_Nm: belongs to a rotary axis; this one is linear, without "
           "inertia_kg_m2: coulomb_N" +
               rule);
     CHECK(machine_with(R"("mass_kg": 1, "inertia_kg_m2": 2)")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: a list of files that each schema must take or refuse.
 """Validates files against docs/schema with python3-jsonschema.
 usage: schema_test.py [--practice DIR] [--simulation FILE ...] [--forecast FILE ...] [--circle FILE ...] [--compensation FILE ...]
                       [--comparison FILE ...] [DIAGNOSIS.json ...]

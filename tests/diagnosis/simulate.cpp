@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one call, with effects and controllers of the user, too.
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/apply.hpp"
 #include "quadrant/diagnosis/controller/cascade_p_pi.hpp"

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: main() writes and compares one kind of table after the other.
 """Parquet and HDF5 files (tables/, by other writers than ours) through `quadrant-gap import`: what is in them, and damaged.
 usage: table_file_test.py PROGRAM"""
 import math

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: run() is one machine with its controller, sample by sample.
 #pragma once
 #include <quadrant/diagnosis/fit/scales.hpp>
 #include <quadrant/diagnosis/log/log.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one writer; TEST_CASE() of the format checks one field after the other.
 #include "quadrant/diagnosis/write_diagnosis.hpp"
 
 #include <csignal>

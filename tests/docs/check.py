@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: a function for each thing that the pages promise.
 """What the pages promise stands: links and anchors lead somewhere, C++ is text of a file that is
 compiled, or compiled by snippets.py, commands have the options that they are shown with, docs/README.md leads to every page, and the
 page of every block has its picture, and every other page begins with who needs it.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a list, a case for each effect.
 #include "diagnosis/claims.hpp"
 #include "shared.hpp"
 

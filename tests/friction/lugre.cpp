@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block: a case for each statement of its page.
 #include "hysteresis.hpp"
 
 #include <quadrant/base/dual.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block: a case for each statement of its page.
 // One implicit step of a mass on friction, over random axes: from 0.1 to 1000 kg, sub-steps from 1 us to 1 ms.
 #include <quadrant/base/dual.hpp>
 #include <quadrant/base/literals.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: main() loads one component after the other and checks its pins.
 // The HAL components without LinuxCNC: on the stub beside this file, called period by period.
 #include "claims.hpp"
 #include "linuxcnc/component.hpp"

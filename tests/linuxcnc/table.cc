@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: main() drives one table through its states in their order.
 // quadrant_xy without LinuxCNC, on the stub beside this file: it has to do what two quadrant_axis do, each of
 // them on a plant of its own, and stop both axes where one of them is lost.
 #include "claims.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop: a case for each statement of its page.
 #include <quadrant/base/dual.hpp>
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/series.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop: its law, its drive, and both as one axis.
 // feed_control and feed_drive: the two sides of an axis of the Virtual CNC, and the figures of [Yeung2006]
 // Table 11.
 #include "quadrant_reproduce/virtual_cnc.hpp"

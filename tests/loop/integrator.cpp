@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the scenes of docs/integrator.md, one after the other.
 // Day one, with whole loops: enable on the move, disable, emergency stop, other parameters, homing, a gantry.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/block/parameter_swap.hpp>

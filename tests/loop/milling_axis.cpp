@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop: a case for each statement of its page.
 #include <quadrant/analysis/loop.hpp>
 #include <quadrant/analysis/repetitive_design.hpp>
 #include <quadrant/base/dual.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one rule, retuning without a jump, for each block outside the laws.
 // Other parameters in the middle of a random signal, beside a twin that keeps its own: what the coming output
 // is off by is bounded by the formula in the block's doc comment, for every pair of parameters, and the bound
 // is reached.

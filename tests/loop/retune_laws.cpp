@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one rule, retuning without a jump, for each law: a case needs the law in bare doubles.
 // Control laws of an axis, observers and feedforwards get other parameters in the middle of a random motion:
 // the coming command is off by the formula in the block's doc comment.
 #include "retuned.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one loop: a case for each statement of its page.
 // The controllers of both axes as one block, and the whole loop of a table.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/loop/xy_control_lanes.hpp>

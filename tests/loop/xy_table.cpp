@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one plant: a case for each statement of its page.
 #include <quadrant/base/literals.hpp>
 #include <quadrant/friction/maxwell_slip.hpp>
 #include <quadrant/loop/milling_axis_boxes.hpp>

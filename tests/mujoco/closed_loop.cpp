@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: TEST_CASE() draws a machine, writes it, runs both simulators and compares.
 // The plant that to_mjcf() writes, in MuJoCo and in closed loop with the machine file's controller, beside
 // simulate_closed_loop(): two simulators that share the controller and nothing else.
 #include <quadrant/diagnosis/how_far/closed_loop.hpp>

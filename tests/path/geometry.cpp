@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: every segment under the same checks, then each kind by hand.
 #include <quadrant/path/arc_fit.hpp>
 #include <quadrant/path/move.hpp>
 #include <quadrant/path/spline_path.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: two languages with the same helpers; the last cases compare both.
 #include <quadrant/path/cl_reader.hpp>
 #include <quadrant/path/gcode_reader.hpp>
 

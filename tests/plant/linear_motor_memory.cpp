@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block on three laws with memory.
 // linear_motor on friction that remembers: dahl, lugre, maxwell_slip.
 #include "../friction/hysteresis.hpp"
 

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSL-1.0
+# Long: one package: a case for each call.
 """The package says what the program says, however the log is at hand."""
 import ast
 import inspect

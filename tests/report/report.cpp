@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one page: a case for each thing that it says or draws.
 #include "quadrant_gap/report.hpp"
 
 #include <sstream>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one result for each verdict; explained() fills it field by field.
 #pragma once
 #include <cmath>
 #include <cstdint>

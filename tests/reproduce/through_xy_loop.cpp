@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: templates that put the experiments of one axis into the loop of two, and their comparison.
 // The experiments of one axis, run again as one axis of the whole two-axis loop: the same, to the bit.
 #include "quadrant_reproduce/experiment/dob_force.hpp"
 #include "quadrant_reproduce/experiment/feedforward.hpp"

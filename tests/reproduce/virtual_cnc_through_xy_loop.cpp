@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the boxes of one machine, and their comparison with its own loops.
 // The loops of the Virtual CNC run again as an xy_loop. Its laws have no switching: PID and sliding mode are
 // the cascade of a milling_axis in other words, and both axes of one loop move as two servos do.
 #include "quadrant_reproduce/experiment/vcnc_contour.hpp"

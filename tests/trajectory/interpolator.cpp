@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one block; TEST_CASE() of the random paths checks every limit of the same drive.
 #include "count_allocations.hpp"
 #include "limits.hpp"
 

@@ -112,7 +112,7 @@ TEST_CASE(
         const double h = T / n;
         double worst_v = 0, worst_a = 0, worst_j = 0, off_v = 0, off_a = 0;
         for (int k = 0; k < n; ++k) {
-            const along p = curve.at(k * h), q = curve.at((k + 1) * h);
+            const path_motion p = curve.at(k * h), q = curve.at((k + 1) * h);
             worst_v = std::max(worst_v, std::abs(p.v));
             worst_a = std::max(worst_a, std::abs(p.a));
             worst_j = std::max(worst_j, std::abs(p.j));
@@ -125,7 +125,7 @@ TEST_CASE(
         if (jerk) CHECK(worst_j <= j * (1 + 1e-12));
         CHECK(off_v < 1e-13);
         CHECK(off_a < 1e-13);
-        const along end = curve.at(T);
+        const path_motion end = curve.at(T);
         CHECK(end.s == length);
         CHECK(std::abs(end.v - v1) < 1e-12);
         if (jerk) CHECK(std::abs(end.a) < 1e-9);

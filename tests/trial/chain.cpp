@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the machines with two positions: how they are drawn, moved and diagnosed.
 // Machines of the trial with two positions an axis, and what the diagnosis says of some of them.
 #include "quadrant_gap/trial/chain_files.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: one simulator: a case for each of its parts.
 #include "quadrant_gap/trial/loop.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: one browser for all that a person does on the page, step after step.
 """Opens the built page from disk in headless Chromium and uses it as a person would.
 
 page_test.py QUADRANT.html quadrant-gap SOURCE_DIR --shots DIR [--axe axe.min.js]

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a function for each picture.
 // Loops around the stock cascade, and what composes them.
 #include "families.hpp"
 

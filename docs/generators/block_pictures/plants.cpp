@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a function for each picture.
 // Machines and what happens to them: motors, play, cogging, modes, cutting.
 #include "families.hpp"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: a function for each picture.
 // usage: gallery FOLDER
 // Writes the pictures of docs/gallery.md, one an effect: an axis of the library's own plant that has the
 // effect, in closed loop, beside a machine file that does not have it. Three panels: the residual force in

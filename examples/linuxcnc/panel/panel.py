@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSL-1.0
+# Long: one window: its recorder, its worker, its buttons.
 """A panel beside LinuxCNC: record the servo loop, find out why the machine does not do what its simulation says, read the
 report, and save the values for the next start.
 

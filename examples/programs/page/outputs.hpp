@@ -89,7 +89,7 @@ inline int ended(int code, const char* program) {
 /// From now on memory that is refused ends the program at once, with one line and the code 2. For programs that
 /// make JSON: the destructor of an nlohmann::json allocates (json_value::destroy), so std::bad_alloc
 /// there, or while another one passes, would be std::terminate. No destructor runs: what is not
-/// finished has no name yet (output_file), and such a program keeps no scratch folder.
+/// finished has no name yet (output_file), and such a program or subcommand keeps no scratch folder.
 inline void end_without_memory(const char* program) {
     static const char* name;
     name = program;

@@ -22,6 +22,7 @@ struct apply_options {
 };
 
 void run(const apply_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     using namespace quadrant::diagnosis;
     outputs files;
     files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).writes("--out", o.out);

@@ -27,6 +27,7 @@ struct circle_command {
 };
 
 void run(const circle_command& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     for (const auto& log : o.logs) files.reads("--log", log);
     files.reads("--machine", o.machine).writes("--json", o.json).writes("--report", o.report);

@@ -25,6 +25,7 @@ struct compare_options {
 };
 
 void run(const compare_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     files.reads("the first log", o.first).reads("the second log", o.second).reads("--machine", o.machine);
     files.writes("--json", o.json).writes("--report", o.report);

@@ -23,6 +23,7 @@ struct compensate_options {
 };
 
 void run(const compensate_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).reads("--log", o.log);
     files.writes("--json", o.json).writes("--controller", o.controller);

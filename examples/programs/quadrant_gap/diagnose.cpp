@@ -36,6 +36,7 @@ rules chosen(const diagnose_options& o) {
 }
 
 void run(const diagnose_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     files.reads("--machine", o.machine).reads("--log", o.log).reads("--holdout", o.holdout);
     files.writes("--json", o.json).writes("--report", o.report).writes("--next-motion", o.next_motion);

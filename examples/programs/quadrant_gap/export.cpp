@@ -20,6 +20,7 @@ struct export_options {
 };
 
 void run(const export_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     files.reads("--machine", o.machine).reads("--log", o.log);
     files.writes("--mjcf", o.mjcf).writes("--linuxcnc", o.linuxcnc);

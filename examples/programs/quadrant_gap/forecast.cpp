@@ -43,6 +43,7 @@ std::string forecast_summary(const forecast_result& f, bool verbose) {
 }
 
 void run(const forecast_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     using namespace quadrant::diagnosis;
     outputs files;
     files.reads("--machine", o.machine).reads("--diagnosis", o.diagnosis).reads("--motion", o.motion);

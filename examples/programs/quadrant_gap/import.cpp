@@ -65,6 +65,7 @@ void propose(const import_options& o) {
 }
 
 void run(const import_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     if (o.propose) return propose(o);
     using namespace quadrant::diagnosis;
     outputs paths;

@@ -95,6 +95,7 @@ machine_log read_own_log(const std::string& file) {
 }
 
 void run(init_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     const bool to_file = o.out != quadrant_page::standard_output;
     const std::string beside =

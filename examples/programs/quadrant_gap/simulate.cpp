@@ -20,6 +20,7 @@ struct simulate_options {
 };
 
 void run(const simulate_options& o) {
+    quadrant_page::end_without_memory("quadrant-gap");
     outputs files;
     files.reads("--machine", o.machine).reads("--log", o.log);
     files.writes("--json", o.json).writes("--report", o.report);

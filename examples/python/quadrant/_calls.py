@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSL-1.0
+# Long: one call after the other, each with its documentation.
 """The calls. Each releases Python's lock while it computes, so that logs can be diagnosed side by side in threads."""
 from __future__ import annotations
 

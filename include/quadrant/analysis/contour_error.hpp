@@ -69,7 +69,7 @@ public:
             const double length = std::hypot((places_[i].x - places_[i - 1].x).value(),
                                              (places_[i].y - places_[i - 1].y).value());
             require(std::isfinite(length) && length > 0, "sampled_path.places", double(i),
-                    "must be finite and not where the one before it is");
+                    "must be finite and differ from the place before it");
             travelled_.push_back(travelled_.back() + displacement::from_value(length));
         }
     }

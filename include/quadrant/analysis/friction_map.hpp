@@ -9,8 +9,8 @@
 
 namespace quadrant::inline v0::analysis {
 
-/// What a run leaves: encoder and command of the same samples.
-template <signal_tag Command = signal::voltage> struct axis_log {
+/// One test run of an axis: encoder and command of the same samples.
+template <signal_tag Command = signal::voltage> struct test_run {
     std::vector<displacement> position;
     std::vector<quantity_of<Command>> command;
 };
@@ -56,14 +56,14 @@ struct steady_run {
 };
 /// A run in 320 slices: the longest stretch at its median speed, then what the command settles to there.
 template <signal_tag Command>
-steady_run read_run(const axis_log<Command>& run, duration period, double uneven) {
+steady_run read_run(const test_run<Command>& run, duration period, double uneven) {
     constexpr std::size_t slices = 320;
     const std::size_t width = run.position.size() / slices;
     std::vector<double> x(slices), u(slices), v;
     const double count = count_of(run.position);
     for (std::size_t i = 0; i < run.position.size(); ++i) {
         const double at = run.position[i].value(), command = run.command[i].value();
-        require(std::isfinite(at) && std::isfinite(command), "axis_log.sample", double(i), "must be finite");
+        require(std::isfinite(at) && std::isfinite(command), "test_run.sample", double(i), "must be finite");
         if (i < slices * width) x[i / width] += at / double(width), u[i / width] += command / double(width);
     }
     std::size_t reach = 1; // slices either way over which a speed is taken: 8 counts or more
@@ -114,7 +114,7 @@ steady_run read_run(const axis_log<Command>& run, duration period, double uneven
 /// A run that is not steady, or has no counterpart, is left out, and `unused` says why. Throws for runs shorter
 /// than 640 samples, of unequal wires or with samples that are not finite.
 template <signal_tag Command = signal::voltage>
-friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration period,
+friction_map map_friction(const std::vector<test_run<Command>>& runs, duration period,
                           gain_of<signal::force, Command> force_constant,
                           const friction_map_options& options = {}) {
     require_positive("map_friction.period", period);
@@ -134,11 +134,11 @@ friction_map map_friction(const std::vector<axis_log<Command>>& runs, duration p
     friction_map out{{}, 15, {}};
     std::vector<group> groups;
     for (std::size_t r = 0; r < runs.size(); ++r) {
-        require(runs[r].position.size() == runs[r].command.size(), "axis_log.position",
+        require(runs[r].position.size() == runs[r].command.size(), "test_run.position",
                 double(runs[r].position.size()),
                 "must hold as many samples as command (" +
                     quadrant::detail::shortest(double(runs[r].command.size())) + ")");
-        require(runs[r].position.size() >= 640, "axis_log.position", double(runs[r].position.size()),
+        require(runs[r].position.size() >= 640, "test_run.position", double(runs[r].position.size()),
                 "must hold 640 samples or more");
         const auto found = detail::read_run(runs[r], period, options.uneven);
         if (!found.why.empty()) {

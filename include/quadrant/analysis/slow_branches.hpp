@@ -47,13 +47,13 @@ inline std::vector<double> smoothed(const std::vector<double>& raw, std::size_t 
 }
 /// A run cut at its reversals; smoothed over a 400th of a cycle.
 template <signal_tag Command>
-slow_branches cut_at_reversals(const axis_log<Command>& run, double period, double kf, double mass,
+slow_branches cut_at_reversals(const test_run<Command>& run, double period, double kf, double mass,
                                double viscous, double count) {
     const std::size_t n = run.position.size();
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (std::size_t i = 0; i < n; ++i) {
         const double x = run.position[i].value();
-        require(std::isfinite(x) && std::isfinite(run.command[i].value()), "axis_log.sample", double(i),
+        require(std::isfinite(x) && std::isfinite(run.command[i].value()), "test_run.sample", double(i),
                 "must be finite");
         low = std::min(low, x), high = std::max(high, x);
     }

@@ -67,10 +67,10 @@ struct slow_runs {
     std::optional<stribeck<>> level;
 
     template <signal_tag Command>
-    slow_runs(const std::vector<axis_log<Command>>& runs, duration period,
+    slow_runs(const std::vector<test_run<Command>>& runs, duration period,
               gain_of<signal::force, Command> force_constant, const virgin_options& options) {
         for (const auto& run : runs) {
-            require(run.position.size() == run.command.size(), "axis_log.position", double(run.position.size()),
+            require(run.position.size() == run.command.size(), "test_run.position", double(run.position.size()),
                     "must hold as many samples as command (" +
                         quadrant::detail::shortest(double(run.command.size())) + ")");
             const double here = count_of(run.position);
@@ -137,7 +137,7 @@ struct slow_runs {
 /// 0.3 um in these runs, at their slow ends by nothing.
 /// Throws for runs with fewer than 3 branches (2.5 cycles with the run in), and for what is not finite.
 template <signal_tag Command = signal::voltage>
-virgin_curve find_virgin_curve(const std::vector<axis_log<Command>>& runs, duration period,
+virgin_curve find_virgin_curve(const std::vector<test_run<Command>>& runs, duration period,
                                gain_of<signal::force, Command> force_constant,
                                const virgin_options& options = {}) {
     require_positive("find_virgin_curve.period", period);

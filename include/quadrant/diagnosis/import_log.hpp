@@ -70,7 +70,7 @@ private:
         if (!clock.even && clock.spread > most_spread)
             throw bad_input(
                 files_.front().name, in.line[clock.worst], 1,
-                fmt::format("the stamps jitter by {:.2g} of the period of {:.4g} s, here most: import "
+                fmt::format("the stamps jitter by {:.2g} of the period of {:.4g} s, most of all here: import "
                             "with --resample",
                             clock.jitter, clock.period));
         own_text out(tables_, false, teller());
@@ -108,7 +108,7 @@ private:
         if (replay_is_lost_)
             out_.notes.push_back(
                 "a controller cannot be replayed sample by sample on a resampled log: leave it out of the "
-                "machine file, or what resampling changed is taken for another controller");
+                "machine file, or changes made by resampling are mistaken for another controller");
         const std::string& name = files_.front().name;
         out_.log = log_reader(out_.text, name).read();
         const std::string before = one_line(name) + ": ";

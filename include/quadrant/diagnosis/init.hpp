@@ -43,7 +43,8 @@ inline void start_axis(const init_request& ask, const std::string& axis, const m
 inline initialised_machine init_machine(const init_request& request, const machine_log* log = nullptr) {
     double period = request.sample_period_s;
     if (period == 0 && log) period = std::round(log->sample_period_s * 1e9) / 1e9;
-    if (period == 0) throw bad_input("init", "--sample-period is missing, and there is no --log to tell it");
+    if (period == 0)
+        throw bad_input("init", "--sample-period is missing, and there is no --log to take it from");
     detail::machine_text text(period, request.sample_period_s > 0 ? "given" : "from the log");
     auto axes = request.axes;
     if (axes.empty() && log)

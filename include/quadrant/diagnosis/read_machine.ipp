@@ -114,7 +114,7 @@ private:
                     const json_node fault = axis.at(box, content).at(key, value);
                     const auto [line, column] = key_place(text_, fault.path);
                     const std::string message = fmt::format(
-                        "{}: is of a {} axis; this one is {}{}: {} (an axis has m, N and kg, or rad, Nm and "
+                        "{}: belongs to a {} axis; this one is {}{}: {} (an axis has m, N and kg, or rad, Nm and "
                         "kg_m2, throughout)",
                         fault.path, name_of(other), name_of(axis.kind),
                         axis.kind == axis_kind::rotary ? "" : ", without inertia_kg_m2", mine[i]);

@@ -42,7 +42,8 @@ public:
         require(finite(place), "spline_path.place", double(count_), "must be finite");
         if (count_ > 0) {
             const double chord = distance(window_.back().place, place);
-            require(chord > same_place, "spline_path.place", double(count_), "is where the one before it is");
+            require(chord > same_place, "spline_path.place", double(count_),
+                    "must not coincide with the place before it");
             window_.push_back({place, window_.back().travelled + chord});
         } else {
             window_.push_back({place, 0});
@@ -89,7 +90,7 @@ private:
             value = t * value + c[k];
         }
         const double speed = magnitude(first);
-        require(speed > 1e-2, "spline_path.place", double(i), "is where the run turns back");
+        require(speed > 1e-2, "spline_path.place", double(i), "must not be where the run turns back");
         const point tangent = first / speed;
         return {at.place, tangent, (second - dot(second, tangent) * tangent) / (speed * speed)};
     }
@@ -104,7 +105,7 @@ private:
     }
     void cut(const spline& curve, std::size_t knot, bool last, int depth) {
         if (curve.feed_fluctuation() <= feed_tolerance) return ready_.push_back({curve, knot, last});
-        require(depth < 8, "spline_path.place", double(knot), "is where the run turns back");
+        require(depth < 8, "spline_path.place", double(knot), "must not be where the run turns back");
         cut(curve.part(0, 0.5), knot, false, depth + 1);
         cut(curve.part(0.5, 1), knot, last, depth + 1);
     }

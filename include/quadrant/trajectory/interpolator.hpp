@@ -145,7 +145,7 @@ private:
         report(place, {}, {}, {});
     }
     void along_piece() noexcept {
-        const along y = course_.body.at(t_);
+        const path_motion y = course_.body.at(t_);
         const auto here = ahead_.on_front(y.s + course_.leg_in);
         const moved m = on(here, y);
         now_.line = here.line;
@@ -153,7 +153,7 @@ private:
         report(m.r, m.v, m.a, m.j);
     }
     void through_corner() noexcept {
-        const along y1 = leaving_.at(t_), y2 = reaching_.at(t_);
+        const path_motion y1 = leaving_.at(t_), y2 = reaching_.at(t_);
         const auto from = ahead_.on_front(y1.s + ahead_.front().whole.length - course_.leg_out);
         const auto to = ahead_.on_second(y2.s);
         const moved m1 = on(from, y1), m2 = on(to, y2);
@@ -164,7 +164,7 @@ private:
     struct moved {
         path::point r, v, a, j;
     };
-    static moved on(const typename look_ahead<Window>::place& at, const along& y) noexcept {
+    static moved on(const typename look_ahead<Window>::place& at, const path_motion& y) noexcept {
         const path::segment& path = *at.path;
         if (const auto* straight = std::get_if<path::line>(&path.shape())) { // what the sums below are, sooner
             const path::point t = straight->tangent(at.s);

@@ -60,11 +60,12 @@ public:
     double length() const noexcept { return length_; }                                   ///< [m]
     double cruise() const noexcept { return cruise_; } ///< highest speed [m/s]
 
-    along at(double t) const noexcept { ///< t [s] is held to 0 ... duration; exactly the length at its end
+    path_motion
+    at(double t) const noexcept { ///< t [s] is held to 0 ... duration; exactly the length at its end
         if (t < rise_.duration) return rise_.at(t);
         if (t < rise_.duration + held_)
             return {rise_.distance() + cruise_ * (t - rise_.duration), cruise_, 0, 0};
-        along y = fall_.at(t - rise_.duration - held_);
+        path_motion y = fall_.at(t - rise_.duration - held_);
         y.s = t < duration() ? y.s + length_ - fall_.distance() : length_;
         return y;
     }
@@ -153,7 +154,7 @@ public:
     }
 
     motion operator()(quadrant::duration t) const noexcept { ///< t is held to the duration of the move
-        const along y = curve_.at(t.value());
+        const path_motion y = curve_.at(t.value());
         motion m;
         m.position = quantity_of<signal::position>::from_value(y.s);
         m.velocity = quantity_of<signal::velocity>::from_value(y.v);

@@ -7,8 +7,8 @@
 
 namespace quadrant::inline v0::trajectory {
 
-/// Where something is on its way, and the derivatives by time [m, m/s, m/s^2, m/s^3].
-struct along {
+/// Position along the path and its time derivatives [m, m/s, m/s^2, m/s^3].
+struct path_motion {
     double s = 0, v = 0, a = 0, j = 0;
 };
 
@@ -49,12 +49,12 @@ struct speed_change {
 
     double distance() const noexcept { return 0.5 * (from + to) * duration; } ///< [m]
 
-    along at(double t) const noexcept { ///< t [s] is held to 0 ... duration
+    path_motion at(double t) const noexcept { ///< t [s] is held to 0 ... duration
         t = std::clamp(t, 0.0, duration);
         const double left = duration - t;
         if (t < ramp) return ramped(from, t, 1);
         if (left < ramp) {
-            const along back = ramped(to, left, -1);
+            const path_motion back = ramped(to, left, -1);
             return {distance() - back.s, back.v, -back.a, back.j};
         }
         if (duration <= ramp) return {0, to, 0, 0};
@@ -66,7 +66,7 @@ struct speed_change {
 private:
     double peak() const noexcept { return (to - from) / (duration - ramp); } ///< of the acceleration
     /// The first ramp, t after its start (way 1), or the last one seen backwards in time (way -1).
-    along ramped(double v0, double t, double way) const noexcept {
+    path_motion ramped(double v0, double t, double way) const noexcept {
         const double a = way * peak(), x = t / ramp, x2 = x * x;
         if (!cubic) return {t * (v0 + a * t * x / 6), v0 + 0.5 * a * t * x, a * x, a / ramp};
         return {t * (v0 + a * t * x2 * (0.25 - 0.1 * x)), v0 + a * t * x2 * (1 - 0.5 * x), a * x2 * (3 - 2 * x),

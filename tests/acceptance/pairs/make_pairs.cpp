@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: make() draws in the order that a seed stands for.
 // usage: pair_logs FOLDER SEED NUMBER...     FOLDER/NUMBER/a.csv, b.csv and machine.json of each, and
 //                                            FOLDER/truth.json
 // Pairs of machines of the trial's simulator with one description. 0 to 29 differ by one effect: twenty have

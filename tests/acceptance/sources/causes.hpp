@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSL-1.0
+// Long: the candidates of three machines, one machine after the other.
 #pragma once
 #include "milling_table.hpp"
 #include "stage.hpp"

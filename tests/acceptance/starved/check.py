@@ -9,6 +9,7 @@ when it says so. What quadrant-latency measures differs from run to run, and so 
 the same when they are whole.
 """
 import hashlib
+import math
 import os
 import re
 import shutil
@@ -25,11 +26,27 @@ subprocess.run([compiler, "-std=c++20", "-O1", "-shared", "-fPIC", "-o", shim, P
 
 data, imports = root / "examples/data", root / "examples/import"
 mill = root / "examples/programs/quadrant_cnc/mill.json"
+everything = os.environ.get("QUADRANT_TESTS") == "all"
+of_machine, found = ["--machine", data / "machine.json"], root / "tests/fuzz/diagnosis.json"
+circles = scratch / "circles.csv"
+with circles.open("w") as file:  # three turns each way; the encoder of x counts 100 um/m too much
+    print("t_s,x_ref_m,x_pos_m,y_ref_m,y_pos_m", file=file)
+    for k in range(6000):
+        angle = (1 if k < 3000 else -1) * 2 * math.pi * k / 1000
+        x, y = 0.03 * math.cos(angle), 0.03 * math.sin(angle)
+        print(f"{k / 500:.3f},{x:.9f},{x * (1 + 1e-4):.7f},{y:.9f},{y:.7f}", file=file)
 # What each program is asked for: its arguments, and the files that it writes.
 asked = {
     "quadrant-gap": [
         (["import", "--map", imports / "halsampler.map.json", imports / "halsampler.txt", "log.csv"], ["log.csv"]),
-        (["simulate", "--machine", data / "machine.json", "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+        (["simulate", *of_machine, "--log", data / "log.csv", "--json", "gaps.json"], ["gaps.json"]),
+        (["init", "--log", data / "log.csv", "--unchecked", "--mass", "1", "--force-constant", "1", "--out", "begun.json"],
+         ["begun.json", "begun.md"]),
+        (["apply", *of_machine, "--diagnosis", found, "--out", "corrected.json"], ["corrected.json"]),
+        (["export", *of_machine, "--mjcf", "axis.xml", "--linuxcnc", "axis.txt", "--drive", "drive.csv", "--compensation", "table.csv"],
+         ["axis.xml", "axis.txt", "drive.csv", "table.csv"]),
+        (["forecast", *of_machine, "--diagnosis", found, "--motion", data / "log.csv", "--json", "forecast.json"], ["forecast.json"]),
+        (["circle", "--log", circles, "--json", "circle.json", "--report", "circle.html"], ["circle.json", "circle.html"]),
     ],
     "quadrant-cnc": [
         (["analyse", "--cnc", mill, "--axis", "x", "--json", "figures.json", "--report", "axis.html"], ["figures.json", "axis.html"]),
@@ -42,9 +59,18 @@ asked = {
         (["--seconds", "0.1", "--period_us", "1000", "--html", "latency.html"], ["latency.html"]),
     ],
 }
-if os.environ.get("QUADRANT_TESTS") == "all":  # a whole diagnosis each time
-    shipped = ["--machine", data / "machine.json", "--log", data / "log.csv", "--json", "found.json"]
-    asked["quadrant-gap"].append((["diagnose", "--fast", "--threads", "1", *shipped, "--report", "page.html"], ["found.json", "page.html"]))
+if everything:  # seconds each time: whole diagnoses, whole runs
+    shipped, quick = [*of_machine, "--log", data / "log.csv"], ["--fast", "--threads", "1"]
+    asked["quadrant-gap"] += [
+        (["diagnose", *quick, *shipped, "--json", "found.json", "--report", "page.html"], ["found.json", "page.html"]),
+        (["compensate", *shipped, "--diagnosis", found, "--json", "gains.json", "--controller", "keys.json"], ["gains.json", "keys.json"]),
+        (["compare", *quick, *of_machine, data / "log.csv", data / "holdout.csv", "--json", "differs.json", "--report", "page.html"],
+         ["differs.json", "page.html"]),
+    ]
+    asked["quadrant-cnc"] += [
+        (["run", "--cnc", mill, "--path", root / "examples/path/diamond.nc", "--json", "run.json", "--report", "run.html", "--log", "run.csv",
+          "--export-gap-machine", "machine.json"], ["run.json", "run.html", "run.csv", "machine.json"]),
+    ]
 UNDRAWN_MARK = b"gnuplot could not draw this"
 UNDRAWN = "a whole page that says that a picture is not drawn"
 PLACES = 12  # of each, from the first to the last, closer together at the start where the program sets itself up
@@ -76,7 +102,7 @@ def run(folder, program, arguments, outputs, **more):
     if done.returncode == 1 and re.search(ANSWER, done.stdout):
         done.returncode = 0  # the machine was busy: an answer as any other
     done.printed, done.stderr = seen(done.stdout), done.stderr.decode(errors="replace")
-    files = {p.name: seen(p.read_bytes()) for p in folder.iterdir()}
+    files = {str(p.relative_to(folder)): seen(p.read_bytes()) for p in folder.rglob("*") if p.is_file()}
     return done, files
 
 

@@ -41,7 +41,7 @@ private:
 template <template <class, class, class> class Axis = measured_axis> class rig_of {
 public:
     using motor = linear_motor<maxwell_slip<4>>;
-    using log = analysis::axis_log<>;
+    using log = analysis::test_run<>;
 
     rig_of(const axis& a, unsigned seed) : axis_(controller(a), machine(a), noisy_instruments(seed)) {}
 

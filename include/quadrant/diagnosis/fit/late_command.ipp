@@ -10,8 +10,8 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
     for (int turn = 0; turn < turns; ++turn) {
         const axis_regression r = regress(read_earlier(log, late, period), period, true);
         const regressed more = r.lateness;
-        // A loop answers late to forces that no regression knows: its command is explained by the motion in part
-        // only, at any lateness; or as the law of the loop has it, which drives on what slows down.
+        // A loop answers late to forces that no regression knows: its command is explained by the motion in
+        // part only, at any lateness; or as the law of the loop has it, which drives on what slows down.
         if (r.left > 0.1 || (turn == 0 && r.left > 0.5 * r.left_in_time)) return 0;
         if (!(r.acceleration.value > 4 * r.acceleration.spread) || r.speed.value < -2 * r.speed.spread)
             return 0;

@@ -66,12 +66,12 @@ private:
             for (const auto& cell : lines_.cells()) names_.emplace_back(cell.text);
             return;
         }
-        throw bad_input(name_,
-                        layout_.header_line > 0
-                            ? fmt::format("ends before line {}, where the map has the names of the columns",
-                                          layout_.header_line)
-                            : fmt::format("no line begins with {}, as the map says of the names of the columns",
-                                          in_quotes(layout_.header_begins_with)));
+        throw bad_input(
+            name_, layout_.header_line > 0
+                       ? fmt::format("ends before line {}, where the map expects the names of the columns",
+                                     layout_.header_line)
+                       : fmt::format("no line begins with {}, where the map expects the names of the columns",
+                                     in_quotes(layout_.header_begins_with)));
     }
 
     /// "Sampling period is 1000000 ns", then rows of name and value in turns.

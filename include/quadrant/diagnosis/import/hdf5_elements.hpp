@@ -30,7 +30,8 @@ public:
         if (l.size() < 2) file_.refuse(name + ": has no layout");
         if (l[0] != 3) file_.refuse(name + ": has the layout of newer files: write it with libver='earliest'");
         if (l[1] == 0) { // in the header itself
-            if (l.size() < 4 || l.size() - 4 < whole) file_.refuse(name + ": is shorter than it says");
+            if (l.size() < 4 || l.size() - 4 < whole)
+                file_.refuse(name + ": holds less data than its header states");
             return std::string(l.substr(4, static_cast<std::size_t>(whole)));
         }
         if (l[1] == 1) {
@@ -54,7 +55,7 @@ private:
         for (std::size_t k = 0; k < rank; ++k) {
             chunk.push_back(little_endian<std::uint32_t>(l.substr(11 + 4 * k)));
             if (chunk.back() == 0 || chunk.back() > (hdf5_bytes::most_numbers * 8) / size)
-                file_.refuse(name + ": has chunks that are none");
+                file_.refuse(name + ": its list of chunks is damaged");
             size *= chunk.back();
         }
         std::string out(static_cast<std::size_t>(whole), '\0');
@@ -77,7 +78,7 @@ private:
                                     if (!(left_out >> f & 1))
                                         undo(steps[f], data, static_cast<std::size_t>(size), d.size, name);
                                 if (data.size() < size)
-                                    file_.refuse(name + ": a chunk is shorter than it says");
+                                    file_.refuse(name + ": a chunk holds less data than it states");
                                 put(d, chunk, corner, data, out);
                             });
         return out;
@@ -110,7 +111,7 @@ private:
     void undo(unsigned filter, std::string& data, std::size_t size, std::size_t each,
               const std::string& name) const {
         if (filter == 1) {
-            if (data.size() < 6) file_.refuse(name + ": a chunk is shorter than it says");
+            if (data.size() < 6) file_.refuse(name + ": a chunk holds less data than it states");
             inflation out = inflated(std::string_view(data).substr(2), size + 4);
             if (!out.whole) file_.refuse(name + ": a chunk cannot be unpacked");
             data = std::move(out.text);

@@ -29,7 +29,7 @@ public:
             file_.refuse("has the layout of newer files (superblock " + fmt::format("{}", version) +
                          "): write it with libver='earliest', or save it as CSV");
         if (file_.number<std::uint8_t>(begin_ + 13) != 8 || file_.number<std::uint8_t>(begin_ + 14) != 8)
-            file_.refuse("has addresses of another size than 8 bytes");
+            file_.refuse("has addresses that are not 8 bytes long");
         const std::size_t after = begin_ + (version == 0 ? 24 : 28);
         file_.base(file_.number<std::uint64_t>(after));
         read_object(file_.number<std::uint64_t>(after + 40), "", 0);

@@ -96,7 +96,7 @@ private:
         if (e.size > bytes_.size() - std::min(e.at, bytes_.size()))
             refuse(tag, fmt::format("an element of {} bytes; the file has {} behind this", e.size,
                                     bytes_.size() - std::min(e.at, bytes_.size())));
-        if (e.type == 0 || e.type > 18) refuse(tag, fmt::format("no element has the type {}", e.type));
+        if (e.type == 0 || e.type > 18) refuse(tag, fmt::format("{} is no type of an element", e.type));
         return e;
     }
 
@@ -118,7 +118,7 @@ private:
         std::uint32_t sum = 0;
         for (std::size_t k = packed.size() - 4; k < packed.size(); ++k) sum = sum << 8 | byte(k);
         if (sum != adler32(contents))
-            refuse(e.at + e.size - 4, "the sum of the zlib stream is another: the file is damaged");
+            refuse(e.at + e.size - 4, "the checksum of the zlib stream does not match: the file is damaged");
         const std::size_t behind = at_;
         bytes_ = contents;
         inside_ = e.at - 8;
@@ -168,7 +168,7 @@ private:
             if (complex)
                 refuse(whole.at, fmt::format("{}: is complex: save its real and imaginary part apart", v.name));
             read_numbers(v);
-            if (at_ > behind) refuse(whole.at, fmt::format("{}: is longer than it says", v.name));
+            if (at_ > behind) refuse(whole.at, fmt::format("{}: holds more data than its size allows", v.name));
             if (v.values.size() > 1) variables_.push_back(std::move(v));
         }
         at_ = behind;

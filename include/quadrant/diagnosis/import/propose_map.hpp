@@ -44,7 +44,7 @@ inline bool propose_odrive(proposed_map& out, std::string_view text, std::string
                 fmt::format("{} is left out: with a position or velocity loop it is the feedforward alone",
                             one_line(c.name)));
     say_what_is_open(out);
-    out.notes.emplace_back("positions in turns, as ODrive's firmware has them from 0.5 on");
+    out.notes.emplace_back("positions in turns, as in ODrive's firmware from 0.5 on");
     return true;
 }
 

@@ -142,8 +142,9 @@ private:
         const unit_name* known = find_unit(unit.text());
         if (!known) {
             constexpr auto names = names_of(unit_names);
-            unit.refuse(fmt::format("{} is not a unit of this program{}; a count is scale times a unit",
-                                    in_quotes(unit.text()), suggestion(unit.text(), names)));
+            unit.refuse(
+                fmt::format("{} is not a unit that this program knows{}; for counts, give a scale and a unit",
+                            in_quotes(unit.text()), suggestion(unit.text(), names)));
         }
         take(*known, s);
     }

@@ -25,7 +25,7 @@ template <class Refuse> std::string unsnapped(std::string_view from, std::size_t
         size |= (b & 0x7f) << shift;
         if (b < 0x80) break;
     }
-    if (size != whole) refuse("a snappy stream is of another length");
+    if (size != whole) refuse("a snappy stream has another length than it states");
     std::string out;
     out.reserve(size);
     while (at < from.size()) {

@@ -80,15 +80,15 @@ private:
         const double by_log = found.acceleration.value;
         const bool told = found.acceleration.sure() && by_log > 0;
         if (told && !mass && (constant || is_force(unit)))
-            text += fmt::format("; the log speaks of about {:.4g} kg (--from-log takes it)",
+            text += fmt::format("; the log indicates about {:.4g} kg (--from-log uses it)",
                                 by_log * constant.value_or(1));
         if (!told && by_log > 0 && std::isfinite(found.acceleration.spread) && !mass &&
             (constant || is_force(unit)))
-            text +=
-                fmt::format("; the log is not sure of it ({:.3g} kg with a standard deviation of {:.2g}): "
-                            "record faster motion",
-                            by_log * constant.value_or(1), found.acceleration.spread * constant.value_or(1));
-        if (told && mass) text += fmt::format("; the log speaks of about {:.4g} N/{}", *mass / by_log, unit);
+            text += fmt::format(
+                "; the log does not determine it well enough ({:.3g} kg with a standard deviation of {:.2g}): "
+                "record faster motion",
+                by_log * constant.value_or(1), found.acceleration.spread * constant.value_or(1));
+        if (told && mass) text += fmt::format("; the log indicates about {:.4g} N/{}", *mass / by_log, unit);
         if (found.acceleration.sure() && by_log < 0)
             text += "; in the log the axis accelerates against its command: check the sign of one of the two";
         return fmt::format("axis {}: {}", axis_, text_of(text, kind_));
@@ -135,11 +135,12 @@ private:
         if (mass <= 3 * most && mass >= least / 3) return;
         const std::string text = fmt::format(
             "axis {}: {}", axis_,
-            text_of(fmt::format(
-                        "{:g} kg and {:g} N/{} cannot be of this log, where the command moves {:.3g} kg: check "
-                        "the units",
-                        mass, constant, unit, a.value * constant),
-                    kind_));
+            text_of(
+                fmt::format(
+                    "{:g} kg and {:g} N/{} contradict this log, in which the command moves {:.3g} kg: check "
+                    "the units",
+                    mass, constant, unit, a.value * constant),
+                kind_));
         if (!ask_.unchecked) throw bad_input(file_, text + " (--unchecked writes the file all the same)");
         text_.note(text);
     }

@@ -31,15 +31,14 @@ public:
         if (log && log->still) throw bad_input(file_, fmt::format("axis {} never moves", axis_));
         if (!servo)
             need(gives("mass"),
-                 "--mass is missing: the motion shows the gains of a drive beside the mass only");
+                 "--mass is missing: the motion shows the gains of a drive only relative to the mass");
         if (!log) return;
         read_count(*log);
         const bool duty = !log->duty.empty() || log->command_unit == "duty" || log->command_unit == "V";
         if (servo) {
-            need(
-                gives("mass") || gives("force-constant") || gives("gravity-torque"),
-                "--mass, --force-constant or --gravity-torque is missing: without one of them all forces times "
-                "one factor move the axis alike");
+            need(gives("mass") || gives("force-constant") || gives("gravity-torque"),
+                 "--mass, --force-constant or --gravity-torque is missing: without one of them, all forces "
+                 "scaled by one factor give the same motion");
             need(duty || gives("servo-gain") || gives("force-constant"),
                  "--servo-gain or --force-constant is missing: without a measured duty their product alone "
                  "moves the axis");

@@ -127,7 +127,7 @@ private:
             });
         if (suffix == column_suffixes.end())
             out_.notes.push_back(
-                fmt::format("column {} is not one of the format's and is ignored", in_quotes(name)));
+                fmt::format("column {} is not part of the format and is ignored", in_quotes(name)));
         else if (suffix->role == column_role::not_used_yet)
             out_.notes.push_back(fmt::format("column {} is not used by this version", in_quotes(name)));
         else if (is_beside(suffix->role))
@@ -179,7 +179,7 @@ private:
                             "{0}_torque_Nm; of a drive that takes positions: {0}_ref_{2})",
                             name, force, m));
         if (const auto kind = kind_of_unit(axis.command_unit); kind && *kind != *axis.kind)
-            refuse_(axis.command_at, fmt::format("column {}_cmd_{} is of a {} axis; axis {} is {}", name,
+            refuse_(axis.command_at, fmt::format("column {}_cmd_{} belongs to a {} axis; axis {} is {}", name,
                                                  axis.command_unit, name_of(*kind), name, name_of(*axis.kind)));
         if (is_force(axis.command_unit) && axis.command_unit != force)
             refuse_(axis.command_at, fmt::format("axis {0} is {1}: its command is {0}_cmd_V, {0}_cmd_A or "

@@ -61,10 +61,10 @@ public:
         if (!clock.even && clock.spread > most_spread)
             refuse_stamp(
                 out.row(clock.worst),
-                fmt::format(
-                    "t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, here most; single steps "
-                    "may be half a period off: resample the log with quadrant-gap import --resample",
-                    clock.jitter, clock.period));
+                fmt::format("t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, most of all here; "
+                            "single steps may be half a period off: resample the log with quadrant-gap import "
+                            "--resample",
+                            clock.jitter, clock.period));
         return out;
     }
 

@@ -68,10 +68,11 @@ template <class Refuse> sample_clock read_even_clock(const std::vector<double>& 
     if (out.jitter <= allowed + leeway) return out;
     double mean = 0;
     for (std::size_t k = 0; k < n; ++k) mean += off_line(k) / static_cast<double>(n);
-    refuse(off_line(latest) - mean > mean - off_line(earliest) ? latest : earliest,
-           fmt::format(
-               "t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, here most; up to {} is allowed",
-               out.jitter, period, allowed));
+    refuse(
+        off_line(latest) - mean > mean - off_line(earliest) ? latest : earliest,
+        fmt::format(
+            "t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, most of all here; up to {} is allowed",
+            out.jitter, period, allowed));
     return out;
 }
 

@@ -62,7 +62,8 @@ inline void read_drive_kind(const json_node& node, drive_description& drive) {
             std::string kinds;
             for (std::size_t i = 0; i < drive_kinds.size(); ++i)
                 if (key.has[i]) kinds += fmt::format("{}{}", kinds.empty() ? "" : " or ", drive_kinds[i]);
-            given->refuse(fmt::format("is of a drive of kind {}; this one is {}", kinds, name_of(drive.kind)));
+            given->refuse(
+                fmt::format("belongs to a drive of kind {}; this one is {}", kinds, name_of(drive.kind)));
         }
         if (key.needs[kind]) node.need(std::string(key.name));
     }
