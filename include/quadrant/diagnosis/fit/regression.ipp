@@ -38,57 +38,80 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
     return std::min(band, 3 * slowest);
 }
 
+/// What a regression explains the command by, and the command, all behind the same low-pass.
+struct regression_signals {
+    regression_signals(const axis_log& log, double band_Hz, double period)
+        : v(derivative(zero_phase(log.position, band_Hz, period), period)), a(derivative(v, period)),
+          u(zero_phase(log.command, band_Hz, period)), slope(derivative(u, period)) {
+        const auto filtered = [&](const std::vector<double>& of, auto term) {
+            std::vector<double> x;
+            for (const double z : of) x.push_back(term(z));
+            return zero_phase(x, band_Hz, period);
+        };
+        direction = filtered(v, [](double z) { return z > 0 ? 1.0 : z < 0 ? -1.0 : 0.0; });
+        sine = filtered(log.position, [](double z) { return std::sin(z); });
+        cosine = filtered(log.position, [](double z) { return std::cos(z); });
+    }
+    std::vector<double> v, a, u, slope, direction{}, sine{}, cosine{};
+};
+
+inline double largest(const std::vector<double>& x) {
+    return std::max(std::abs(*std::max_element(x.begin(), x.end())),
+                    std::abs(*std::min_element(x.begin(), x.end())));
+}
+
+/// The normal equations of all parts but one.
+inline regression_part sum_without(const std::vector<regression_part>& parts, std::size_t one) {
+    regression_part out{Eigen::MatrixXd::Zero(parts[0].left.rows(), parts[0].left.cols()),
+                        Eigen::VectorXd::Zero(parts[0].right.size())};
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (i == one) continue;
+        out.left += parts[i].left;
+        out.right += parts[i].right;
+    }
+    return out;
+}
+
+/// Shares of the command's variance that are left with its slope, the last number, and without. energy: of the
+/// command.
+inline void add_shares_left(axis_regression& out, const regression_part& all, double energy,
+                            const Eigen::VectorXd& whole) {
+    const Eigen::Index n = whole.size() - 1;
+    const double variance = energy - all.right[3] * all.right[3] / all.left(3, 3);
+    const Eigen::VectorXd in_time = solved(all.left.topLeftCorner(n, n), all.right.head(n));
+    out.left = (energy - all.right.dot(whole)) / variance;
+    out.left_in_time = (energy - all.right.head(n).dot(in_time)) / variance;
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, bool and_lateness) {
     axis_regression out;
     out.band_Hz = detail::regression_band(log, period);
     if (!(out.band_Hz > 0)) return out;
-    const auto q = zero_phase(log.position, out.band_Hz, period), v = derivative(q, period),
-               a = derivative(v, period), u = zero_phase(log.command, out.band_Hz, period),
-               slope = derivative(u, period);
-    const auto largest = [](const std::vector<double>& x) {
-        return std::max(std::abs(*std::max_element(x.begin(), x.end())),
-                        std::abs(*std::min_element(x.begin(), x.end())));
-    };
-    const double fastest = largest(v), strongest = largest(a);
-    const auto filtered = [&](const std::vector<double>& of, auto term) {
-        std::vector<double> x;
-        for (const double z : of) x.push_back(term(z));
-        return zero_phase(x, out.band_Hz, period);
-    };
-    const auto direction = filtered(v, [](double z) { return z > 0   ? 1.0
-                                                             : z < 0 ? -1.0
-                                                                     : 0.0; }),
-               sine = filtered(log.position, [](double z) { return std::sin(z); }),
-               cosine = filtered(log.position, [](double z) { return std::cos(z); });
+    const detail::regression_signals of(log, out.band_Hz, period);
+    const double fastest = detail::largest(of.v);
     constexpr std::size_t parts = 16;
-    const std::size_t rows = q.size() / parts;
-    if (rows < 8 || !(strongest > 0)) return {};
+    const std::size_t rows = of.v.size() / parts;
+    if (rows < 8 || !(detail::largest(of.a) > 0)) return {};
     const bool turns = log.kind == axis_kind::rotary;
     const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (and_lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
     double energy = 0; // of the command
     for (std::size_t k = 0; k < parts * rows; ++k) {
-        if (std::abs(v[k]) < 0.03 * fastest || (and_lateness && std::abs(direction[k]) < 0.98)) continue;
+        if (std::abs(of.v[k]) < 0.03 * fastest || (and_lateness && std::abs(of.direction[k]) < 0.98)) continue;
         Eigen::VectorXd row(n);
-        row.head<4>() << a[k], v[k], direction[k], 1;
-        if (turns) row.segment<2>(4) << sine[k], cosine[k];
-        if (and_lateness) row[of_axis] = -slope[k];
+        row.head<4>() << of.a[k], of.v[k], of.direction[k], 1;
+        if (turns) row.segment<2>(4) << of.sine[k], of.cosine[k];
+        if (and_lateness) row[of_axis] = -of.slope[k];
         sums[k / rows].left += row * row.transpose();
-        sums[k / rows].right += u[k] * row;
-        energy += u[k] * u[k];
+        sums[k / rows].right += of.u[k] * row;
+        energy += of.u[k] * of.u[k];
     }
     const auto solution = [&](std::size_t without) {
-        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-        for (std::size_t i = 0; i < parts; ++i) {
-            if (i == without) continue;
-            left += sums[i].left;
-            right += sums[i].right;
-        }
+        auto [left, right] = detail::sum_without(sums, without);
         left.diagonal() *= 1 + 1e-9;
-        return solved(left, right);
+        return Eigen::VectorXd(solved(left, right));
     };
     const Eigen::VectorXd whole = solution(parts);
     Eigen::VectorXd square = Eigen::VectorXd::Zero(n); // jackknife over the parts
@@ -101,16 +124,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     out.mean = number(3);
     if (and_lateness) {
         out.lateness = number(of_axis);
-        Eigen::MatrixXd left = Eigen::MatrixXd::Zero(n, n);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-        for (const auto& part : sums) {
-            left += part.left;
-            right += part.right;
-        }
-        const double all = energy - right[3] * right[3] / left(3, 3);
-        const auto in_time = left.topLeftCorner(of_axis, of_axis);
-        out.left = (energy - right.dot(whole)) / all;
-        out.left_in_time = (energy - right.head(of_axis).dot(solved(in_time, right.head(of_axis)))) / all;
+        detail::add_shares_left(out, detail::sum_without(sums, parts), energy, whole);
     }
     if (turns) {
         out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};
