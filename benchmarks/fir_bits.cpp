@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
-// usage: fir_bits     fails unless the sum of a FIR filter has the bits of four plain sums, however this file was
-//                     compiled without fused products; callgrind.sh does with AVX, where clang++ names the register
+// usage: fir_bits     fails unless the sum of a FIR filter has the bits of four plain sums, however this file
+//                     was compiled without fused products; callgrind.sh does with AVX, where clang++ names the
+//                     register
 #include <quadrant/base/signal.hpp>
 #include <quadrant/memory/fir.hpp>
 
