@@ -44,6 +44,7 @@ TEST_CASE("effects: every record says what pages and files need, and no name or 
         CHECK((e->trial.into != nullptr) == in_trials);
         CHECK((e->trial.low < e->trial.high) == in_trials);
         for (const auto other : e->equivalent) CHECK((other.empty() || effect_named(other) != nullptr));
+        if (!e->ends_inside.empty()) CHECK(key_named(e->ends_inside) != nullptr);
         for (const machine_key& k : e->keys) {
             CAPTURE(k.name);
             CHECK(keys.insert(k.name).second);
