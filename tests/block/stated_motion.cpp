@@ -52,7 +52,7 @@ TEST_CASE("profile: jerk is bounded, as speed and acceleration are; the length i
         not_there += move.at(move.duration()).s != length || move.at(2 * move.duration()).s != length;
         ++tried;
         for (int k = 0; k < 3; ++k) {
-            const along y = move.at(roll(0, move.duration()));
+            const path_motion y = move.at(roll(0, move.duration()));
             over = std::max({over, y.v / within.velocity - 1, std::abs(y.a) / within.acceleration - 1,
                              std::abs(y.j) / within.jerk - 1});
         }
