@@ -152,7 +152,7 @@ march_text() {
     cat <<EOT
 - Take \`-march=x86-64-v3\` where the processor has AVX2 and FMA (Intel since 2013, AMD since 2015), and the lanes: $(each_compiler lanes_by_typed)
   times the time of the typed loop without \`-march\`.
-- \`-march=native\` is \`$(g++ -march=native -Q --help=target | sed -n 's/^ *-march= *//p' | head -n 1)\` here. It takes $(each_compiler native_by_v3 typed) times what v3 takes for the typed loop,
+- \`-march=native\` is \`$(g++ -march=native -Q --help=target | sed -n 's/^ *-march=[[:space:]]*//p' | head -n 1)\` here. It takes $(each_compiler native_by_v3 typed) times what v3 takes for the typed loop,
   $(each_compiler native_by_v3 typed_lanes) for the lanes, $(each_compiler native_by_v3 hand_written) for \`hand_written\`.
 EOT
     if has avx512f; then
@@ -164,7 +164,7 @@ EOT
     else
         echo "  This processor has no AVX-512: nothing is said here about what \`native\` does with it."
     fi
-    echo "- Blocks alone, with g++ and \`-march=x86-64-v3\`: \`-fno-tree-slp-vectorize\` takes $(awk -F'|' '{ printf "%s`%s` from %s to %s ns", NR > 1 ? ", " : "", $1, $2, $3 }' "$here/slp")."
+    echo "- Blocks alone, with g++ and \`-march=x86-64-v3\`: \`-fno-tree-slp-vectorize\` takes $(awk -F'|' '{ printf "%s`%s` from %s to %s ns", (NR > 1 ? ", " : ""), $1, $2, $3 }' "$here/slp")."
     echo "  Our reading: g++ stores two states in one register and loads them one by one in the next sample, or the reverse, and waits for the store."
 }
 left_out() { # what has no row here
