@@ -184,7 +184,7 @@ TEST_CASE("read_machine: an axis that mixes linear and rotary keys is refused, w
           "inertia_kg_m2: coulomb_N" +
               rule);
     CHECK(machine_with(R"("mass_kg": 1, "inertia_kg_m2": 2)")
-              .find("3:13: axes.c.plant.mass_kg: is of a linear") != std::string::npos);
+              .find("3:13: axes.c.plant.mass_kg: belongs to a linear") != std::string::npos);
     CHECK(machine_with(R"("inertia_kg_m2": 2)", R"(, "encoder": {"resolution_m": 1})").find("resolution_rad") !=
           std::string::npos);
     CHECK(machine_with(R"("inertia_kg_m2": -2)") ==
