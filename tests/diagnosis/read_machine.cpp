@@ -176,9 +176,10 @@ TEST_CASE("read_machine: an axis that mixes linear and rotary keys is refused, w
                         keys, rest));
     };
     const std::string rule = " (an axis has m, N and kg, or rad, Nm and kg_m2, throughout)";
-    CHECK(machine_with(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
-          "machine.json:3:33: axes.c.plant.coulomb_N: belongs to a linear axis; this one is rotary: coulomb_Nm" +
-              rule);
+    CHECK(
+        machine_with(R"("inertia_kg_m2": 1, "coulomb_N": 2)") ==
+        "machine.json:3:33: axes.c.plant.coulomb_N: belongs to a linear axis; this one is rotary: coulomb_Nm" +
+            rule);
     CHECK(machine_with(R"("mass_kg": 1, "coulomb_Nm": 2)") ==
           "machine.json:3:27: axes.c.plant.coulomb_Nm: belongs to a rotary axis; this one is linear, without "
           "inertia_kg_m2: coulomb_N" +
