@@ -158,8 +158,10 @@ private:
         }
     }
     void add(const std::string& name, std::vector<double> values) {
-        for (const number_column& c : columns_)
-            if (c.name == name) file_.refuse(name + " stands in two groups: keep one log in the file");
+        constexpr std::size_t most = 10000;
+        if (columns_.size() == most)
+            file_.refuse(name + " is one column too many: 10000 are read; is a matrix transposed?");
+        if (!names_.insert(name).second) file_.refuse(name + " stands in two groups: keep one log in the file");
         columns_.push_back({name, std::move(values)});
     }
 
@@ -169,6 +171,7 @@ private:
     std::uint64_t numbers_ = 0;
     bool matlab_ = false;
     std::set<std::uint64_t> seen_{};
+    std::set<std::string> names_{}; ///< of the columns
     std::vector<number_column> columns_{};
 };
 
