@@ -2,6 +2,7 @@
 // Long: one reader: a case for each key of its map and each thing that a foreign log does.
 #include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
+#include "refusal.hpp"
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>
@@ -32,19 +33,11 @@ std::string without(const char* key) {
     return json.dump();
 }
 
-template <class Try> std::string said(Try attempt) {
-    try {
-        attempt();
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
-}
 std::string of_map(const std::string& map) {
-    return said([&] { read_import_map(map, "map.json"); });
+    return refusal_of([&] { read_import_map(map, "map.json"); });
 }
 std::string of_log(const std::string& log, const std::string& map = semicolons) {
-    return said([&] { import_log(read_import_map(map, "map.json"), log, "in.txt"); });
+    return refusal_of([&] { import_log(read_import_map(map, "map.json"), log, "in.txt"); });
 }
 
 const std::string rows =
@@ -240,7 +233,7 @@ TEST_CASE("import: files with stamps of their own are joined on the clock of the
               1e-6); // 10 a sample: a straight line
     }
     CHECK(told(in, "the command is a measured one"));
-    CHECK(said([&] { import_log(map, std::span(files).first(1)); }) ==
+    CHECK(refusal_of([&] { import_log(map, std::span(files).first(1)); }) ==
           "map.json: describes 2 files; 1 are given");
     CHECK(of_map(two_files(R"({"colour": 1})")).find("files[1].colour: unknown key") != std::string::npos);
 }
@@ -252,7 +245,8 @@ TEST_CASE(
     for (int k = 0; k < 2000; ++k, t += 1e-3 * (1 + 0.55 * std::sin(2.3 * k)))
         text += fmt::format("{:.7f},{:.9f},{:.1f}\n", t, 0.1 * std::sin(30 * t), k < 1000 ? 1.0 : -1.0);
     const auto map = map_of_header(text, "in.csv");
-    CHECK(said([&] { import_log(map, text, "in.csv"); }).find("import with --resample") != std::string::npos);
+    CHECK(refusal_of([&] { import_log(map, text, "in.csv"); }).find("import with --resample") !=
+          std::string::npos);
     const auto in = import_log(map, text, "in.csv", {.period_s = 1e-3});
     double sum = 0;
     const auto& x = in.log.axes[0];
@@ -286,7 +280,7 @@ TEST_CASE("import: a part of a record is taken by its time, with and without res
         CHECK(near(in.log.sample_period_s, 2e-3, 1e-6));
         CHECK(std::abs(in.log.axes[0].position[0] - 10.5e-3) < 1e-9);
     }
-    CHECK(said([&] {
+    CHECK(refusal_of([&] {
               import_log(map, text, "in.csv", {.resample = true, .from_s = 7});
           }).find("the files have no time in common, or --from and --to leave none") != std::string::npos);
 }
@@ -301,9 +295,11 @@ TEST_CASE("import: columns with our names need no map, whatever their units") {
     CHECK(q.find(signal_role::position)->si == "rad");
     CHECK(q.find(signal_role::torque)->si == "Nm");
     CHECK(q.find(signal_role::enabled));
-    CHECK(said([] { map_of_header("a,b\n1,2\n", "in"); }).starts_with("in:1:1: no column t_s"));
-    CHECK(said([] { map_of_header("t_s,b\n1,2\n", "in"); }).starts_with("in:1:1: no column such as x_pos_m"));
-    CHECK(said([] { map_of_header("", "in"); }) == "in: is empty");
+    CHECK(refusal_of([] { map_of_header("a,b\n1,2\n", "in"); }).starts_with("in:1:1: no column t_s"));
+    CHECK(refusal_of([] {
+              map_of_header("t_s,b\n1,2\n", "in");
+          }).starts_with("in:1:1: no column such as x_pos_m"));
+    CHECK(refusal_of([] { map_of_header("", "in"); }) == "in: is empty");
 }
 
 TEST_CASE("import: what halscope saves has its period in the first line and one row too many") {
@@ -318,10 +314,10 @@ TEST_CASE("import: what halscope saves has its period in the first line and one 
     CHECK(near(in.log.sample_period_s, 1e-3, 1e-9));
     CHECK(std::abs(in.log.axes[0].position[48] - 4.78e-3) < 1e-12);
     CHECK(told(in, "the last row is dropped"));
-    CHECK(said([&] {
+    CHECK(refusal_of([&] {
               import_log(map, "t_s,x\n1,2\n", "scope.log");
           }).find("must be \"Sampling period is N ns\"") != std::string::npos);
-    CHECK(said([&] {
+    CHECK(refusal_of([&] {
               import_log(map, "Sampling period is 1000 ns \n\na +1.0 \na +2.0 \na +2.0 \n", "scope.log");
           }).find("no column \"joint.0.motor-pos-cmd\"") != std::string::npos);
 }
@@ -342,7 +338,7 @@ TEST_CASE("import: one number of a list that a cell holds") {
     CHECK(near(in.log.axes[0].reference[2], 1.5 * std::numbers::pi, 1e-6));
     CHECK(in.log.axes[0].command_unit.empty()); // none is needed where there is a reference
     const foreign_file cut[]{{"kind,stamp,is\nS,0,\"[0.5]\"\nS,1000,\"[0.5]\"\n", "is.csv"}, want};
-    CHECK(said([&] { import_log(read_import_map(std::string_view(map), "map.json"), cut); }) ==
+    CHECK(refusal_of([&] { import_log(read_import_map(std::string_view(map), "map.json"), cut); }) ==
           "is.csv:2:5: \"[0.5]\": the list has 1 entries; q_pos_rad is number 2");
     CHECK(of_map(changed("/axes/x/position/element", 0)) ==
           "map.json: axes.x.position.element: must be the place of a number in the list, from 1");

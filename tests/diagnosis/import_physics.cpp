@@ -2,6 +2,7 @@
 // Units and signs of an imported log, checked by the physics of the axis.
 #include "quadrant/diagnosis/check_physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
+#include "refusal.hpp"
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>
@@ -10,15 +11,6 @@ using namespace quadrant::diagnosis;
 using workshop::near;
 
 namespace {
-
-template <class Try> std::string said(Try attempt) {
-    try {
-        attempt();
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
-}
 
 /// A workshop log as an import has it.
 imported_log of_workshop(double position_scale = 1, double command_scale = 1) {
@@ -34,20 +26,21 @@ TEST_CASE("import: a position in another unit than the reference is refused") {
     auto good = of_workshop();
     CHECK_NOTHROW(check_physics(good));
     auto bad = of_workshop(1000);
-    CHECK(said([&] { check_physics(bad); }).find("moves 1e+03 times the distance of the reference") !=
+    CHECK(refusal_of([&] { check_physics(bad); }).find("moves 1e+03 times the distance of the reference") !=
           std::string::npos);
 }
 
 TEST_CASE("import: a command that drives against the acceleration is refused, one of another size when the "
           "mass is known") {
     auto turned = of_workshop(1, -1);
-    CHECK(said([&] { check_physics(turned); }).find("drives against the acceleration") != std::string::npos);
+    CHECK(refusal_of([&] { check_physics(turned); }).find("drives against the acceleration") !=
+          std::string::npos);
     const workshop::machine m;
     auto right = of_workshop();
     CHECK_NOTHROW(check_physics(right, {m.mass, m.force_constant}));
     auto millivolts = of_workshop(1, 1000);
     CHECK_NOTHROW(check_physics(millivolts));
-    CHECK(said([&] {
+    CHECK(refusal_of([&] {
               check_physics(millivolts, {m.mass, m.force_constant});
           }).find("times the mass of 180") != std::string::npos);
     // The regression itself, against the machine's numbers.
@@ -66,7 +59,7 @@ TEST_CASE("import: the units of a log are checked against its machine, and no ot
         for (double& y : log.axes[0].position) y *= position;
         for (double& r : log.axes[0].reference) r *= reference != 0 ? reference : position;
         for (double& u : log.axes[0].command) u *= command;
-        return said([&] { check_physics(machine, log); });
+        return refusal_of([&] { check_physics(machine, log); });
     };
     CHECK(checked(1, 1) == "accepted");
     CHECK(checked(1, 2) == "accepted"); // a wrong force constant is for the diagnosis
@@ -99,7 +92,7 @@ TEST_CASE("import: a mass that the record shows poorly is no unit") {
         a.reference = a.position;
         log.axes = {a};
         log.samples = a.position.size();
-        return said([&] { check_physics(machine, log); });
+        return refusal_of([&] { check_physics(machine, log); });
     };
     const std::string alone = checked(0);
     CAPTURE(alone);
@@ -128,7 +121,7 @@ TEST_CASE("import: the set-point of a velocity drive is no force, and says nothi
         a.reference = a.position;
         log.axes = {a};
         log.samples = a.position.size();
-        return said([&] { check_physics(machine, log); });
+        return refusal_of([&] { check_physics(machine, log); });
     };
     CHECK(checked(drive_kind::current, 1).find("of the mass of 145") != std::string::npos);
     CHECK(checked(drive_kind::velocity, 1) == "accepted");
@@ -164,7 +157,7 @@ std::string pushed(double sign, double friction, double inertia, double frequenc
     log.samples = a.position.size();
     imported_log in;
     in.log = log;
-    return said([&] { check_physics(in); });
+    return refusal_of([&] { check_physics(in); });
 }
 } // namespace
 

@@ -2,6 +2,7 @@
 #include "quadrant/diagnosis/init.hpp"
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
+#include "refusal.hpp"
 #include "workshop.hpp"
 
 #include <doctest/doctest.h>
@@ -18,12 +19,7 @@ init_request request(double mass = 180, double constant = 1100) {
 }
 
 std::string refusal(const init_request& r, const machine_log* log = nullptr) {
-    try {
-        init_machine(r, log);
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
+    return refusal_of([&] { init_machine(r, log); });
 }
 
 machine_log workshop_log() {

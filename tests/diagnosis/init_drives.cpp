@@ -4,6 +4,7 @@
 #include "drive_simulator.hpp"
 #include "quadrant/diagnosis/init.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
+#include "refusal.hpp"
 #include "shared.hpp"
 
 #include <doctest/doctest.h>
@@ -40,12 +41,7 @@ init_request asked(drive_kind kind, std::map<std::string, double> values) {
     return r;
 }
 std::string refusal(const init_request& r, const machine_log* log) {
-    try {
-        init_machine(r, log);
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
+    return refusal_of([&] { init_machine(r, log); });
 }
 
 /// What init writes under a key of the axis; and the 95 % interval that its comments state.

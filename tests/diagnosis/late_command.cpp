@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // A measured command that was recorded later than the motion that it makes.
+#include "claims.hpp"
+#include "workshop.hpp"
+
 #include <doctest/doctest.h>
 #include <quadrant/diagnosis/fit/late_command.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -57,6 +61,24 @@ TEST_CASE(
     CHECK(lateness_of_command(recorded([](double t) { return force(t + 0.5 * T); }), T) == 0);
     CHECK(lateness_of_command(recorded([](double t) { return force(t + 3 * T); }), T) ==
           0); // a machine's delay
+}
+TEST_CASE("late command: a healthy machine whose command was recorded two rows late has no cause, and the "
+          "report says so") {
+    workshop::machine real;
+    real.delay = 0; // a current makes its force at once
+    auto file = workshop::described(real);
+    auto& axis = file.axes[0];
+    axis.actuator.command_is = command_origin::measured;
+    axis.controller.reset();
+    auto log = workshop::as_log(workshop::run(real));
+    auto& u = log.axes[0].command;
+    std::rotate(u.begin(), u.end() - 2, u.end());
+    u[0] = u[1] = u[2];
+    const auto d = diagnose(file, log);
+    CHECK(d.causes.empty());
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("the measured command stands") != std::string::npos;
+    }));
 }
 TEST_CASE("late command: what a velocity loop answers is no force that moves the axis, however late") {
     const auto answer = [](double t) { return 40 - 500 * at(t - 3 * T).v; };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Long: one reader: a case for each rule of a log.
 #include "quadrant/diagnosis/read_log.hpp"
+#include "refusal.hpp"
 
 #include <doctest/doctest.h>
 
@@ -18,12 +19,7 @@ machine_log read(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-    try {
-        read(text);
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
+    return refusal_of([&] { read(text); });
 }
 
 const std::string header = "t_s,x_ref_m,x_pos_m,x_cmd_V\n";
@@ -467,14 +463,7 @@ TEST_CASE("read_log: empty and nearly empty files are refused") {
 }
 
 TEST_CASE("read_log: a file that cannot be read is refused by its name") {
-    const auto said = [](const std::filesystem::path& path) {
-        try {
-            read_log(path);
-        } catch (const bad_input& fault) {
-            return std::string(fault.what());
-        }
-        return std::string("accepted");
-    };
+    const auto said = [](const std::filesystem::path& path) { return refusal_of([&] { read_log(path); }); };
     CHECK(said("/nowhere/log.csv") == "/nowhere/log.csv: no such file");
     CHECK(said("/tmp") == "/tmp: is a directory");
     std::istringstream broken(good);

@@ -6,6 +6,7 @@
 #include "quadrant/diagnosis/model/plant_model.hpp"
 #include "quadrant/diagnosis/text/text.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
+#include "refusal.hpp"
 
 #include <doctest/doctest.h>
 
@@ -49,12 +50,7 @@ std::string without(const std::string& parent, const std::string& key) {
 }
 
 std::string refusal(const std::string& text) {
-    try {
-        read_machine(text, "machine.json");
-    } catch (const bad_input& fault) {
-        return fault.what();
-    }
-    return "accepted";
+    return refusal_of([&] { read_machine(text, "machine.json"); });
 }
 std::string refused_value(const std::string& pointer, const std::string& value) {
     return refusal(with(pointer, value));
@@ -556,12 +552,7 @@ TEST_CASE("check_match: a log of another machine is refused") {
         return out;
     };
     const auto said = [&](const machine_description& m, const machine_log& l) {
-        try {
-            check_match(m, l);
-        } catch (const bad_input& fault) {
-            return std::string(fault.what());
-        }
-        return std::string("accepted");
+        return refusal_of([&] { check_match(m, l); });
     };
     CHECK(said(machine, log(0.0005, {"x"}, "V")) == "accepted");
     CHECK(said(machine, log(0.000504, {"x"}, "V")) == "accepted");

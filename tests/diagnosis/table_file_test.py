@@ -78,6 +78,12 @@ def main(program):
                             ("latest.h5", "write it with libver='earliest'"), ("lzf.h5", "is packed by filter 32000")):
             done = run(TABLES / file)
             expect(done.returncode == 2 and words in done.stderr, done.stderr.strip())
+        # A transposed matrix, or damage that asks for as much.
+        wide = bytearray((TABLES / "level73.mat").read_bytes())
+        wide[12968:12974] = b"positi"  # the second size of a dataset
+        (folder / "wide.mat").write_bytes(wide)
+        done = run(folder / "wide.mat")
+        expect(done.returncode == 2 and "is one column too many: 10000 are read" in done.stderr, done.stderr.strip())
         # Damaged: refused with one line, or read where the damage is in numbers; never a crash.
         for file in ("snappy.parquet", "gzip.parquet", "packed.h5", "level73.mat"):
             contents = (TABLES / file).read_bytes()

@@ -164,8 +164,7 @@ private:
             if (!number) throw std::logic_error("the trial's machines have no " + std::string(key));
             *number = values.front();
         }
-        auto& f = truth.friction;
-        if (f.level_at_rest > 0) f.level_at_rest = std::max(f.level_at_rest, f.coulomb);
+        keep_level_at_rest(truth.friction);
     }
     const axis_truth& described_;
 };

@@ -36,6 +36,11 @@ struct friction_truth {
     double damping = 0.2;                  ///< of the contact, relative
 };
 
+/// At rest no less friction than in motion.
+inline void keep_level_at_rest(friction_truth& f) {
+    if (f.level_at_rest > 0) f.level_at_rest = std::max(f.level_at_rest, f.coulomb);
+}
+
 struct actuator_truth {
     double force_constant = 0, delay = 0, lag = 0, drive_limit = 1e9, dead_zone = 0, loss = 0;
     double slew = 0;       ///< [V/s], 0: none; in no list

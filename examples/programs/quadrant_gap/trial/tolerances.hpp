@@ -45,11 +45,6 @@ inline std::vector<loose_number> loose_numbers(axis_truth& a, const tolerances& 
     out.insert(out.end(), {{&d.supply, tolerance_of_supply}, {&d.delay, tolerance_of_delay}});
     return out;
 }
-/// At rest no less friction than in motion.
-inline void keep_level_at_rest(friction_truth& f) {
-    if (f.level_at_rest > 0) f.level_at_rest = std::max(f.level_at_rest, f.coulomb);
-}
-
 inline void move_inside(axis_truth& a, const tolerances& t, dice& random) {
     for (const loose_number& n : loose_numbers(a, t)) *n.value *= 1 + random.uniform(-n.share, n.share);
     keep_level_at_rest(a.friction);

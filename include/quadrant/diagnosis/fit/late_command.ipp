@@ -6,7 +6,6 @@ namespace quadrant::inline v0::diagnosis {
 QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period) {
     constexpr int turns = 4; // each takes off nine tenths
     double late = 0;
-    bool sure = false;
     for (int turn = 0; turn < turns; ++turn) {
         const axis_regression r = regress(read_earlier(log, late, period), period, true);
         const regressed more = r.lateness;
@@ -17,8 +16,7 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
             return 0;
         if (!std::isfinite(more.spread) || std::abs(more.value) > 10 * period) return 0;
         late += more.value;
-        sure = late > 4 * more.spread;
-        if (!sure) return 0;
+        if (!(late > 4 * more.spread)) return 0;
     }
     // A row's command is its mean until the next row, half a period behind the reading of that row.
     late += 0.5 * period;

@@ -160,7 +160,8 @@ private:
     void add(const std::string& name, std::vector<double> values) {
         constexpr std::size_t most = 10000;
         if (columns_.size() == most)
-            file_.refuse(name + " is one column too many: 10000 are read; is a matrix transposed?");
+            file_.refuse(name + " is one column too many: " + std::to_string(most) +
+                         " are read; is a matrix transposed?");
         if (!names_.insert(name).second) file_.refuse(name + " stands in two groups: keep one log in the file");
         columns_.push_back({name, std::move(values)});
     }

@@ -19,6 +19,9 @@ public:
     /// White noise of the position as a model sees it [m].
     double noise(const candidate& c) const;
 
+    /// Mean square that a model leaves in a channel above what that sees of the noise [m^2]; chance may make it
+    /// negative.
+    static double left_in(const std::vector<double>& ms, const channel& c, double sigma);
     /// Structure that a model leaves in one channel: log-score of its blocks above twice the rms of what it
     /// sees of noise and half a count.
     double structure(const std::vector<double>& ms, const channel& c, double sigma) const;
@@ -92,8 +95,6 @@ protected:
     std::vector<std::vector<double>>
     differences_of_like_machines(const axis_record& r, const plant_model& calibrated, bool with_loops) const;
 
-    /// Mean square of a channel above what it sees of the noise [m^2].
-    static double left_in(const std::vector<double>& ms, const channel& c, double sigma);
     /// Friction that the laws of a model give at most times: its levels, and what grows with the transmitted
     /// force [N].
     double friction_level(const plant_model& p) const;

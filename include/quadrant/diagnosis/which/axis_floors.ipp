@@ -176,9 +176,11 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks(const candidate& more, const c
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in(std::size_t channel, const candidate& more,
                                                      const candidate& less) const {
-    const double of_noise = record_.score.channels[channel].of_noise(noise(more));
-    const auto above = [&](const candidate& c) { return std::max(0.0, mean_of(c.fit.ms[channel]) - of_noise); };
-    return above(more) < square(1 - rules_.least_shrink_of_band) * above(less);
+    const double sigma = noise(more);
+    const auto left = [&](const candidate& c) {
+        return std::max(0.0, left_in(c.fit.ms[channel], record_.score.channels[channel], sigma));
+    };
+    return left(more) < square(1 - rules_.least_shrink_of_band) * left(less);
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_behind_drive(const candidate& more,

@@ -65,9 +65,7 @@ QUADRANT_DIAGNOSIS_DECL double left_behind_drive(const axis_case& c, std::size_t
     for (std::size_t i = 0; i < channels.size(); ++i) {
         if (!channels[i].of_tap) continue;
         const auto above_noise = [&](const candidate& m) {
-            const auto& ms = m.fit.ms[i];
-            const double mean = std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size());
-            return std::max(0.0, mean - channels[i].of_noise(c.noise));
+            return std::max(0.0, axis_floors::left_in(m.fit.ms[i], channels[i], c.noise));
         };
         const double before = above_noise(without), after = above_noise(c.best());
         if (before > after) out = std::min(out, std::sqrt(after / (before - after)));
