@@ -16,6 +16,7 @@ using namespace quadrant::diagnosis;
 namespace {
 
 constexpr double T = 0.001;
+const plant_description plant{.mass_kg = 100, .force_constant_N_per_V = 1.1};
 
 /// Strokes of three frequencies, read in counts of 1 um.
 struct motion {
@@ -55,42 +56,80 @@ double force(double t) {
 TEST_CASE(
     "late command: one that was sent 2.3 rows after the position is read as much earlier, one in time is not") {
     // A row's command is its mean until the next row: read at the row it is half a row late already.
-    const double late = lateness_of_command(recorded([](double t) { return force(t - 2.3 * T); }), T);
+    const double late = lateness_of_command(recorded([](double t) { return force(t - 2.3 * T); }), T, plant);
     CHECK(late / T == doctest::Approx(2.8).epsilon(0.05));
-    CHECK(lateness_of_command(recorded(force), T) == 0);
-    CHECK(lateness_of_command(recorded([](double t) { return force(t + 0.5 * T); }), T) == 0);
-    CHECK(lateness_of_command(recorded([](double t) { return force(t + 3 * T); }), T) ==
+    CHECK(lateness_of_command(recorded(force), T, plant) == 0);
+    CHECK(lateness_of_command(recorded([](double t) { return force(t + 0.5 * T); }), T, plant) == 0);
+    CHECK(lateness_of_command(recorded([](double t) { return force(t + 3 * T); }), T, plant) ==
           0); // a machine's delay
 }
-TEST_CASE("late command: a healthy machine whose command was recorded two rows late has no cause, and the "
-          "report says so") {
-    workshop::machine real;
-    real.delay = 0; // a current makes its force at once
-    auto file = workshop::described(real);
-    auto& axis = file.axes[0];
-    axis.actuator.command_is = command_origin::measured;
-    axis.controller.reset();
-    auto log = workshop::as_log(workshop::run(real));
-    auto& u = log.axes[0].command;
-    std::rotate(u.begin(), u.end() - 2, u.end());
-    u[0] = u[1] = u[2];
-    const auto d = diagnose(file, log);
-    CHECK(d.causes.empty());
-    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
-        return note.find("the measured command stands") != std::string::npos;
-    }));
+TEST_CASE(
+    "late command: a machine whose command was recorded rows late has the causes that it has in time, and the "
+    "report says so") {
+    const auto diagnosed_late = [](const workshop::machine& real, const machine_description& file, long rows) {
+        auto log = workshop::as_log(workshop::run(real));
+        auto& u = log.axes[0].command;
+        std::rotate(u.begin(), u.end() - rows, u.end());
+        std::fill_n(u.begin(), rows, u[static_cast<std::size_t>(rows)]);
+        auto d = diagnose(file, log);
+        CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+            return note.find("the measured command stands") != std::string::npos;
+        }));
+        return d;
+    };
+    for (const double delay : {0.0, 0.0006}) { // read later than the motion, or than the described delay
+        workshop::machine real;
+        real.delay = delay;
+        auto file = workshop::described(real);
+        file.axes[0].actuator.command_is = command_origin::measured;
+        file.axes[0].controller.reset();
+        for (const long rows : {1, 3}) CHECK(diagnosed_late(real, file, rows).causes.empty());
+        real.coulomb *= 1.3;
+        workshop::named(diagnosed_late(real, file, 2), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
+    }
+}
+TEST_CASE(
+    "late command: no effect of the workshop's machines makes a command late by more than half a row, or hides "
+    "three rows") {
+    const auto lateness = [](const std::function<void(workshop::machine&)>& change, long rows) {
+        workshop::machine m;
+        m.delay = 0;
+        auto file = workshop::described(m);
+        change(m);
+        auto log = workshop::run(m);
+        std::rotate(log.command.begin(), log.command.end() - rows, log.command.end());
+        std::fill_n(log.command.begin(), rows, log.command[static_cast<std::size_t>(rows)]);
+        return lateness_of_command(log, workshop::period, file.axes[0].plant) / workshop::period;
+    };
+    const auto mode = [](double mass, double frequency, double damping) {
+        return [=](workshop::machine& m) {
+            m.mode_mass = mass, m.mass -= mass, m.mode_frequency = frequency, m.mode_damping = damping;
+        };
+    };
+    for (const std::function<void(workshop::machine&)>& change :
+         std::initializer_list<std::function<void(workshop::machine&)>>{
+             mode(60, 40, 0.03), mode(60, 40, 0.3), mode(60, 90, 0.1), mode(90, 20, 0.05),
+             [](auto& m) { m.cogging = 100; }, [](auto& m) { m.ripple = 0.1; }, [](auto& m) { m.cutting = 40; },
+             [](auto& m) { m.excess = 60; }, [](auto& m) { m.bristle = 5e-5, m.coulomb = 150; },
+             [](auto& m) { m.loss = 0.05; }}) {
+        CHECK(lateness(change, 0) == 0);
+        CHECK(std::abs(lateness(change, 3) - 3) < 0.5);
+    }
+    // A force that no regression knows, and larger than what three rows change: nothing is said.
+    const auto spring = [](workshop::machine& m) { m.spring = 5e3; };
+    for (const long rows : {0, 3}) CHECK(lateness(spring, rows) == 0);
 }
 TEST_CASE("late command: what a velocity loop answers is no force that moves the axis, however late") {
     const auto answer = [](double t) { return 40 - 500 * at(t - 3 * T).v; };
-    CHECK(lateness_of_command(recorded(answer), T) == 0);
+    CHECK(lateness_of_command(recorded(answer), T, plant) == 0);
 }
 TEST_CASE("late command: a motion without acceleration, or a command of noise, says nothing") {
     std::mt19937 random(6);
     std::normal_distribution<double> noise(0, 5);
-    CHECK(lateness_of_command(recorded([&](double) { return noise(random); }), T) == 0);
+    CHECK(lateness_of_command(recorded([&](double) { return noise(random); }), T, plant) == 0);
     axis_log rest = recorded(force);
     std::fill(rest.position.begin(), rest.position.end(), 0.1);
-    CHECK(lateness_of_command(rest, T) == 0);
+    CHECK(lateness_of_command(rest, T, plant) == 0);
 }
 TEST_CASE("late command: read earlier, a row has what stood later, and the end stays") {
     axis_log log;

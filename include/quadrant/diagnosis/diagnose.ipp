@@ -116,12 +116,13 @@ private:
 /// A measured command that was recorded late is read as it acted: else a mode or a lag stands in for it.
 inline void ready_axis::read_command_in_time(std::vector<std::string>& notes) {
     if (axis.actuator.command_is != command_origin::measured || axis.drive.closes()) return;
-    const double late = lateness_of_command(log, period);
+    const double late = lateness_of_command(log, period, axis.plant);
     if (late == 0) return;
-    notes.push_back(
-        fmt::format("axis {}: the measured command stands {:.2g} ms later in the log than the motion "
-                    "that it makes; it is read as so much earlier.",
-                    axis.name, 1e3 * late));
+    notes.push_back(fmt::format(
+        "axis {}: the measured command stands {:.2g} ms later in the log than {}; it is "
+        "read as so much earlier.",
+        axis.name, 1e3 * late,
+        axis.plant.delay_s > 0 ? "the machine file's delay lets it act" : "the motion that it makes"));
     log = read_earlier(std::move(log), late, period);
     if (holdout) holdout = read_earlier(std::move(*holdout), late, period);
 }

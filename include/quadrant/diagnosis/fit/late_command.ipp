@@ -3,24 +3,41 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period) {
-    constexpr int turns = 4; // each takes off nine tenths
-    double late = 0;
-    for (int turn = 0; turn < turns; ++turn) {
-        const axis_regression r = regress(read_earlier(log, late, period), period, true);
-        const regressed more = r.lateness;
-        // A loop answers late to forces that no regression knows: its command is explained by the motion in
-        // part only, at any lateness; or as the law of the loop has it, which drives on what slows down.
-        if (r.left > 0.1 || (turn == 0 && r.left > 0.5 * r.left_in_time)) return 0;
-        if (!(r.acceleration.value > 4 * r.acceleration.spread) || r.speed.value < -2 * r.speed.spread)
-            return 0;
-        if (!std::isfinite(more.spread) || std::abs(more.value) > 10 * period) return 0;
-        late += more.value;
-        if (!(late > 4 * more.spread)) return 0;
-    }
+namespace detail {
+
+/// Whether a regression is of what the command does. What a loop answers to forces that no regression knows has
+/// not the mass's share of the acceleration, or is as the law of the loop has it, which drives on what slows
+/// down.
+inline bool is_of_the_plant(const axis_regression& r, const plant_description& plant) {
+    const double of_mass = plant.mass_kg / plant.force_constant_N_per_V;
+    return r.acceleration.sure() && r.acceleration.value > of_mass / 3 && r.acceleration.value < of_mass * 3 &&
+           r.speed.value > -2 * r.speed.spread;
+}
+
+} // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
+                                                   const plant_description& plant) {
+    constexpr int most_turns = 8;
+    constexpr double near = 0.02, least = 0.75, most = 10; // rows
+    const regressed of_motion = regress(log, period, and_lateness::of_motion).lateness;
     // A row's command is its mean until the next row, half a period behind the reading of that row.
-    late += 0.5 * period;
-    return late > period ? late : 0;
+    const double as_described = -0.5 * period - plant.delay_s;
+    const double left_as_described =
+        regress(read_earlier(log, as_described, period), period, and_lateness::up_to_noise).left_in_time;
+    double late = of_motion.sure() ? of_motion.value : 0;
+    for (int turn = 0; turn < most_turns; ++turn) { // each takes off nine tenths
+        if (std::abs(late) > most * period) return 0;
+        const axis_regression r = regress(read_earlier(log, late, period), period, and_lateness::up_to_noise);
+        if (!std::isfinite(r.lateness.spread)) return 0;
+        late += r.lateness.value;
+        if (std::abs(r.lateness.value) > near * period) continue;
+        const double later = late - as_described;
+        const bool sure = later > std::max(least * period, 4 * r.lateness.spread);
+        // Forces that no regression knows may look like a lateness that takes off less than they are.
+        return sure && r.left < 0.5 * left_as_described && detail::is_of_the_plant(r, plant) ? later : 0;
+    }
+    return 0;
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, double period) {

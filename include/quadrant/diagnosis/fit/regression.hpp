@@ -34,8 +34,8 @@ QUADRANT_DIAGNOSIS_DECL double mean_square(const std::vector<double>& x);
 /// The band of a regression. Noise in an explaining signal makes its factor too small by the noise's share of
 /// the variance, so the noise of the reading is a hundredth of the acceleration's variance at most. Below that
 /// limit, three times the frequency that holds 98 % of the velocity's power: faster dynamics are not of the
-/// motion. 0: there is no such band.
-QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double period);
+/// motion. 0: there is no such band. `to_noise`: up to that limit.
+QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double period, bool to_noise);
 
 /// Normal equations of one part of the record.
 struct regression_part {
@@ -45,11 +45,16 @@ struct regression_part {
 
 } // namespace detail
 
+/// Whether a regression looks for a command that stands by a little later than what it does: no, in the band of
+/// the motion, or in all that can be told from noise, where a lateness of less than a row shows.
+enum class and_lateness { no, of_motion, up_to_noise };
+
 /// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
 /// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
-/// have any size there. With `and_lateness` a command is looked for that stands by a little later than what it
-/// does: on its slope, too, and without rows near a change of direction, where friction builds up late.
-QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, bool and_lateness = false);
+/// have any size there. Lateness: on the command's slope, too, and without rows near a change of direction,
+/// where friction builds up late.
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period,
+                                                and_lateness asked = and_lateness::no);
 
 } // namespace quadrant::inline v0::diagnosis
 

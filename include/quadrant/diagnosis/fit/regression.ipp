@@ -19,7 +19,7 @@ QUADRANT_DIAGNOSIS_DECL double mean_square(const std::vector<double>& x) {
     return sum;
 }
 
-QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double period) {
+QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double period, bool to_noise) {
     constexpr double finer = 0.8, share = 0.01, motion = 0.98;
     const double noise = reading_noise(log.position, log.position_step);
     const double least = 8 / (period * static_cast<double>(log.position.size()));
@@ -32,6 +32,7 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
     };
     while (band > least && drowned(band)) band *= finer;
     if (!(band > least)) return 0;
+    if (to_noise) return band;
     const double all = mean_square(velocity(band));
     double slowest = band;
     while (slowest * finer > least && mean_square(velocity(slowest * finer)) > motion * all) slowest *= finer;
@@ -85,25 +86,25 @@ inline void add_shares_left(axis_regression& out, const regression_part& all, do
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, bool and_lateness) {
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, and_lateness asked) {
     axis_regression out;
-    out.band_Hz = detail::regression_band(log, period);
+    out.band_Hz = detail::regression_band(log, period, asked == and_lateness::up_to_noise);
     if (!(out.band_Hz > 0)) return out;
     const detail::regression_signals of(log, out.band_Hz, period);
     const double fastest = detail::largest(of.v);
     constexpr std::size_t parts = 16;
     const std::size_t rows = of.v.size() / parts;
     if (rows < 8 || !(detail::largest(of.a) > 0)) return {};
-    const bool turns = log.kind == axis_kind::rotary;
-    const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (and_lateness ? 1 : 0);
+    const bool turns = log.kind == axis_kind::rotary, lateness = asked != and_lateness::no;
+    const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
     double energy = 0; // of the command
     for (std::size_t k = 0; k < parts * rows; ++k) {
-        if (std::abs(of.v[k]) < 0.03 * fastest || (and_lateness && std::abs(of.direction[k]) < 0.98)) continue;
+        if (std::abs(of.v[k]) < 0.03 * fastest || (lateness && std::abs(of.direction[k]) < 0.98)) continue;
         Eigen::VectorXd row(n);
         row.head<4>() << of.a[k], of.v[k], of.direction[k], 1;
         if (turns) row.segment<2>(4) << of.sine[k], of.cosine[k];
-        if (and_lateness) row[of_axis] = -of.slope[k];
+        if (lateness) row[of_axis] = -of.slope[k];
         sums[k / rows].left += row * row.transpose();
         sums[k / rows].right += of.u[k] * row;
         energy += of.u[k] * of.u[k];
@@ -122,7 +123,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     out.speed = number(1);
     out.direction = number(2);
     out.mean = number(3);
-    if (and_lateness) {
+    if (lateness) {
         out.lateness = number(of_axis);
         detail::add_shares_left(out, detail::sum_without(sums, parts), energy, whole);
     }
