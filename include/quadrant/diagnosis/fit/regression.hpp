@@ -46,7 +46,7 @@ struct regression_part {
 } // namespace detail
 
 /// Whether a regression looks for a command that stands by a little later than what it does: no, in the band of
-/// the motion, or in all that can be told from noise, where a lateness of less than a row shows.
+/// the motion, or in all that stands above noise, where a lateness of less than a row shows.
 enum class and_lateness { no, of_motion, up_to_noise };
 
 /// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
