@@ -53,15 +53,27 @@ double force(double t) {
 
 } // namespace
 
-TEST_CASE(
-    "late command: one that was sent 2.3 rows after the position is read as much earlier, one in time is not") {
+TEST_CASE("late command: one that was sent 2.3 rows after the position is read as much earlier, and one that "
+          "was sent "
+          "before it later, if it was measured") {
     // A row's command is its mean until the next row: read at the row it is half a row late already.
-    const double late = lateness_of_command(recorded([](double t) { return force(t - 2.3 * T); }), T, plant);
-    CHECK(late / T == doctest::Approx(2.8).epsilon(0.05));
-    CHECK(lateness_of_command(recorded(force), T, plant) == 0);
-    CHECK(lateness_of_command(recorded([](double t) { return force(t + 0.5 * T); }), T, plant) == 0);
-    CHECK(lateness_of_command(recorded([](double t) { return force(t + 3 * T); }), T, plant) ==
-          0); // a machine's delay
+    const auto lateness = [](double rows, command_origin origin, double delay = 0) {
+        plant_description described = plant;
+        described.delay_s = delay * T;
+        return lateness_of_command(recorded([&](double t) { return force(t - rows * T); }), T, described,
+                                   origin) /
+               T;
+    };
+    for (const auto origin : {command_origin::measured, command_origin::asked}) {
+        CHECK(lateness(2.3, origin) == doctest::Approx(2.8).epsilon(0.02));
+        CHECK(lateness(0, origin) == doctest::Approx(0.5).epsilon(0.02));
+        CHECK(lateness(0, origin, 2) == doctest::Approx(2.5).epsilon(0.02));
+        CHECK(lateness(-0.5, origin) == 0);
+        CHECK(lateness(-2.5, origin, 2) == 0);
+    }
+    CHECK(lateness(-3, command_origin::measured) == doctest::Approx(-2.5).epsilon(0.02));
+    CHECK(lateness(-3, command_origin::asked) == 0);    // a machine's delay
+    CHECK(lateness(-1, command_origin::asked, 3) == 0); // one shorter than described
 }
 TEST_CASE(
     "late command: a machine whose command was recorded rows late has the causes that it has in time, and the "
@@ -73,7 +85,7 @@ TEST_CASE(
         std::fill_n(u.begin(), rows, u[static_cast<std::size_t>(rows)]);
         auto d = diagnose(file, log);
         CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
-            return note.find("the measured command stands") != std::string::npos;
+            return note.find("the command stands") != std::string::npos;
         }));
         return d;
     };
@@ -99,7 +111,8 @@ TEST_CASE(
         auto log = workshop::run(m);
         std::rotate(log.command.begin(), log.command.end() - rows, log.command.end());
         std::fill_n(log.command.begin(), rows, log.command[static_cast<std::size_t>(rows)]);
-        return lateness_of_command(log, workshop::period, file.axes[0].plant) / workshop::period;
+        return lateness_of_command(log, workshop::period, file.axes[0].plant, command_origin::measured) /
+               workshop::period;
     };
     const auto mode = [](double mass, double frequency, double damping) {
         return [=](workshop::machine& m) {
@@ -121,15 +134,16 @@ TEST_CASE(
 }
 TEST_CASE("late command: what a velocity loop answers is no force that moves the axis, however late") {
     const auto answer = [](double t) { return 40 - 500 * at(t - 3 * T).v; };
-    CHECK(lateness_of_command(recorded(answer), T, plant) == 0);
+    CHECK(lateness_of_command(recorded(answer), T, plant, command_origin::measured) == 0);
 }
 TEST_CASE("late command: a motion without acceleration, or a command of noise, says nothing") {
     std::mt19937 random(6);
     std::normal_distribution<double> noise(0, 5);
-    CHECK(lateness_of_command(recorded([&](double) { return noise(random); }), T, plant) == 0);
+    CHECK(lateness_of_command(recorded([&](double) { return noise(random); }), T, plant,
+                              command_origin::measured) == 0);
     axis_log rest = recorded(force);
     std::fill(rest.position.begin(), rest.position.end(), 0.1);
-    CHECK(lateness_of_command(rest, T, plant) == 0);
+    CHECK(lateness_of_command(rest, T, plant, command_origin::measured) == 0);
 }
 TEST_CASE("late command: read earlier, a row has what stood later, and the end stays") {
     axis_log log;

@@ -113,16 +113,22 @@ private:
     void thin(double band, const rules& r, std::vector<std::string>& notes);
 };
 
-/// A measured command that was recorded late is read as it acted: else a mode or a lag stands in for it.
+/// A command that was recorded late is read as it acted: else a mode or a lag stands in for it.
 inline void ready_axis::read_command_in_time(std::vector<std::string>& notes) {
-    if (axis.actuator.command_is != command_origin::measured || axis.drive.closes()) return;
-    const double late = lateness_of_command(log, period, axis.plant);
+    if (axis.drive.closes()) return;
+    const double late = lateness_of_command(log, period, axis.plant, axis.actuator.command_is);
     if (late == 0) return;
-    notes.push_back(fmt::format(
-        "axis {}: the measured command stands {:.2g} ms later in the log than {}; it is "
-        "read as so much earlier.",
-        axis.name, 1e3 * late,
-        axis.plant.delay_s > 0 ? "the machine file's delay lets it act" : "the motion that it makes"));
+    notes.push_back(
+        late > 0
+            ? fmt::format(
+                  "axis {}: the command stands {:.2g} ms later in the log than {}; it is read as so much "
+                  "earlier.",
+                  axis.name, 1e3 * late,
+                  axis.plant.delay_s > 0 ? "the machine file's delay lets it act" : "the motion that it makes")
+            : fmt::format(
+                  "axis {}: the motion stands {:.2g} ms later in the log than the measured command makes "
+                  "it; the command is read as so much later.",
+                  axis.name, -1e3 * late));
     log = read_earlier(std::move(log), late, period);
     if (holdout) holdout = read_earlier(std::move(*holdout), late, period);
 }

@@ -17,9 +17,9 @@ inline bool is_of_the_plant(const axis_regression& r, const plant_description& p
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
-                                                   const plant_description& plant) {
+                                                   const plant_description& plant, command_origin command) {
     constexpr int most_turns = 8;
-    constexpr double near = 0.02, least = 0.75, most = 10; // rows
+    constexpr double near = 0.02, most = 10; // rows
     const regressed of_motion = regress(log, period, and_lateness::of_motion).lateness;
     // A row's command is its mean until the next row, half a period behind the reading of that row.
     const double as_described = -0.5 * period - plant.delay_s;
@@ -32,10 +32,12 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
         if (!std::isfinite(r.lateness.spread)) return 0;
         late += r.lateness.value;
         if (std::abs(r.lateness.value) > near * period) continue;
-        const double later = late - as_described;
-        const bool sure = later > std::max(least * period, 4 * r.lateness.spread);
+        const double acts_after = -0.5 * period - late, surely = 4 * r.lateness.spread;
+        if (command == command_origin::asked && acts_after > -surely) return 0;
         // Forces that no regression knows may look like a lateness that takes off less than they are.
-        return sure && r.left < 0.5 * left_as_described && detail::is_of_the_plant(r, plant) ? later : 0;
+        const double later = late - as_described;
+        const bool sure = std::abs(later) > surely && r.left < 0.5 * left_as_described;
+        return sure && detail::is_of_the_plant(r, plant) ? later : 0;
     }
     return 0;
 }
