@@ -16,7 +16,12 @@ using namespace quadrant::diagnosis;
 namespace {
 
 constexpr double T = 0.001;
-const plant_description plant{.mass_kg = 100, .force_constant_N_per_V = 1.1};
+const plant_description plant = [] {
+    plant_description p;
+    p.mass_kg = 100;
+    p.force_constant_N_per_V = 1.1;
+    return p;
+}();
 
 /// Strokes of three frequencies, read in counts of 1 um.
 struct motion {

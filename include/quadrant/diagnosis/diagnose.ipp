@@ -3,7 +3,6 @@
 #include "chain/diagnose_chain.hpp"
 #include "effect/effect_list.hpp"
 #include "fit/both_motions.hpp"
-#include "fit/late_command.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/turned_beam.hpp"
 #include "fit/with_drives.hpp"
@@ -12,6 +11,7 @@
 #include "text/bad_input.hpp"
 #include "verdict/diagnose_axis.hpp"
 #include "verdict/own_words.hpp"
+#include "where/columns_in_time.hpp"
 #include "where/places.hpp"
 #include "which/looks.hpp"
 
@@ -109,29 +109,8 @@ struct ready_axis {
     std::optional<axis_log> both{}; ///< six seconds of it hold a dozen readings: none to spare for a test
 
 private:
-    void read_command_in_time(std::vector<std::string>& notes);
     void thin(double band, const rules& r, std::vector<std::string>& notes);
 };
-
-/// A command that was recorded late is read as it acted: else a mode or a lag stands in for it.
-inline void ready_axis::read_command_in_time(std::vector<std::string>& notes) {
-    if (axis.drive.closes()) return;
-    const double late = lateness_of_command(log, period, axis.plant, axis.actuator.command_is);
-    if (late == 0) return;
-    notes.push_back(
-        late > 0
-            ? fmt::format(
-                  "axis {}: the command stands {:.2g} ms later in the log than {}; it is read as so much "
-                  "earlier.",
-                  axis.name, 1e3 * late,
-                  axis.plant.delay_s > 0 ? "the machine file's delay lets it act" : "the motion that it makes")
-            : fmt::format(
-                  "axis {}: the motion stands {:.2g} ms later in the log than the measured command makes "
-                  "it; the command is read as so much later.",
-                  axis.name, -1e3 * late));
-    log = read_earlier(std::move(log), late, period);
-    if (holdout) holdout = read_earlier(std::move(*holdout), late, period);
-}
 
 inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged, const read_logs& logs,
                               const rules& r, std::vector<std::string>& notes)
@@ -156,7 +135,7 @@ inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged,
             period, band);
     for (const auto* axes : {&logs.log.axes, &logs.log.beside})
         for (const axis_log& each : *axes) others.logs.push_back(&each);
-    read_command_in_time(notes);
+    put_columns_in_time(axis, period, log, holdout, notes);
     thin(band, r, notes);
     soft = axis.drive.kind == drive_kind::position_servo && at_motor.drive;
     if (soft && holdout && !transmission)

@@ -5,11 +5,12 @@
 namespace quadrant::inline v0::diagnosis {
 
 /// By how much the command's column stands later than the described plant's delay lets it act [s], negative:
-/// earlier; 0: not surely. What acts comes before what it does, so a column that fits the motion better if it is
-/// read earlier was recorded late: filtered, sent one cycle after the position, or taken once in a row during
-/// which a faster loop went on. An asked command that acts late is another matter, `time_delay`, and no lateness;
-/// a measured one acts at once, and what is late then is the reading of the position. Effects that no regression
-/// knows move the answer by no more than half a row on the machines of tests/diagnosis/late_command.cpp.
+/// earlier; 0: not surely. What acts comes before what it does, so a column that fits the motion better if it
+/// is read earlier was recorded late: filtered, sent one cycle after the position, or taken once in a row
+/// during which a faster loop went on. An asked command that acts late is another matter, `time_delay`, and no
+/// lateness; a measured one acts at once, and what is late then is the reading of the position. Effects that no
+/// regression knows move the answer by no more than half a row on the machines of
+/// tests/diagnosis/late_command.cpp.
 QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
                                                    const plant_description& plant, command_origin command);
 

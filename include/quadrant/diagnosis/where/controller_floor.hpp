@@ -53,8 +53,11 @@ inline double dac_step(const actuator_description& a) {
 class replay_box {
 public:
     replay_box(const axis_log& log, const actuator_description& actuator, const axis_record& record)
-        : log_(log), actuator_(actuator), smooth_(actuator), period_(record.period),
-          from_(std::min(record.score.skip, log.command.size())), block_(record.score.block) {
+        : replay_box(log, actuator, record.period, record.score.skip, record.score.block) {}
+    replay_box(const axis_log& log, const actuator_description& actuator, double period, std::size_t from,
+               std::size_t block)
+        : log_(log), actuator_(actuator), smooth_(actuator), period_(period),
+          from_(std::min(from, log.command.size())), block_(block) {
         smooth_.dac_bits.reset();
         unlimited_ = smooth_;
         unlimited_.limit_V.reset();

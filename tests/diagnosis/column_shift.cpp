@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSL-1.0
+// Logs whose columns were not sampled together, by the controller's replay.
+#include "claims.hpp"
+
+#include <doctest/doctest.h>
+#include <quadrant/diagnosis/where/column_shift.hpp>
+
+#include <algorithm>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+/// A column that stands some rows later than it was.
+void stand_later(std::vector<double>& column, int rows) {
+    const auto n = static_cast<std::ptrdiff_t>(column.size());
+    if (rows > 0) std::rotate(column.begin(), column.end() - rows, column.end());
+    if (rows < 0) std::rotate(column.begin(), column.begin() - rows, column.end());
+    for (std::ptrdiff_t k = 0; k < rows; ++k)
+        column[static_cast<std::size_t>(k)] = column[static_cast<std::size_t>(rows)];
+    for (std::ptrdiff_t k = n + rows; k < n; ++k)
+        column[static_cast<std::size_t>(k)] = column[static_cast<std::size_t>(n + rows - 1)];
+}
+bool says(const diagnosis_result& d, const std::string& words) {
+    return std::any_of(d.notes.begin(), d.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+std::optional<column_shift> shift_of(const axis_log& log, const machine_description& file) {
+    const auto& axis = file.axes[0];
+    return shift_of_columns(*axis.controller, axis.actuator, log, workshop::period, axis.encoder.resolution_m);
+}
+
+} // namespace
+
+TEST_CASE("column shift: reference and command that stand up to two rows off the position are found") {
+    const workshop::machine real;
+    const auto file = workshop::described(real);
+    const auto log = workshop::run(real, workshop::strokes);
+    CHECK_FALSE(shift_of(log, file));
+    for (int reference = -2; reference <= 2; ++reference)
+        for (int command = -2; command <= 2; ++command) {
+            if (reference == 0 && command == 0) continue;
+            auto moved = log;
+            stand_later(moved.reference, reference);
+            stand_later(moved.command, command);
+            const auto found = shift_of(moved, file);
+            REQUIRE(found);
+            CHECK(found->reference == reference);
+            CHECK(found->command == command);
+        }
+}
+TEST_CASE("column shift: another controller is none, on rows that stand right or not") {
+    workshop::machine real;
+    const auto file = workshop::described(real);
+    real.control.position_gain = 88;
+    auto log = workshop::run(real, workshop::strokes);
+    CHECK_FALSE(shift_of(log, file));
+    stand_later(log.command, 1);
+    CHECK_FALSE(shift_of(log, file));
+}
+TEST_CASE("column shift: a log sampled between the parts of its loop has the causes of the machine") {
+    workshop::machine real;
+    const auto file = workshop::described(real);
+    real.coulomb *= 1.3;
+    for (const int reference : {-1, 0, 1})
+        for (const int command : {-1, 1}) {
+            auto log = workshop::as_log(workshop::run(real));
+            stand_later(log.axes[0].reference, reference);
+            stand_later(log.axes[0].command, command);
+            const auto d = diagnose(file, log);
+            workshop::named(d, "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
+            CHECK(says(d, command > 0 ? "the command stands 1 row later in the log than the position"
+                                      : "the command stands 1 row earlier in the log than the position"));
+            CHECK(says(d, "the reference stands") == (reference != 0));
+        }
+}
+TEST_CASE("column shift: a controller that answers a period late is no matter of the log") {
+    workshop::machine real;
+    const auto file = workshop::described(real);
+    real.delay +=
+        workshop::period; // of the command that the column has one row later: it acts when it is described to
+    auto log = workshop::run(real);
+    stand_later(log.command, 1);
+    const auto d = diagnose(file, workshop::as_log(log));
+    CHECK(says(d, "gives the command 1 row later than the one described, and otherwise the same"));
+    CHECK_FALSE(says(d, "the command stands"));
+    for (const auto& c : d.causes) CHECK(c.effect != "time_delay");
+}
