@@ -192,6 +192,7 @@ TEST_CASE("tally: bounds of Clopper and Pearson, Brier score and bins by hand") 
     for (int k = 0; k < 60; ++k) all.push_back({judge(truth("none"), said("within_tolerance")), {}});
     auto t = tally(all);
     CHECK(t["false_blame"]["upper95"] == doctest::Approx(1 - std::pow(0.05, 1.0 / 60)));
+    CHECK(t["top1"]["from_2_clouds"]["of"] == 60);
     CHECK(t["top1"]["none"]["ci95"][0] == doctest::Approx(std::pow(0.025, 1.0 / 60)));
     CHECK(t["calibration"]["causes"] == 0);
     const auto three_of_ten = detail::share{3, 10}.json()["ci95"]; // tables of the binomial: 6.67 % and 65.25 %
@@ -208,6 +209,7 @@ TEST_CASE("tally: bounds of Clopper and Pearson, Brier score and bins by hand") 
     CHECK(t["calibration"]["bins"].size() == 3);
     CHECK(t["forecast_within_10_points"]["right"] == 1);
     CHECK(t["top1"]["single_from_3_clouds"]["of"] == 1);
+    CHECK(t["top1"]["from_2_clouds"] == detail::share{1, 1}.json());
     CHECK(t["top1"]["single"]["right"] == 1);
     CHECK(t["detection"][0]["another"] == 1);
     CHECK(t["detection"][5]["named"] == 1);

@@ -65,10 +65,16 @@ inline double upper_bound(std::size_t hits, std::size_t of) {
 inline constexpr std::array size_steps{0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, HUGE_VAL};
 inline constexpr double material_size = 3; ///< clouds; from here on a single effect has to be named
 
+/// Whether a machine tests what is asked of the diagnosis: one without an effect, or whose only effect has two clouds,
+/// each of two effects three. What is smaller than the owner's tolerances may stay within them.
+inline bool asks_for_an_answer(const judgement& j) {
+    return j.kind == "none" || j.size >= (j.kind == "pair" ? 3 : 2);
+}
+
 inline ordered_json tally(const std::vector<judged_machine>& all) {
     using detail::share;
     std::map<std::string, share> by_kind;
-    share single_material, box, coverage, forecast;
+    share single_material, asked, box, coverage, forecast;
     std::map<std::string, share> coverage_by_key, single_by_effect;
     std::map<std::string, std::map<std::string, std::size_t>> confusion;
     std::size_t free = 0, blamed = 0, unanswered = 0;
@@ -88,6 +94,7 @@ inline ordered_json tally(const std::vector<judged_machine>& all) {
 
     for (const auto& [j, shrink] : all) {
         by_kind[j.kind].add(j.right);
+        if (asks_for_an_answer(j)) asked.add(j.right);
         unanswered += !j.answered;
         if (j.kind == "none") ++free, blamed += j.blamed_falsely;
         if (j.kind == "single") {
@@ -125,6 +132,7 @@ inline ordered_json tally(const std::vector<judged_machine>& all) {
     ordered_json out;
     for (const auto& [name, s] : by_kind) out["top1"][name] = s.json();
     out["top1"]["single_from_3_clouds"] = single_material.json();
+    out["top1"]["from_2_clouds"] = asked.json();
     for (const auto& [name, s] : single_by_effect) out["top1_by_effect_from_3_clouds"][name] = s.json();
     out["box"] = box.json();
     out["false_blame"] = {{"blamed", blamed}, {"of", free}, {"upper95", detail::upper_bound(blamed, free)}};

@@ -208,6 +208,9 @@ QUADRANT_DIAGNOSIS_DECL bool axis_floors::shrinks_in_most_segments(const candida
 }
 
 QUADRANT_DIAGNOSIS_DECL bool axis_floors::differs_from_like_machines(const candidate& c) const {
+    // What stops at an end of the tolerances would have left them.
+    if (c.effects.empty() && c.stops_at_a_tolerance() && structure(c, noise(c)) >= rules_.structure)
+        return true;
     // The 95th of 100 machines differs by two standard deviations.
     const candidate& before =
         c.effects.empty() && mean_of(given_.fit.ms.front()) > mean_of(c.fit.ms.front()) ? given_ : c;
