@@ -451,6 +451,23 @@ TEST_CASE(
     std::sort(names.begin(), names.end());
     CHECK(names == std::vector<std::string>{"drive_gain", "force_constant", "supply_voltage"});
 }
+TEST_CASE("position drive: a constant force that no model has began in the integral of both logs, and takes "
+          "nothing from "
+          "a cause") {
+    auto m = pi_drive;
+    m.position_gain = 40;
+    m.constant = -90;
+    auto file = nlohmann::json::parse(linear(coulomb, of_position));
+    for (const char* gain : {"velocity_gain", "velocity_integral", "position_gain"})
+        file["axes"]["q"]["tolerance"][gain] = 0.01;
+    CHECK(blames_nobody(diagnosed(file.dump(), recorded(takes::set_points, m))));
+    m.viscous = 400;
+    const cause* viscous = nullptr;
+    const auto d = diagnosed(file.dump(), recorded(takes::set_points, m));
+    REQUIRE((viscous = only_claim(d, "viscous_friction")));
+    CHECK(viscous->probability >= 0.9);
+    CHECK(value_of(*viscous, "viscous_N_s_per_m") == doctest::Approx(400).epsilon(0.1));
+}
 TEST_CASE("position servo: another gain shows in the measured duty, where the path is one that the tolerances "
           "allow") {
     auto m = servo;
