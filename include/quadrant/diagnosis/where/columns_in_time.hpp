@@ -87,7 +87,8 @@ inline void columns_in_time::by_motion() {
 
 } // namespace detail
 
-/// Reads columns as the controller had them and as the command acted, where the log stands otherwise, and says so.
+/// Reads columns as the controller had them and as the command acted, where the log stands otherwise, and says
+/// so.
 inline void put_columns_in_time(const axis_description& axis, double period, axis_log& log,
                                 std::optional<axis_log>& holdout, std::vector<std::string>& notes) {
     detail::columns_in_time all{axis, period, log, holdout, notes};

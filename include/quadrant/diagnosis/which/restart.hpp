@@ -17,9 +17,10 @@ inline plant_model restarted(plant_model plant, const axis_record& record) {
         std::vector<plant_model> begun(2, plant);
         begun[0].drive.start_force = plant.holding_force(record.position[0]);
         const auto left = fit.objectives(begun);
-        parameter start = start_of_drive(plant.force_constant * record.scale.command);
-        start.start = begun[left[1] < left[0] ? 1 : 0].drive.start_force;
-        plant = fit.fit(plant, {start}, 4).plant;
+        plant = begun[left[1] < left[0] ? 1 : 0];
+        // What drifts says nothing of where it began.
+        if (record.observer.drift_pole == 1)
+            plant = fit.fit(plant, {start_of_drive(plant.force_constant * record.scale.command)}, 4).plant;
     }
     if (plant.drive.reads_in_turn() && record.observer.drive && record.observer.drive->tapped()) {
         plant.drive.read = record.read;
