@@ -52,7 +52,7 @@ inline constexpr effect coulomb_friction{
                                 .of = [](plant_model& p) -> double& { return p.friction.coulomb; },
                                 .start = start,
                                 .low = std::min(0.1 * start, scale),
-                                .high = std::max(20 * start, s.force_scale()), // what slides, the motor moves
+                                .high = s.farthest(20 * start + 100 * scale, s.force_scale()),
                                 .logarithmic = true,
                                 .step = 1e-3}});
         return out;

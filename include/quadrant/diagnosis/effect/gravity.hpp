@@ -74,7 +74,7 @@ inline constexpr effect gravity{
                   .of = [](plant_model& p) -> double& { return p.gravity.torque; },
                   .start = torque,
                   .low = 0.01 * torque,
-                  .high = std::max(20 * torque, s.force_scale()), // what hangs, the motor lifts
+                  .high = s.farthest(20 * torque, s.force_scale()),
                   .logarithmic = true,
                   .step = 1e-3},
                  {.key = "gravity_phase_rad", // a full turn: no bound on the way

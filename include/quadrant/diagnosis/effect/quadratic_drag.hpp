@@ -58,14 +58,13 @@ inline constexpr effect quadratic_drag{
         const double start = own_values<detail::drag>(s.leader)[0].values[0] + (ww > 0 ? wf / ww : 0);
         if (!(start > 0)) return {};
         const double speed = s.record.scale.speed;
-        return {
-            {{.key = std::string(detail::drag.numbers[0].key),
-              .of = own_number<detail::drag, 0>,
-              .start = start,
-              .low = 0.01 * start,
-              .high = std::max(20 * start, s.force_scale() / (speed * speed)), // what resists, the motor moves
-              .logarithmic = true,
-              .step = 1e-3}}};
+        return {{{.key = std::string(detail::drag.numbers[0].key),
+                  .of = own_number<detail::drag, 0>,
+                  .start = start,
+                  .low = 0.01 * start,
+                  .high = s.farthest(20 * start, s.force_scale() / (speed * speed)),
+                  .logarithmic = true,
+                  .step = 1e-3}}};
     },
     .read = own_values<detail::drag>};
 

@@ -42,8 +42,7 @@ inline constexpr effect viscous_friction{
                   .of = [](plant_model& p) -> double& { return p.friction.viscous_slope; },
                   .start = start,
                   .low = 0.01 * start,
-                  .high = std::max(20 * start,
-                                   s.force_scale() / s.record.scale.speed), // what resists, the motor moves
+                  .high = s.farthest(20 * start, s.force_scale() / s.record.scale.speed),
                   .logarithmic = true,
                   .step = 1e-3}}};
     },
