@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/effect/described_numbers.hpp"
+#include "quadrant/diagnosis/model/plant_axis.hpp"
 #include "quadrant/diagnosis/model/plant_model.hpp"
 
 #include <algorithm>
@@ -89,4 +90,17 @@ TEST_CASE("effects: a key without member and law is kept under its name, whateve
     CHECK(numbers_of(axis, arm, payload) == std::vector<double>{0.18});
     CHECK(numbers_of(axis, errors, payload) == std::vector<double>{2e-6, 1e-6});
     CHECK(axis.numbers.size() == 2);
+}
+
+TEST_CASE("plant_model: a search may take the mass below its mode's part, and the axis can still be made") {
+    plant_description d;
+    d.mass_kg = 100;
+    d.force_constant_N_per_V = 1;
+    plant_model p(d, 1e-6);
+    p.mode.mass = 20;
+    CHECK(p.second_mass() == 20);
+    p.mass = 10;
+    CHECK(p.second_mass() == doctest::Approx(9.5));
+    CHECK_NOTHROW(axis_parameters(p));
+    CHECK(axis_parameters(p).second.mass.value() == doctest::Approx(9.5));
 }

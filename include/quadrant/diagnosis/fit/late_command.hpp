@@ -4,6 +4,19 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+/// When a log's command acts, by a regression on the motion.
+struct command_timing {
+    double later =
+        0; ///< its column stands later than the described plant's delay lets it act [s]; negative: earlier
+    double acts_after = 0;  ///< from its row to its action; negative: it acts before it was recorded [s]
+    double spread = 0;      ///< standard deviation of both [s]
+    bool of_plant = false;  ///< the regression is of what the command does, not of a loop that answers
+    bool outweighs = false; ///< the shift takes off more than forces that no regression knows leave
+    bool sure() const { return of_plant && outweighs && std::abs(later) > 4 * spread; }
+};
+QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, double period,
+                                                         const plant_description& plant);
+
 /// By how much the command's column stands later than the described plant's delay lets it act [s], negative:
 /// earlier; 0: not surely. What acts comes before what it does, so a column that fits the motion better if it
 /// is read earlier was recorded late: filtered, sent one cycle after the position, or taken once in a row

@@ -16,8 +16,8 @@ inline bool is_of_the_plant(const axis_regression& r, const plant_description& p
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
-                                                   const plant_description& plant, command_origin command) {
+QUADRANT_DIAGNOSIS_DECL command_timing timing_of_command(const axis_log& log, double period,
+                                                         const plant_description& plant) {
     constexpr int most_turns = 8;
     constexpr double near = 0.02, most = 10; // rows
     const regressed of_motion = regress(log, period, and_lateness::of_motion).lateness;
@@ -27,19 +27,26 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
         regress(read_earlier(log, as_described, period), period, and_lateness::up_to_noise).left_in_time;
     double late = of_motion.sure() ? of_motion.value : 0;
     for (int turn = 0; turn < most_turns; ++turn) { // each takes off nine tenths
-        if (std::abs(late) > most * period) return 0;
+        if (std::abs(late) > most * period) return {};
         const axis_regression r = regress(read_earlier(log, late, period), period, and_lateness::up_to_noise);
-        if (!std::isfinite(r.lateness.spread)) return 0;
+        if (!std::isfinite(r.lateness.spread)) return {};
         late += r.lateness.value;
-        if (std::abs(r.lateness.value) > near * period) continue;
-        const double acts_after = -0.5 * period - late, surely = 4 * r.lateness.spread;
-        if (command == command_origin::asked && acts_after > -surely) return 0;
-        // Forces that no regression knows may look like a lateness that takes off less than they are.
-        const double later = late - as_described;
-        const bool sure = std::abs(later) > surely && r.left < 0.5 * left_as_described;
-        return sure && detail::is_of_the_plant(r, plant) ? later : 0;
+        if (std::abs(r.lateness.value) < near * period)
+            // Forces that no regression knows may look like a lateness that takes off less than they are.
+            return {.later = late - as_described,
+                    .acts_after = -0.5 * period - late,
+                    .spread = r.lateness.spread,
+                    .of_plant = detail::is_of_the_plant(r, plant),
+                    .outweighs = r.left < 0.5 * left_as_described};
     }
-    return 0;
+    return {};
+}
+
+QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double period,
+                                                   const plant_description& plant, command_origin command) {
+    const command_timing t = timing_of_command(log, period, plant);
+    if (!t.sure() || (command == command_origin::asked && t.acts_after > -4 * t.spread)) return 0;
+    return t.later;
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, double period) {

@@ -55,7 +55,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std:
     std::vector<std::vector<double>> unused(plants.size());
     pass(plants, u, unused, left.data(), {by.way.data(), 1, 1 / period, heavier});
     for (std::size_t i = 0; i < plants.size(); ++i) {
-        const double led_base = heavier * plants[i].moving_mass() - plants[i].mode.mass;
+        const double led_base = heavier * plants[i].moving_mass() - plants[i].second_mass();
         for (double& x : left[i]) x *= led_base;
     }
     const std::size_t n = by.way.size();
@@ -68,7 +68,7 @@ QUADRANT_DIAGNOSIS_DECL void predictor::forces_beside(const led_motion& by, std:
     std::vector<double> of_way; // acceleration that the motion needs, where no reading is in error
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const plant_model& p = plants[i];
-        const double base = p.moving_mass() - p.mode.mass;
+        const double base = p.moving_mass() - p.second_mass();
         if (p.cyclic.count > 0 || of_way.empty()) of_way = acceleration_of(p, by.way, period);
         const auto put = [&](const auto& a_volt) {
             for (std::size_t k = 1; k + 1 < n; ++k)

@@ -113,7 +113,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     out.play = p.backlash;
     out.cyclic = repeating(p.cyclic);
     out.laws = detail::plant_laws(p.own);
-    typed(out.second.mass, p.mode.mass);
+    typed(out.second.mass, p.second_mass());
     typed(out.second.centre, p.mode.frequency_Hz);
     out.second.damping = std::min(p.mode.damping, 0.999);
 

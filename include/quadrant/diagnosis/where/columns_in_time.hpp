@@ -47,13 +47,16 @@ inline void columns_in_time::by_replay() {
     };
     column_shift late = *found;
     if (late.command != 0) {
-        const double acts = lateness_of_command(log, period, axis.plant, command_origin::measured) / period;
-        if (!(std::abs(acts - late.command) < 0.5)) {
-            notes.push_back(
-                fmt::format("axis {}: the controller that ran gives the command {} than the one described, and "
-                            "otherwise the same.",
-                            axis.name, told(late.command)));
-            late.command = 0;
+        const command_timing acts = timing_of_command(log, period, axis.plant);
+        if (acts.of_plant && acts.spread < 0.25 * period && std::abs(acts.later) < 0.5 * period) {
+            notes.push_back(fmt::format("axis {}: the controller that ran gives the command {} than the one "
+                                        "described, and otherwise the same; nothing else is said of it.",
+                                        axis.name, told(late.command)));
+            late = {};
+            change([](axis_log l) {
+                l.as_sampled = false; // it is replayed no more
+                return l;
+            });
         }
     }
     const char* const why = "as the controller's replay says; it is read in time with the position.";
