@@ -6,6 +6,8 @@
 #include <quadrant/diagnosis/where/column_shift.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 using namespace quadrant::diagnosis;
 
@@ -85,4 +87,20 @@ TEST_CASE("column shift: a controller that answers a period late is no matter of
     CHECK(says(d, "gives the command 1 row later than the one described, and otherwise the same"));
     CHECK_FALSE(says(d, "the command stands"));
     for (const auto& c : d.causes) CHECK(c.effect != "time_delay");
+}
+TEST_CASE("columns in time: rows before the controller was on are left out where it would have commanded") {
+    const workshop::machine real;
+    const auto file = workshop::described(real);
+    auto axis = workshop::run(real);
+    constexpr std::size_t off = 1000;
+    std::vector<double> moves(off);
+    for (std::size_t k = 0; k < off; ++k)
+        moves[k] = axis.reference[0] + 0.001 * std::sin(std::numbers::pi * static_cast<double>(k) / off);
+    axis.reference.insert(axis.reference.begin(), moves.begin(), moves.end());
+    axis.position.insert(axis.position.begin(), off, axis.position[0]);
+    axis.command.insert(axis.command.begin(), off, 0.0);
+    const auto d = diagnose(file, workshop::as_log(axis));
+    CHECK(d.causes.empty());
+    CHECK(says(d, "nothing is commanded up to 0.5"));
+    CHECK_FALSE(says(diagnose(file, workshop::as_log(workshop::run(real))), "nothing is commanded"));
 }

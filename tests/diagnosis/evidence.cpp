@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
+#include "claims.hpp"
 #include "quadrant/diagnosis/effect/effects.hpp"
 #include "quadrant/diagnosis/which/causes.hpp"
-#include "workshop.hpp"
 
 #include <doctest/doctest.h>
 
@@ -144,4 +144,16 @@ TEST_CASE("search: what comes near the best at a first look is fitted to the end
     const double sketched = gained(0, never), fitted = gained(2, never);
     CHECK(fitted > sketched + rules{}.margin); // a first look is not the end
     CHECK(gained(0, rules{}.near_best) == fitted);
+}
+
+TEST_CASE("evidence: each direction has its own friction inside the tolerance, and beyond it a cause") {
+    workshop::machine real;
+    auto file = workshop::described(real); // of the Coulomb level 5 %, 3 N
+    real.constant_force = -2;
+    CHECK(workshop::diagnosed(file, real).causes.empty());
+    real.constant_force = -9;
+    const auto d = workshop::diagnosed(file, real);
+    REQUIRE(d.causes.size() == 1);
+    CHECK((d.causes[0].effect == "constant_force" || d.causes[0].effect == "asymmetric_friction"));
+    CHECK(d.causes[0].group_probability >= 0.9);
 }

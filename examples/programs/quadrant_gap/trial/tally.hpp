@@ -65,8 +65,8 @@ inline double upper_bound(std::size_t hits, std::size_t of) {
 inline constexpr std::array size_steps{0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, HUGE_VAL};
 inline constexpr double material_size = 3; ///< clouds; from here on a single effect has to be named
 
-/// Whether a machine tests what is asked of the diagnosis: one without an effect, or whose only effect has two clouds,
-/// each of two effects three. What is smaller than the owner's tolerances may stay within them.
+/// Whether a machine tests what is asked of the diagnosis: one without an effect, or whose only effect has two
+/// clouds, each of two effects three. What is smaller than the owner's tolerances may stay within them.
 inline bool asks_for_an_answer(const judgement& j) {
     return j.kind == "none" || j.size >= (j.kind == "pair" ? 3 : 2);
 }

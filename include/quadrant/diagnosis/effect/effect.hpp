@@ -19,8 +19,8 @@ struct screening {
 
     /// Force of the largest command, the scale of forces on this axis [N].
     double force_scale() const { return leader.force_constant * record.scale.command; }
-    /// How far a number of an effect is searched. Behind closed loops the residual force says little of its size: a
-    /// servo that its friction holds begins far too low, and what resists there, the motor moves.
+    /// How far a number of an effect is searched. Behind closed loops the residual force says little of its
+    /// size: a servo that its friction holds begins far too low, and what resists there, the motor moves.
     double farthest(double usual, double motor_moves) const {
         return record.closed() ? std::max(usual, motor_moves) : usual;
     }

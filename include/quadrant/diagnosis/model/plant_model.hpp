@@ -84,7 +84,8 @@ struct plant_model {
     double moving_mass() const {
         return std::max(mass + payload.inertia() - payload_as_described.inertia(), 0.01 * mass);
     }
-    /// The mode's part of it. A search may take the one below the other: then it is what a mode can have at most.
+    /// The mode's part of it. A search may take the one below the other: then it is what a mode can have at
+    /// most.
     double second_mass() const { return std::min(mode.mass, 0.95 * moving_mass()); }
     /// Largest torque of gravity, with the payload as it is [N m].
     double weight() const {

@@ -30,8 +30,8 @@ void read_from(std::vector<Value>& column, int rows_later, std::vector<unsigned 
 
 } // namespace detail
 
-/// A log whose reference and command are read as much earlier as they stand late. The rows at its ends that have
-/// none are left out.
+/// A log whose reference and command are read as much earlier as they stand late. The rows at its ends that
+/// have none are left out.
 inline axis_log put_right(axis_log log, column_shift late) {
     log.left_out.resize(log.position.size());
     for (auto* column : {&log.reference, &log.reference_velocity, &log.reference_acceleration})
@@ -41,11 +41,12 @@ inline axis_log put_right(axis_log log, column_shift late) {
     return log;
 }
 
-/// The shift with which the described controller gives the logged command, to rounding, if it does not give it on
-/// the log as read. A controller is arithmetic: with another key, or on other rows, it gives another command.
+/// The shift with which the described controller gives the logged command, to rounding, if it does not give
+/// it on the log as read. A controller is arithmetic: with another key, or on other rows, it gives another
+/// command.
 /// Programs that sample a loop between its parts, and those that log a reference before it is used, write such
-/// logs. Within two rows; from a quarter of the record on, before which a filter may not know its past. `count`: of
-/// the encoder, where it is known [m].
+/// logs. Within two rows; from a quarter of the record on, before which a filter may not know its past.
+/// `count`: of the encoder, where it is known [m].
 inline std::optional<column_shift> shift_of_columns(const controller_description& described,
                                                     const actuator_description& actuator, const axis_log& log,
                                                     double period, double count) {

@@ -23,6 +23,7 @@ struct columns_in_time {
     std::vector<std::string>& notes;
 
     void by_replay();
+    void before_it_was_on();
     void by_motion();
 
 private:
@@ -32,12 +33,9 @@ private:
     }
 };
 
-/// Columns that were not sampled with the position are read as the controller had them. A controller that answers
-/// late, and whose command acts as late, is no matter of the log.
+/// Columns that were not sampled with the position are read as the controller had them. A controller that
+/// answers late, and whose command acts as late, is no matter of the log.
 inline void columns_in_time::by_replay() {
-    if (!axis.controller || !log.has_reference || !log.as_sampled || !log.left_out.empty() ||
-        axis.actuator.command_is == command_origin::measured)
-        return;
     const auto found =
         shift_of_columns(*axis.controller, axis.actuator, log, period, axis.encoder.resolution_m);
     if (!found) return;
@@ -70,6 +68,26 @@ inline void columns_in_time::by_replay() {
     change([&](axis_log l) { return put_right(std::move(l), late); });
 }
 
+/// Rows at the beginning in which nothing is commanded, and the described controller would: it was off, or its
+/// drive was.
+inline void columns_in_time::before_it_was_on() {
+    constexpr std::ptrdiff_t least = 32; // rows
+    const auto& u = log.command;
+    const auto on = std::find_if(u.begin(), u.end(), [](double x) { return x != 0; });
+    if (on - u.begin() < least || on == u.end()) return;
+    const auto rows = static_cast<std::size_t>(on - u.begin());
+    const auto replayed =
+        replay_controller(*axis.controller, axis.actuator, period,
+                          loop_columns{log.reference, log.position, std::span(u)}.part(0, rows));
+    const double step = std::max(dac_step(axis.actuator), log.command_step);
+    if (!(rms(replayed) > step)) return;
+    log.left_out.resize(log.position.size());
+    std::fill(log.left_out.begin(), log.left_out.begin() + (on - u.begin()), 1);
+    notes.push_back(fmt::format("axis {}: nothing is commanded up to {:.3g} s, where the described controller "
+                                "would: it was off, or its drive was. These rows are left out.",
+                                axis.name, period * static_cast<double>(rows)));
+}
+
 /// A command that was recorded late is read as it acted: else a mode or a lag stands in for it.
 inline void columns_in_time::by_motion() {
     const double late = lateness_of_command(log, period, axis.plant, axis.actuator.command_is);
@@ -96,7 +114,11 @@ inline void put_columns_in_time(const axis_description& axis, double period, axi
                                 std::optional<axis_log>& holdout, std::vector<std::string>& notes) {
     detail::columns_in_time all{axis, period, log, holdout, notes};
     if (axis.drive.closes()) return;
-    all.by_replay();
+    if (axis.controller && log.has_reference && log.as_sampled && log.left_out.empty() &&
+        axis.actuator.command_is == command_origin::asked) {
+        all.by_replay();
+        if (log.as_sampled) all.before_it_was_on();
+    }
     all.by_motion();
 }
 

@@ -84,6 +84,24 @@ inline void add_friction(std::vector<parameter>& out, const plant_description& d
     out.back().high = excess + play;
 }
 
+/// Each direction has its own level of friction inside the tolerance. Behind loops of a drive the log says too
+/// little of it.
+inline void add_directions(std::vector<parameter>& out, const axis_description& axis) {
+    const plant_description& d = axis.plant;
+    const double ratio = std::min(axis.tolerance.of("coulomb"), 0.9);
+    if (axis.drive.closes() || !(d.coulomb_N.value_or(0) > 0) || !(ratio > 0) ||
+        d.coulomb_asymmetry.value_or(0) != 0)
+        return;
+    out.push_back({.key = "coulomb_asymmetry",
+                   .of = [](plant_model& p) -> double& { return p.friction.coulomb_asymmetry; },
+                   .start = 0,
+                   .low = -ratio,
+                   .high = ratio,
+                   .step = 1e-3 * ratio,
+                   .expected = 0,
+                   .spread = ratio / std::numbers::sqrt3});
+}
+
 /// What the drive gives was measured as a current, whose force is known to the force constant's tolerance only:
 /// gains and limit of the drive's force, as that current shows them, move by it, too. A box of both tolerances,
 /// with the variance of both.
@@ -139,6 +157,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter> calibration(const axis_descriptio
     within(
         "delay_s", [](plant_model& p) -> double& { return p.delay; }, d.delay_s, tolerance.of("delay"));
     detail::add_friction(out, d, tolerance);
+    detail::add_directions(out, axis);
     within(
         "stribeck_velocity_m_per_s", [](plant_model& p) -> double& { return p.friction.stribeck_velocity; },
         d.stribeck_velocity_m_per_s.value_or(0), tolerance.of("stribeck_velocity"));
