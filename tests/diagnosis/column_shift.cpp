@@ -104,3 +104,17 @@ TEST_CASE("columns in time: rows before the controller was on are left out where
     CHECK(says(d, "nothing is commanded up to 0.5"));
     CHECK_FALSE(says(diagnose(file, workshop::as_log(workshop::run(real))), "nothing is commanded"));
 }
+TEST_CASE("column shift: without a described controller a whole row is a delay, and the report says what looks "
+          "the same") {
+    const workshop::machine real;
+    auto file = workshop::described(real);
+    file.axes[0].controller.reset();
+    for (const int rows : {-1, 1}) {
+        auto log = workshop::as_log(workshop::run(real));
+        stand_later(log.axes[0].position, rows);
+        const auto d = diagnose(file, log);
+        CHECK(workshop::claims(d) == std::vector<std::string>{"time_delay"});
+        CHECK(says(d, rows > 0 ? "the delay is longer by one row of the log"
+                               : "the delay is shorter by one row of the log"));
+    }
+}

@@ -49,6 +49,26 @@ inline void note_limit(diagnosis_result& out, const axis_case& c) {
             c.axis.name, *c.controller->limits_otherwise_from));
 }
 
+/// A delay that is another by whole rows: columns that were not recorded together look the same, and without a
+/// described controller nothing says which it is.
+inline void note_rows_of_delay(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes) {
+    if (c.controller) return;
+    for (const cause& x : causes) {
+        if (x.effect != "time_delay" || !claimed(x) || x.parameters.empty()) continue;
+        const double more =
+            (x.parameters.front().values.front().value - c.axis.plant.delay_s) / c.record.period;
+        const double rows = std::round(more);
+        if (rows == 0 || std::abs(more - rows) > 0.15) continue;
+        out.notes.push_back(fmt::format(
+            "axis {}: the delay is {} by {} of the log. A position that was recorded that much {}, or a "
+            "command that was "
+            "recorded that much {}, looks the same: describe the controller, and its replay decides.",
+            x.axis, rows > 0 ? "longer" : "shorter",
+            std::abs(rows) == 1 ? "one row" : fmt::format("{:.0f} rows", std::abs(rows)),
+            rows > 0 ? "late" : "early", rows > 0 ? "early" : "late"));
+    }
+}
+
 /// What the owner excludes although it explains the record better than what is named.
 inline void note_excluded(diagnosis_result& out, const std::vector<cause>& causes) {
     for (const cause& x : causes)
