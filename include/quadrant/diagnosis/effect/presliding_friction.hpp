@@ -68,12 +68,16 @@ inline constexpr effect presliding_friction{
     .starts = [](const screening& s) -> std::vector<std::vector<parameter>> {
         if (!(s.leader.friction.coulomb > 0)) return {};
         std::vector<std::vector<parameter>> out;
-        for (double length : {15.0, 50.0, 200.0})
+        const double give = s.record.scale.give();
+        std::vector<double> lengths{15 * give, 50 * give, 200 * give};
+        // A contact that is described gives way by that much; its law may be another.
+        if (s.described.presliding_length_m) lengths.push_back(*s.described.presliding_length_m);
+        for (const double length : lengths)
             out.push_back({{.key = "presliding_length_m",
                             .of = [](plant_model& p) -> double& { return p.friction.contact.length; },
-                            .start = length * s.record.scale.give(),
-                            .low = 5 * s.record.scale.give(),
-                            .high = std::max(5e-3 * s.record.scale.travel, 500 * s.record.scale.give()),
+                            .start = length,
+                            .low = 5 * give,
+                            .high = std::max(5e-3 * s.record.scale.travel, 500 * give),
                             .logarithmic = true,
                             .step = 1e-2},
                            {.key = "presliding_length_m",

@@ -97,7 +97,7 @@ inline void add_directions(std::vector<parameter>& out, const axis_description& 
                    .start = 0,
                    .low = -ratio,
                    .high = ratio,
-                   .step = 1e-3 * ratio,
+                   .step = 1e-3, // of a level, as of the level itself
                    .expected = 0,
                    .spread = ratio / std::numbers::sqrt3});
 }

@@ -160,6 +160,17 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
     return std::nullopt;
 }
 
+/// Whether a number that calibration moves from nothing is one by which an equivalent effect does the same: what
+/// it moves is then the effect's.
+inline bool is_of_equivalent(const parameter& p, const effect& e) {
+    if (!(p.spread > 0) || p.expected != 0) return false;
+    return std::any_of(e.equivalent.begin(), e.equivalent.end(), [&](std::string_view name) {
+        const effect* other = name.empty() ? nullptr : effect_named(name);
+        return other && std::any_of(other->keys.begin(), other->keys.end(),
+                                    [&](const machine_key& k) { return k.name == p.key; });
+    });
+}
+
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidate& from, const effect& added,
@@ -182,7 +193,9 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
             const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
                 return &q.of(plant) == &resumed_from[i].of(plant);
             });
-            if (replaced) continue;
+            const bool is_its_other_name = detail::is_of_equivalent(resumed_from[i], added);
+            if (is_its_other_name) resumed_from[i].of(plant) = resumed_from[i].expected;
+            if (replaced || is_its_other_name) continue;
             ps.push_back(resumed_from[i]);
             known.which.push_back(i);
         }
