@@ -160,8 +160,7 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
     return std::nullopt;
 }
 
-/// Whether a number that calibration moves from nothing is one by which an equivalent effect does the same: what
-/// it moves is then the effect's.
+/// Whether calibration moves this number from nothing, and an equivalent effect does the same by it.
 inline bool is_of_equivalent(const parameter& p, const effect& e) {
     if (!(p.spread > 0) || p.expected != 0) return false;
     return std::any_of(e.equivalent.begin(), e.equivalent.end(), [&](std::string_view name) {
@@ -189,14 +188,14 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
         std::vector<parameter> ps;
         known_slopes known{.from = &slopes};
         for (std::size_t i = 0; i < resumed_from.size(); ++i) {
-            // The effect's own parameters replace the described ones.
-            const bool replaced = std::any_of(start.begin(), start.end(), [&](const parameter& q) {
-                return &q.of(plant) == &resumed_from[i].of(plant);
-            });
-            const bool is_its_other_name = detail::is_of_equivalent(resumed_from[i], added);
-            if (is_its_other_name) resumed_from[i].of(plant) = resumed_from[i].expected;
-            if (replaced || is_its_other_name) continue;
-            ps.push_back(resumed_from[i]);
+            // The effect's own parameters replace the described ones, and those that do the same.
+            const parameter& q = resumed_from[i];
+            const bool does_the_same = detail::is_of_equivalent(q, added);
+            if (does_the_same) q.of(plant) = q.expected;
+            if (does_the_same || std::any_of(start.begin(), start.end(),
+                                             [&](const parameter& p) { return &p.of(plant) == &q.of(plant); }))
+                continue;
+            ps.push_back(q);
             known.which.push_back(i);
         }
         const std::size_t own = ps.size();
