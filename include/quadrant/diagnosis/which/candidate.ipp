@@ -162,12 +162,12 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
 
 /// Whether calibration moves this number from nothing, and an equivalent effect does the same by it.
 inline bool is_of_equivalent(const parameter& p, const effect& e) {
-    if (!(p.spread > 0) || p.expected != 0) return false;
-    return std::any_of(e.equivalent.begin(), e.equivalent.end(), [&](std::string_view name) {
-        const effect* other = name.empty() ? nullptr : effect_named(name);
-        return other && std::any_of(other->keys.begin(), other->keys.end(),
-                                    [&](const machine_key& k) { return k.name == p.key; });
-    });
+    const auto has_it = [&](std::string_view name) {
+        const effect* other = effect_named(name);
+        const auto is_it = [&](const machine_key& k) { return k.name == p.key; };
+        return other && std::any_of(other->keys.begin(), other->keys.end(), is_it);
+    };
+    return p.spread > 0 && p.expected == 0 && std::any_of(e.equivalent.begin(), e.equivalent.end(), has_it);
 }
 
 } // namespace detail
@@ -192,9 +192,8 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
             const parameter& q = resumed_from[i];
             const bool does_the_same = detail::is_of_equivalent(q, added);
             if (does_the_same) q.of(plant) = q.expected;
-            if (does_the_same || std::any_of(start.begin(), start.end(),
-                                             [&](const parameter& p) { return &p.of(plant) == &q.of(plant); }))
-                continue;
+            const auto is_it = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
+            if (does_the_same || std::any_of(start.begin(), start.end(), is_it)) continue;
             ps.push_back(q);
             known.which.push_back(i);
         }
