@@ -190,12 +190,11 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
         for (std::size_t i = 0; i < resumed_from.size(); ++i) {
             // The effect's own parameters replace the described ones, and those that do the same.
             const parameter& q = resumed_from[i];
-            const bool does_the_same = detail::is_of_equivalent(q, added);
-            if (does_the_same) q.of(plant) = q.expected;
             const auto is_it = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
-            if (does_the_same || std::any_of(start.begin(), start.end(), is_it)) continue;
-            ps.push_back(q);
-            known.which.push_back(i);
+            if (detail::is_of_equivalent(q, added))
+                q.of(plant) = q.expected;
+            else if (std::none_of(start.begin(), start.end(), is_it))
+                ps.push_back(q), known.which.push_back(i);
         }
         const std::size_t own = ps.size();
         ps.insert(ps.end(), start.begin(), start.end());
