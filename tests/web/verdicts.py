@@ -20,7 +20,9 @@ SHORT = {"practice/001", "practice/009", "servo_pendulum/001"}
 APART = 0.02  # of a probability: the sums of two compilers round differently
 LIMIT_S = 900
 # A path that sticks and slips is rough: where the sums round differently, its fit ends elsewhere.
-NOT_YET = {}  # name of a case: how the page differs from the program
+NOT_YET = {  # name of a case: how the page differs from the program
+    "servo_pendulum/010": "force_constant has 0.55 of its group there, 0.77 here; the group has 0.97 in both",
+}
 FILES = ("machine.json", "log.csv", "holdout.csv")
 
 
