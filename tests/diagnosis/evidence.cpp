@@ -148,10 +148,13 @@ TEST_CASE("search: what comes near the best at a first look is fitted to the end
 
 TEST_CASE("evidence: each direction has its own friction inside the tolerance, and beyond it a cause") {
     workshop::machine real;
-    auto file = workshop::described(real); // of the Coulomb level 5 %, 3 N
-    real.constant_force = -2;
-    CHECK(workshop::diagnosed(file, real).causes.empty());
-    real.constant_force = -9;
+    auto file = workshop::described(real);
+    file.axes[0].tolerance.given["coulomb"] = 0.12; // 7 N
+    for (const double within : {-2.8, 4.0}) {
+        real.constant_force = within;
+        CHECK(workshop::diagnosed(file, real).causes.empty());
+    }
+    real.constant_force = -20;
     const auto d = workshop::diagnosed(file, real);
     REQUIRE(d.causes.size() == 1);
     CHECK((d.causes[0].effect == "constant_force" || d.causes[0].effect == "asymmetric_friction"));
