@@ -32,6 +32,12 @@ inline std::string said(const diagnosis_result& d) {
     return out + "; " + d.remaining_structure;
 }
 
+/// Whether a note has these words.
+inline bool says(const diagnosis_result& d, const std::string& words) {
+    return std::any_of(d.notes.begin(), d.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
 inline const estimate& value_of(const cause& c, const std::string& key) {
     for (const auto& p : c.parameters)
         if (p.key == key) return p.values.at(0);

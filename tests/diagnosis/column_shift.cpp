@@ -5,28 +5,15 @@
 #include <doctest/doctest.h>
 #include <quadrant/diagnosis/where/column_shift.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 using namespace quadrant::diagnosis;
+using workshop::says;
+using workshop::stand_later;
 
 namespace {
 
-/// A column that stands some rows later than it was.
-void stand_later(std::vector<double>& column, int rows) {
-    const auto n = static_cast<std::ptrdiff_t>(column.size());
-    if (rows > 0) std::rotate(column.begin(), column.end() - rows, column.end());
-    if (rows < 0) std::rotate(column.begin(), column.begin() - rows, column.end());
-    for (std::ptrdiff_t k = 0; k < rows; ++k)
-        column[static_cast<std::size_t>(k)] = column[static_cast<std::size_t>(rows)];
-    for (std::ptrdiff_t k = n + rows; k < n; ++k)
-        column[static_cast<std::size_t>(k)] = column[static_cast<std::size_t>(n + rows - 1)];
-}
-bool says(const diagnosis_result& d, const std::string& words) {
-    return std::any_of(d.notes.begin(), d.notes.end(),
-                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
-}
 std::optional<column_shift> shift_of(const axis_log& log, const machine_description& file) {
     const auto& axis = file.axes[0];
     return shift_of_columns(*axis.controller, axis.actuator, log, workshop::period, axis.encoder.resolution_m);

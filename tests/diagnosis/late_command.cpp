@@ -59,8 +59,7 @@ double force(double t) {
 } // namespace
 
 TEST_CASE("late command: one that was sent 2.3 rows after the position is read as much earlier, and one that "
-          "was sent "
-          "before it later, if it was measured") {
+          "was sent before it later, if it was measured") {
     // A row's command is its mean until the next row: read at the row it is half a row late already.
     const auto lateness = [](double rows, command_origin origin, double delay = 0) {
         plant_description described = plant;
@@ -85,13 +84,9 @@ TEST_CASE(
     "report says so") {
     const auto diagnosed_late = [](const workshop::machine& real, const machine_description& file, long rows) {
         auto log = workshop::as_log(workshop::run(real));
-        auto& u = log.axes[0].command;
-        std::rotate(u.begin(), u.end() - rows, u.end());
-        std::fill_n(u.begin(), rows, u[static_cast<std::size_t>(rows)]);
+        workshop::stand_later(log.axes[0].command, rows);
         auto d = diagnose(file, log);
-        CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
-            return note.find("the command stands") != std::string::npos;
-        }));
+        CHECK(workshop::says(d, "the command stands"));
         return d;
     };
     for (const double delay : {0.0, 0.0006}) { // read later than the motion, or than the described delay
@@ -114,8 +109,7 @@ TEST_CASE(
         auto file = workshop::described(m);
         change(m);
         auto log = workshop::run(m);
-        std::rotate(log.command.begin(), log.command.end() - rows, log.command.end());
-        std::fill_n(log.command.begin(), rows, log.command[static_cast<std::size_t>(rows)]);
+        workshop::stand_later(log.command, rows);
         return lateness_of_command(log, workshop::period, file.axes[0].plant, command_origin::measured) /
                workshop::period;
     };

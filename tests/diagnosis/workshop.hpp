@@ -5,6 +5,7 @@
 #include <quadrant/diagnosis/log/log.hpp>
 #include <quadrant/diagnosis/machine/machine.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -221,6 +222,16 @@ inline quadrant::diagnosis::machine_description described(const machine& m) {
     out.sample_period_s = period;
     out.axes.push_back(a);
     return out;
+}
+
+/// A column that was recorded some rows later than it was, negative: earlier.
+inline void stand_later(std::vector<double>& column, std::ptrdiff_t rows) {
+    if (rows == 0) return;
+    std::rotate(column.begin(), rows > 0 ? column.end() - rows : column.begin() - rows, column.end());
+    if (rows > 0)
+        std::fill_n(column.begin(), rows, column[static_cast<std::size_t>(rows)]);
+    else
+        std::fill_n(column.end() + rows, -rows, *(column.end() + rows - 1));
 }
 
 inline quadrant::diagnosis::machine_log as_log(quadrant::diagnosis::axis_log axis) {
