@@ -161,7 +161,7 @@ template <class Boxes, class Motor> using as_y = axis_of_loop<Boxes, Motor, true
 template <class Boxes, class Motor, class Instruments, bool OfY> class measured_axis_of_loop {
     using slide = table_axis_boxes<Motor>;
     using table = thesis::measured_table<xy_table<slide, slide>, Instruments>;
-    using loop_type = xy_loop<Boxes, Boxes, table, thesis::told_force>;
+    using loop_type = xy_loop<Boxes, Boxes, table>;
 
 public:
     measured_axis_of_loop(const typename Boxes::parameters& controller, const typename Motor::parameters& motor,
@@ -173,11 +173,10 @@ public:
                 thesis::period) {}
 
     void settle(quantity<si::length> at) { loop_.settle({.x = on_x(at), .y = on_y(at)}); }
-    void step(const axis_motion<>& now, quantity_of<signal::force> push = {}) {
+    void step(const axis_motion<>& now) {
         const double t = double(count_++) * thesis::period.value();
         const axis_motion<> other{1_mm * (1 - std::cos(7 * t)), 7_mmps * std::sin(7 * t),
                                   49e-3 * std::cos(7 * t) * 1_mps2};
-        (OfY ? loop_.process_y() : loop_.process_x()).now = push;
         const auto seen = loop_.table().reading();
         reading_ = OfY ? seen.y.plain() : seen.x.plain();
         if constexpr (OfY)

@@ -26,10 +26,10 @@ public:
         motor_.settle(at);
         loop_.settle(at);
     }
-    void step(const motion& now, quantity_of<signal::force> push = {}) {
+    void step(const motion& now) {
         reading_ = instruments_.reading(motor_.now().x, motor_.now().v);
         command_ = loop_(now, reading_);
-        motor_(instruments_.command(command_), push);
+        motor_(instruments_.command(command_));
     }
     Boxes& boxes() { return loop_.box; }
     auto now() const { return motor_.now(); } ///< of the axis, not of its encoder

@@ -5,6 +5,9 @@
 #include "measured_axis.hpp"
 #include "white_noise.hpp"
 
+#include <quadrant/plant/axis_load.hpp>
+#include <quadrant/plant/cogging_force.hpp>
+
 #include <optional>
 #include <utility>
 
@@ -56,7 +59,7 @@ private:
 template <template <class, class, class> class Axis = measured_axis, class Wanted, class Tell>
 bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&& tell) {
     using boxes = milling_axis_boxes<gms_model::box>;
-    using motor_type = linear_motor<maxwell_slip<4>>;
+    using motor_type = linear_motor<maxwell_slip<4>, 32, double, axis_load<cogging_force<>>>;
     auto controller = controller_of<boxes>(y);
     controller.friction = gms_model::of(y);
     controller.dac_step = d.dac * 1_V;
@@ -74,7 +77,8 @@ bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&&
                              .force_constant = d.force_constant * y.kf,
                              .friction =
                                  gms<signal::force>(machine, gain_of<signal::force, signal::force>(1.0)),
-                             .delay = 0.4_ms + d.delay * 1_s};
+                             .delay = 0.4_ms + d.delay * 1_s,
+                             .load = {.cogging = {32_mm, {d.cogging * 1_N}, {0.0}}}};
     p.friction.curve.viscous += y.A_gms * believed + d.viscous * 1_N / 1_mps;
     Axis<boxes, motor_type, wrong_encoder> run(controller, p, wrong_encoder(d));
     const double corner = 942.5 / (1 + 942.5 * d.lag);
@@ -87,7 +91,7 @@ bool drive_wrong(const difference& d, const Wanted& wanted, double lasts, Tell&&
         const axis_motion<> now = wanted(k * T);
         const double at = run.now().x.value();
         if (run.stopped()) return false;
-        run.step(now, d.cogging * std::sin(2 * pi_ * at / 0.032) * 1_N);
+        run.step(now);
         if (!tell(k * T, now, at, run.reading().value(), run.command().value())) return false;
     }
     return true;
