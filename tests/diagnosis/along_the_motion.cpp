@@ -176,3 +176,54 @@ TEST_CASE("diagnose: a light motor that creeps over its cogging torque" * doctes
         CHECK((c.probability < 0.5 || c.effect == "cogging" || c.effect == "coulomb_friction" ||
                c.effect == "viscous_friction" || c.effect == "constant_force"));
 }
+
+namespace {
+
+/// A motor of 0.12 g m^2 with Coulomb friction of 0.03 N m that speeds up once; its torque by a sensor whose
+/// white noise is of this size [N m].
+machine_log behind_noisy_sensor(double white) {
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> noise(0, white);
+    constexpr double step = 0.001, read = 6e-4;
+    axis_log l;
+    l.name = "q";
+    l.kind = axis_kind::rotary;
+    l.position_step = l.command_step = 1e-6;
+    double q = 0, v = 0;
+    for (int k = 0; k < 12000; ++k) {
+        const double torque = k < 4000 ? 0.05 : 0.06;
+        l.position.push_back(std::round(q / read) * read);
+        l.command.push_back(torque + noise(random));
+        for (int i = 0; i < 10; ++i) {
+            const double h = step / 10, a = (torque - 0.03 * std::tanh(v / 0.5) - 7e-5 * v) / 1.2e-4;
+            q += h * (v + h / 2 * a);
+            v += h * a;
+        }
+    }
+    machine_log out;
+    out.sample_period_s = step;
+    out.samples = l.position.size();
+    out.axes.push_back(std::move(l));
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("diagnose: the noise of a torque sensor is no weak motor, and no friction that grows with the load") {
+    auto machine = read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"q": {
+        "plant": {"inertia_kg_m2": 1.2e-4, "viscous_Nm_s_per_rad": 7e-5},
+        "tolerance": {"inertia": 0.1, "viscous": 0.2},
+        "encoder": {"resolution_rad": 6e-4}, "actuator": {"command_is": "measured"}}}})"),
+        "motor.json");
+    for (const double white : {0.06, 0.02}) {
+        if (white < 0.03) machine.excluded_effects = {"force_constant"}; // load friction is the nearest then
+        const auto d = diagnose(machine, behind_noisy_sensor(white));
+        CAPTURE(said(d));
+        REQUIRE(!d.causes.empty());
+        CHECK(d.causes.front().effect == "coulomb_friction");
+        CHECK(d.causes.front().group_probability > 0.9);
+        for (const cause& c : d.causes)
+            if (c.effect == "force_constant" || c.effect == "load_friction") CHECK(c.group_probability < 0.5);
+    }
+}

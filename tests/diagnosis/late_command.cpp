@@ -100,18 +100,74 @@ TEST_CASE(
         workshop::named(diagnosed_late(real, file, 2), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
     }
 }
+namespace {
+
+/// As a drive writes its current: behind a first-order low-pass that runs once a row.
+std::vector<double> behind_low_pass(std::vector<double> x, double kept) {
+    for (std::size_t k = 1; k < x.size(); ++k) x[k] += kept * (x[k - 1] - x[k]);
+    return x;
+}
+
+} // namespace
+
+TEST_CASE("late command: a low-pass is no delay of the same size, and is undone") {
+    const axis_log in_time = recorded([](double t) { return force(t + 0.5 * T); });
+    for (const double kept : {0.5, 0.7, 0.85}) {
+        const double rows = kept / (1 - kept); // y + rows (y - what stood before) is what came in
+        axis_log log = in_time;
+        log.command = behind_low_pass(in_time.command, kept);
+        const auto found = low_pass_of_command(log, T, plant);
+        REQUIRE(found);
+        CHECK(found->time_constant == doctest::Approx(rows * T).epsilon(0.1));
+        CHECK(!low_pass_of_command(recorded([&](double t) { return force(t + (0.5 - rows) * T); }), T, plant));
+    }
+    CHECK(!low_pass_of_command(in_time, T, plant));
+}
+TEST_CASE("late command: what a low-pass of the recorder took is put back") {
+    axis_log log = recorded(force);
+    log.command.clear();
+    for (int k = 0; k < 2000; ++k) log.command.push_back(std::sin(0.1 * k));
+    const auto before = log.command;
+    log.command = behind_low_pass(before, 0.7);
+    const auto after = read_before_low_pass(log, {.time_constant = 7.0 / 3 * T, .second = -3.5 / 3 * T * T}, T);
+    for (std::size_t k = 100; k < 1900; ++k) CHECK(std::abs(after.command[k] - before[k]) < 0.01);
+}
+TEST_CASE("late command: a machine whose measured command stands behind a low-pass has the causes that it has "
+          "without") {
+    const auto diagnosed = [](const workshop::machine& real, const machine_description& file, double kept) {
+        auto log = workshop::as_log(workshop::run(real));
+        log.axes[0].command = behind_low_pass(log.axes[0].command, kept);
+        auto d = diagnose(file, log);
+        CHECK(workshop::says(d, "low-pass"));
+        return d;
+    };
+    workshop::machine real;
+    auto file = workshop::described(real);
+    file.axes[0].actuator.command_is = command_origin::measured;
+    file.axes[0].controller.reset();
+    for (const double kept : {0.65, 0.85}) CHECK(diagnosed(real, file, kept).causes.empty());
+    real.coulomb *= 1.3;
+    workshop::named(diagnosed(real, file, 0.65), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
+}
 TEST_CASE(
-    "late command: no effect of the workshop's machines makes a command late by more than half a row, or hides "
-    "three rows") {
-    const auto lateness = [](const std::function<void(workshop::machine&)>& change, long rows) {
-        workshop::machine m;
-        m.delay = 0;
-        auto file = workshop::described(m);
+    "late command: no effect of the workshop's machines makes a command late by more than half a row, hides "
+    "three rows, or makes a low-pass of them") {
+    workshop::machine as_described;
+    as_described.delay = 0;
+    const plant_description plant = workshop::described(as_described).axes[0].plant;
+    const auto late = [&](const std::function<void(workshop::machine&)>& change, long rows) {
+        workshop::machine m = as_described;
         change(m);
         auto log = workshop::run(m);
         workshop::stand_later(log.command, rows);
-        return lateness_of_command(log, workshop::period, file.axes[0].plant, command_origin::measured) /
+        return log;
+    };
+    const auto lateness = [&](const std::function<void(workshop::machine&)>& change, long rows) {
+        return lateness_of_command(late(change, rows), workshop::period, plant, command_origin::measured) /
                workshop::period;
+    };
+    const auto low_pass = [&](const std::function<void(workshop::machine&)>& change, long rows) {
+        return low_pass_of_command(late(change, rows), workshop::period, plant).has_value();
     };
     const auto mode = [](double mass, double frequency, double damping) {
         return [=](workshop::machine& m) {
@@ -126,6 +182,7 @@ TEST_CASE(
              [](auto& m) { m.loss = 0.05; }}) {
         CHECK(lateness(change, 0) == 0);
         CHECK(std::abs(lateness(change, 3) - 3) < 0.5);
+        for (const long rows : {0, 3}) CHECK(!low_pass(change, rows));
     }
     // A force that no regression knows, and larger than what three rows change: nothing is said.
     const auto spring = [](workshop::machine& m) { m.spring = 5e3; };

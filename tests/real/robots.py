@@ -67,6 +67,7 @@ STS3250 = {"q": {
     "drive": {"kind": "position_servo", "position_gain_per_rad": 11.6, "maximum_duty": 0.97, "supply_V": 12,
               "command_delay_s": 0.02}}}
 MOUSE = {"left": wheel(0.02), "right": wheel(0.021)}
+PANDA = {"q7": {"plant": {"inertia_kg_m2": 0.004}, "tolerance": {"inertia": 0.5}, "actuator": MEASURED}}
 
 LOGS = {
     "tx40": ("staubli_tx40", ["staubli_tx40/pos_read_data.csv", "staubli_tx40/curr_data.csv"],
@@ -79,6 +80,7 @@ LOGS = {
        for n in ("mounted", "bar", "350gr", "700gr")},
     **{f"sts_{n}": ("sts3250", [f"sts3250/{n}.csv"], ["--sample-period", "0.02055"])
        for n in ("sin_sin", "up_and_down")},
+    "panda": ("panda", ["panda/panda.csv"], ["--resample"]),
     "drone": ("quarter_drone", ["quarter_drone/dados_14_drone.csv"], ["--resample"]),
     "drone_fast": ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"]),
 }
@@ -86,6 +88,7 @@ RECORDS = {
     "tx40": ("tx40", None, TX40, []),
     "tiago": ("tiago", None, TIAGO, []),
     "mouse": ("mouse", None, MOUSE, []),
+    "panda": ("panda", None, PANDA, []),
     "drone": ("drone", None, DRONE, []),
     "servo_healthy": ("large_amplitude", "repetitive_motion", {"rotation": servo(0.055)}, []),
     "servo_friction": ("large_amplitude", "repetitive_motion", {"rotation": servo()}, []),
@@ -158,8 +161,10 @@ RIGHT = [
      lambda d: meets(claimed(d, "gravity"), "gravity_torque_Nm", 2.8, 3.0)),
     ("cyclo_700gr", "Coulomb friction is claimed and meets 2.7 to 3.0 N m",
      lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 2.7, 3.0)),
+    ("panda", "Coulomb friction is claimed, meets the 0.277 and 0.288 N m of the paper, and nothing else is",
+     lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.277, 0.288) and len(claims(d)) == 1),
 ] + [(r, "nothing before the tap of a measured command is named", nothing_before_the_tap)
-     for r in ("tx40", "tiago", "cyclo_mounted", "cyclo_bar", "cyclo_350gr", "cyclo_700gr")]
+     for r in ("panda", "tx40", "tiago", "cyclo_mounted", "cyclo_bar", "cyclo_350gr", "cyclo_700gr")]
 
 NOT_YET = [
     ("cyclo_350gr", "gravity of 1.75 N m is claimed",

@@ -62,4 +62,43 @@ QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, doub
     return log;
 }
 
+QUADRANT_DIAGNOSIS_DECL std::optional<low_pass_undone> low_pass_of_command(const axis_log& log, double period,
+                                                                           const plant_description& plant) {
+    constexpr int most_turns = 6;
+    const double as_described = -0.5 * period - plant.delay_s;
+    const auto read = [&](const axis_log& by) {
+        return regress(read_earlier(by, as_described, period), period, and_lateness::with_curvature);
+    };
+    axis_regression r = read(log);
+    const double late = r.lateness.value, second = -r.curvature.value, of_delay = late * late / 2;
+    if (!(late > 0) || !r.lateness.sure() || !detail::is_of_the_plant(r, plant) ||
+        r.left > 0.5 * r.left_in_time)
+        return {};
+    // Neither a delay nor a mode, which has a curvature without a lateness.
+    if (second + 4 * r.curvature.spread > of_delay || second > of_delay / 2 ||
+        second < -of_delay - late * period / 2)
+        return {};
+    low_pass_undone by, best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int turn = 0; turn < most_turns; ++turn) {
+        by.time_constant += r.lateness.value;
+        by.second -= r.curvature.value;
+        r = read(read_before_low_pass(log, by, period));
+        if (!(r.left_in_time < least)) break;
+        least = r.left_in_time;
+        best = by;
+    }
+    const command_timing t = timing_of_command(log, period, plant);
+    const axis_log in_time = read_earlier(log, as_described + (t.sure() ? t.later : 0.0), period);
+    if (!(least < regress(in_time, period, and_lateness::up_to_noise).left_in_time)) return {};
+    return best;
+}
+
+QUADRANT_DIAGNOSIS_DECL axis_log read_before_low_pass(axis_log log, const low_pass_undone& by, double period) {
+    const std::vector<double> slope = derivative(log.command, period), curve = derivative(slope, period);
+    for (std::size_t k = 0; k < slope.size(); ++k)
+        log.command[k] += by.time_constant * slope[k] + by.second * curve[k];
+    return log;
+}
+
 } // namespace quadrant::inline v0::diagnosis

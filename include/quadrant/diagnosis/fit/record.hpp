@@ -49,6 +49,11 @@ struct axis_record {
     }
     /// Whether the drive's loops are closed on the model, so that its path is judged.
     bool closed() const { return observer.closed.has_value(); }
+    /// The noise of a measured command in forces up to this frequency [N].
+    double command_noise_below(double band_Hz) const {
+        if (command_noise == 0) return 0;
+        return command_noise * white_noise_below(band_Hz, period) / white_noise_below(bandwidth_Hz, period);
+    }
 };
 
 /// Rows where one motion ends and the next begins: the velocity of the reference changes sign, starts or stops.

@@ -19,8 +19,9 @@ struct regressed {
 struct axis_regression {
     regressed acceleration, speed, direction, mean, weight;
     regressed lateness;      ///< of the command behind the motion [s], where it is asked for
+    regressed curvature;     ///< the command has so much of its second derivative too much [s2], likewise
     double left = 1;         ///< of the command's variance
-    double left_in_time = 1; ///< the same without a lateness
+    double left_in_time = 1; ///< the same without lateness and curvature
     double phase = 0;        ///< position at which the weight hangs down [rad]
     double band_Hz = 0;      ///< of the low-pass on all signals; 0: nothing can be said
 };
@@ -46,13 +47,14 @@ struct regression_part {
 } // namespace detail
 
 /// Whether a regression looks for a command that stands by a little later than what it does: no, in the band of
-/// the motion, or in all that stands above noise, where a lateness of less than a row shows.
-enum class and_lateness { no, of_motion, up_to_noise };
+/// the motion, or in all that stands above noise, where a lateness of less than a row shows; and for its
+/// curvature, which tells a low-pass from a delay.
+enum class and_lateness { no, of_motion, up_to_noise, with_curvature };
 
 /// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
 /// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
 /// have any size there. Lateness: on the command's slope, too, and without rows near a change of direction,
-/// where friction builds up late.
+/// where friction builds up late. Curvature: on its second derivative as well.
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period,
                                                 and_lateness asked = and_lateness::no);
 

@@ -43,7 +43,8 @@ QUADRANT_DIAGNOSIS_DECL double regression_band(const axis_log& log, double perio
 struct regression_signals {
     regression_signals(const axis_log& log, double band_Hz, double period)
         : v(derivative(zero_phase(log.position, band_Hz, period), period)), a(derivative(v, period)),
-          u(zero_phase(log.command, band_Hz, period)), slope(derivative(u, period)) {
+          u(zero_phase(log.command, band_Hz, period)), slope(derivative(u, period)),
+          curve(derivative(slope, period)) {
         const auto filtered = [&](const std::vector<double>& of, auto term) {
             std::vector<double> x;
             for (const double z : of) x.push_back(term(z));
@@ -53,7 +54,7 @@ struct regression_signals {
         sine = filtered(log.position, [](double z) { return std::sin(z); });
         cosine = filtered(log.position, [](double z) { return std::cos(z); });
     }
-    std::vector<double> v, a, u, slope, direction{}, sine{}, cosine{};
+    std::vector<double> v, a, u, slope, curve, direction{}, sine{}, cosine{};
 };
 
 inline double largest(const std::vector<double>& x) {
@@ -73,11 +74,10 @@ inline regression_part sum_without(const std::vector<regression_part>& parts, st
     return out;
 }
 
-/// Shares of the command's variance that are left with its slope, the last number, and without. energy: of the
-/// command.
+/// Shares of the command's variance that are left with its derivatives and without. energy: of the command;
+/// n: numbers before those of its derivatives.
 inline void add_shares_left(axis_regression& out, const regression_part& all, double energy,
-                            const Eigen::VectorXd& whole) {
-    const Eigen::Index n = whole.size() - 1;
+                            const Eigen::VectorXd& whole, Eigen::Index n) {
     const double variance = energy - all.right[3] * all.right[3] / all.left(3, 3);
     const Eigen::VectorXd in_time = solved(all.left.topLeftCorner(n, n), all.right.head(n));
     out.left = (energy - all.right.dot(whole)) / variance;
@@ -88,7 +88,7 @@ inline void add_shares_left(axis_regression& out, const regression_part& all, do
 
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, and_lateness asked) {
     axis_regression out;
-    out.band_Hz = detail::regression_band(log, period, asked == and_lateness::up_to_noise);
+    out.band_Hz = detail::regression_band(log, period, asked >= and_lateness::up_to_noise);
     if (!(out.band_Hz > 0)) return out;
     const detail::regression_signals of(log, out.band_Hz, period);
     const double fastest = detail::largest(of.v);
@@ -96,7 +96,8 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     const std::size_t rows = of.v.size() / parts;
     if (rows < 8 || !(detail::largest(of.a) > 0)) return {};
     const bool turns = log.kind == axis_kind::rotary, lateness = asked != and_lateness::no;
-    const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (lateness ? 1 : 0);
+    const bool curvature = asked == and_lateness::with_curvature;
+    const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (curvature ? 2 : lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
     double energy = 0; // of the command
     for (std::size_t k = 0; k < parts * rows; ++k) {
@@ -105,6 +106,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
         row.head<4>() << of.a[k], of.v[k], of.direction[k], 1;
         if (turns) row.segment<2>(4) << of.sine[k], of.cosine[k];
         if (lateness) row[of_axis] = -of.slope[k];
+        if (curvature) row[of_axis + 1] = of.curve[k];
         sums[k / rows].left += row * row.transpose();
         sums[k / rows].right += of.u[k] * row;
         energy += of.u[k] * of.u[k];
@@ -125,8 +127,9 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     out.mean = number(3);
     if (lateness) {
         out.lateness = number(of_axis);
-        detail::add_shares_left(out, detail::sum_without(sums, parts), energy, whole);
+        detail::add_shares_left(out, detail::sum_without(sums, parts), energy, whole, of_axis);
     }
+    if (curvature) out.curvature = number(of_axis + 1);
     if (turns) {
         out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};
         out.phase = std::atan2(-whole[5], whole[4]);

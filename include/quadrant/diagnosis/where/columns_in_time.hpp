@@ -90,6 +90,14 @@ inline void columns_in_time::before_it_was_on() {
 
 /// A command that was recorded late is read as it acted: else a mode or a lag stands in for it.
 inline void columns_in_time::by_motion() {
+    if (axis.actuator.command_is == command_origin::measured) {
+        if (const auto low_pass = low_pass_of_command(log, period, axis.plant)) {
+            notes.push_back(fmt::format("axis {}: the measured command was recorded behind a low-pass of "
+                                        "{:.2g} ms; it is read as it was before.",
+                                        axis.name, 1e3 * low_pass->time_constant));
+            return change([&](axis_log l) { return read_before_low_pass(std::move(l), *low_pass, period); });
+        }
+    }
     const double late = lateness_of_command(log, period, axis.plant, axis.actuator.command_is);
     if (late == 0) return;
     notes.push_back(

@@ -96,7 +96,8 @@ public:
     /// Nothing is left that would matter when the claims alone are added: the suspects are not needed.
     bool claims_suffice() const;
     /// What the best model's forces leave along the measured motion, over what those of the calibrated machine
-    /// leave there. The same measure for a model that was fitted to the readings and for one that was led.
+    /// leave there, both above the noise of a measured command. The same measure for a model that was fitted to
+    /// the readings and for one that was led.
     double left_along_motion() const;
     /// What the forces of each of these plants leave there [N].
     std::vector<double> left_along_motion(std::span<const plant_model> some) const;

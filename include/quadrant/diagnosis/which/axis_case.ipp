@@ -172,15 +172,14 @@ axis_case::left_along_motion(std::span<const plant_model> some) const {
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
     const auto left = left_along_motion(std::array{best().fit.plant, path.front().fit.plant});
-    return left[0] / left[1];
+    const double of_command = record.command_noise_below(record.observer.corner_Hz); // every model leaves it
+    const auto above = [&](double x) { return std::max(square(x) - square(of_command), 1e-4 * square(x)); };
+    return std::sqrt(above(left[0]) / above(left[1]));
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const candidate& from) const {
-    const auto energy = [&](const candidate& m) {
-        const double force = models.held_out_force(m);
-        return force * force;
-    };
-    const double left = energy(from), floor = floor_force() * floor_force();
+    const auto energy = [&](const candidate& m) { return square(models.held_out_force(m)); };
+    const double left = energy(from), floor = square(floor_force());
     return left > floor ? (left - energy(to)) / (left - floor) : 0;
 }
 
