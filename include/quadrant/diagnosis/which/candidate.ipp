@@ -160,14 +160,9 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
     return std::nullopt;
 }
 
-/// Whether calibration moves this number from nothing, and an equivalent effect does the same by it.
+/// Whether calibration moves this number from nothing, and what does the same as this effect does it by it.
 inline bool is_of_equivalent(const parameter& p, const effect& e) {
-    const auto has_it = [&](std::string_view name) {
-        const effect* other = effect_named(name);
-        const auto is_it = [&](const machine_key& k) { return k.name == p.key; };
-        return other && std::any_of(other->keys.begin(), other->keys.end(), is_it);
-    };
-    return p.spread > 0 && p.expected == 0 && std::any_of(e.equivalent.begin(), e.equivalent.end(), has_it);
+    return p.spread > 0 && p.expected == 0 && has_equivalent_with(e, p.key);
 }
 
 } // namespace detail
