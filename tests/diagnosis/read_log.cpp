@@ -173,6 +173,23 @@ TEST_CASE("read_log: a row whose stamp stands still is dropped, time that runs b
               .ends_with("all rows have one stamp: its period cannot be known"));
 }
 
+TEST_CASE("read_log: of stamps in whole milliseconds at 1 kHz, a row that stands twice is dropped; at 1.25 kHz "
+          "equal stamps are rows of their own") {
+    std::vector<std::string> twice, faster;
+    for (int k = 0; k < 500; ++k) {
+        twice.push_back(fmt::format("{:.3f}", 1e-3 * k));
+        if (k == 7 || k == 20 || k == 90 || k == 101 || k == 230 || k == 480) twice.push_back(twice.back());
+        faster.push_back(fmt::format("{:.3f}", std::floor(0.8 * k + 1e-9) / 1000));
+    }
+    const auto log = read(with_stamps(twice));
+    CHECK(log.samples == 500);
+    CHECK(log.sample_period_s == doctest::Approx(1e-3));
+    CHECK(log.notes[0] == "log.csv: 6 rows have the stamp of the row before and are dropped.");
+    const auto other = read(with_stamps(faster));
+    CHECK(other.samples == 500);
+    CHECK(other.sample_period_s == doctest::Approx(0.8e-3).epsilon(1e-3));
+}
+
 TEST_CASE("read_log: stamps may jitter by a fifth of the period, and a note tells the size") {
     std::vector<std::string> stamps;
     for (int k = 0; k < 400; ++k) stamps.push_back(fmt::format("{:.6f}", 1e-3 * k + (k % 3 - 1) * 1.5e-4));

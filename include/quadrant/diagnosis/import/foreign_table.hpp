@@ -206,17 +206,13 @@ private:
     void take_stamps(const foreign_column& time) {
         const auto& stamp = time.values;
         const std::size_t n = stamp.size();
-        const double plain = (stamp[n - 1] - stamp[0]) / static_cast<double>(n - 1);
-        const bool coarse = time.written.step() > std::abs(plain); // then stamps must be equal
-        std::vector<std::size_t> kept;
-        for (std::size_t k = 0; k < n; ++k) {
-            if (k > 0 && stamp[k] < stamp[kept.back()])
+        for (std::size_t k = 1; k < n; ++k)
+            if (stamp[k] < stamp[k - 1])
                 throw bad_input(
                     name_, out_.line[k], 1,
                     fmt::format("t_s: {} does not come after {}: cut the file here, or sort its rows",
-                                stamp[k] * time.factor, stamp[kept.back()] * time.factor));
-            if (k == 0 || coarse || stamp[k] > stamp[kept.back()]) kept.push_back(k);
-        }
+                                stamp[k] * time.factor, stamp[k - 1] * time.factor));
+        const std::vector<std::size_t> kept = rows_once(stamp, time.written.step());
         const std::size_t doubled = n - kept.size();
         if (doubled > 0) {
             out_.notes.push_back(

@@ -41,19 +41,13 @@ public:
     }
     log_header& header() { return header_; }
 
-    /// The rows on the log's own even clock. Stamps that go back are refused; rows whose stamp is that of the
-    /// row before are dropped, unless the stamps are written too coarsely to differ.
+    /// The rows on the log's own even clock. Stamps that go back are refused, rows that stand twice dropped.
     log_rows on_the_clock() {
         const log_column& time = header_.columns[header_.time];
         const auto& t = time.values;
-        const double plain = (t.back() - t.front()) / static_cast<double>(rows_ - 1);
-        const bool coarse = time.step.step() > plain; // then stamps must be equal
-        std::vector<std::size_t> kept;
-        for (std::size_t k = 0; k < rows_; ++k) {
-            if (k > 0 && t[k] < t[kept.back()])
-                refuse_stamp(k, fmt::format("t_s: {} does not come after {}", t[k], t[kept.back()]));
-            if (k == 0 || coarse || t[k] > t[kept.back()]) kept.push_back(k);
-        }
+        for (std::size_t k = 1; k < rows_; ++k)
+            if (t[k] < t[k - 1]) refuse_stamp(k, fmt::format("t_s: {} does not come after {}", t[k], t[k - 1]));
+        std::vector<std::size_t> kept = rows_once(t, time.step.step());
         if (kept.size() < 2 || !(t[kept.back()] > t[kept.front()]))
             throw bad_input(file_, "all rows have one stamp: its period cannot be known");
         log_rows out(t, std::move(kept), time.step.step());

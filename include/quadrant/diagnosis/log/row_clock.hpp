@@ -170,4 +170,23 @@ inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     return out;
 }
 
+/// The rows of stamps that never go back without those that stand twice: a row whose stamp is that of the row
+/// before. Stamps that are written too coarsely to differ are equal where none stands twice: then all rows are
+/// on an even clock.
+inline std::vector<std::size_t> rows_once(std::span<const double> t, double written) {
+    std::vector<std::size_t> all, once;
+    std::vector<double> stamps;
+    for (std::size_t k = 0; k < t.size(); ++k) {
+        all.push_back(k);
+        if (!once.empty() && !(t[k] > t[once.back()])) continue;
+        once.push_back(k);
+        stamps.push_back(t[k]);
+    }
+    const bool coarse = t.size() > 1 && written * static_cast<double>(t.size() - 1) > t.back() - t.front();
+    if (!coarse || once.size() == all.size()) return once;
+    const bool twice =
+        stamps.size() > 2 && !clock_of_rows(t, written).even && clock_of_rows(stamps, written).even;
+    return twice ? once : all;
+}
+
 } // namespace quadrant::inline v0::diagnosis::detail
