@@ -65,6 +65,17 @@ TEST_CASE("simulate: a machine as described is predicted to the noise, one with 
           doctest::Approx(1.2 * std::pow(band, 2.5) * right.gap.noise_floor_force_rms_N).epsilon(0.05));
 }
 
+TEST_CASE("simulate: a reference that was logged a row late is read in time, as diagnose reads it") {
+    const workshop::machine m;
+    auto log = workshop::as_log(workshop::run(m, 4.15));
+    const auto in_time = simulate(exact(m), log);
+    workshop::stand_later(log.axes[0].reference, 1);
+    const auto late = simulate(exact(m), log);
+    CHECK(in_time.notes.empty());
+    REQUIRE(late.notes.size() == 1);
+    CHECK(late.notes[0].find("the reference stands 1 row later in the log") != std::string::npos);
+    CHECK(workshop::near(only(late).gap.position_rms_m, only(in_time).gap.position_rms_m, 0.05));
+}
 TEST_CASE("simulate: without a controller the force alone is judged") {
     const workshop::machine m;
     auto file = exact(m);

@@ -5,6 +5,7 @@
 #include "how_far/how_far.hpp"
 #include "match.hpp"
 #include "text/bad_input.hpp"
+#include "where/columns_in_time.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -71,13 +72,17 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
     out.notes = machine.notes;
     out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     for (const axis_description& axis : machine.axes)
-        for (const axis_log& logged : log.axes)
-            if (logged.name == axis.name && !logged.still && !axis.positions_only)
-                out.axes.push_back(detail::simulate_axis(
-                    axis,
-                    detail::with_neighbour(log, logged, machine.sample_period_s,
-                                           bandwidth_of(axis, logged, machine.sample_period_s)),
-                    machine.sample_period_s));
+        for (const axis_log& logged : log.axes) {
+            if (logged.name != axis.name || logged.still || axis.positions_only) continue;
+            axis_log in_time = detail::with_neighbour(log, logged, machine.sample_period_s,
+                                                      bandwidth_of(axis, logged, machine.sample_period_s));
+            axis_description as_logged = axis;
+            if (logged.command_is == command_origin::measured)
+                as_logged.actuator.command_is = command_origin::measured;
+            std::optional<axis_log> none;
+            put_columns_in_time(as_logged, machine.sample_period_s, in_time, none, out.notes);
+            out.axes.push_back(detail::simulate_axis(axis, in_time, machine.sample_period_s));
+        }
     return out;
 }
 
