@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // A drive whose loops are closed on the model, one by one and side by side in lanes.
 #include <doctest/doctest.h>
-#include <quadrant/diagnosis/effect/effect.hpp>
-#include <quadrant/diagnosis/effect/effect_list.hpp>
 #include <quadrant/diagnosis/fit/both_motions.hpp>
 #include <quadrant/diagnosis/fit/record.hpp>
 
@@ -140,35 +138,6 @@ TEST_CASE("closed drive: plants side by side go the ways that they go alone") {
         }
         CHECK(farthest > 0.1);
         CHECK(away < 1e-9); // lanes have their own exponential and sine
-    }
-}
-TEST_CASE("closed drive: what resists is searched up to what the motor can move") {
-    plant_model leader = arm();
-    leader.friction = {};
-    leader.gravity.torque = 0;
-    axis_record record;
-    std::vector<double> position, residual, innovation(100);
-    for (int k = 0; k < 100; ++k) {
-        position.push_back(std::sin(0.1 * k));
-        record.velocity.push_back(std::cos(0.1 * k));
-        // Of a friction that holds the arm next to nothing is seen.
-        residual.push_back(1e-3 * (record.velocity.back() + position.back()));
-    }
-    record.position = position;
-    record.scale.command = 7.4;
-    record.scale.speed = 1;
-    record.score.skip = 0;
-    plant_description described;
-    tolerance_description tolerance;
-    const screening look{described, tolerance, record, leader, residual, innovation};
-    for (const std::string name : {"coulomb_friction", "viscous_friction", "gravity"}) {
-        CAPTURE(name);
-        const auto most = [&] { return effect_named(name)->starts(look).front().front().high; };
-        record.observer.closed.reset();
-        const double usual = most();
-        record.observer.closed = 0.0;
-        CHECK(most() == doctest::Approx(look.force_scale() / record.scale.speed).epsilon(1e-9));
-        CHECK(most() > 2 * usual);
     }
 }
 TEST_CASE("memory of a signal: one row of white noise, two time constants of a decaying correlation squared") {

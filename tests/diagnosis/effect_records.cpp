@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/effect/described_numbers.hpp"
+#include "quadrant/diagnosis/effect/effect.hpp"
 #include "quadrant/diagnosis/model/plant_axis.hpp"
 #include "quadrant/diagnosis/model/plant_model.hpp"
 
@@ -101,6 +102,35 @@ TEST_CASE("effects: what does the same as an effect, or as the one that it holds
     CHECK(asymmetry("cutting_force"));
     CHECK(!asymmetry("mass"));
     CHECK(!asymmetry("coulomb_friction"));
+}
+TEST_CASE("effects: behind closed loops what resists is searched up to what the motor can move") {
+    plant_description described;
+    described.mass_kg = 0.0075;
+    described.force_constant_N_per_V = 0.12;
+    const plant_model leader(described, 1e-4);
+    axis_record record;
+    std::vector<double> position, residual, innovation(100);
+    for (int k = 0; k < 100; ++k) {
+        position.push_back(std::sin(0.1 * k));
+        record.velocity.push_back(std::cos(0.1 * k));
+        // Of a friction that holds the arm next to nothing is seen.
+        residual.push_back(1e-3 * (record.velocity.back() + position.back()));
+    }
+    record.position = position;
+    record.scale.command = 7.4;
+    record.scale.speed = 1;
+    record.score.skip = 0;
+    const tolerance_description tolerance;
+    const screening look{described, tolerance, record, leader, residual, innovation};
+    for (const std::string name : {"coulomb_friction", "viscous_friction", "gravity"}) {
+        CAPTURE(name);
+        const auto most = [&] { return effect_named(name)->starts(look).front().front().high; };
+        record.observer.closed.reset();
+        const double usual = most();
+        record.observer.closed = 0.0;
+        CHECK(most() == doctest::Approx(look.force_scale() / record.scale.speed).epsilon(1e-9));
+        CHECK(most() > 2 * usual);
+    }
 }
 TEST_CASE("plant_model: a search may take the mass below its mode's part, and the axis can still be made") {
     plant_description d;

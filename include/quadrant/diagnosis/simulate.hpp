@@ -29,10 +29,10 @@ struct simulation_result {
 };
 
 /// Predicts a log of a machine and says what remains between the two, in the numbers that a diagnosis
-/// forecasts: residual force behind the logged command, and position and command of the closed loop from the
-/// logged reference. Columns that were not sampled together are read in time, as diagnose() reads them. Where
-/// in its cycle a process begins is found from the log; drift begins with its first row. Machine and log match (match.hpp); a log below 0.5 s is refused (bad_input). Costs a few passes over
-/// the log.
+/// forecasts: residual force behind the logged command, and position and command of the closed loop from
+/// the logged reference. Columns that were not sampled together are read in time, as diagnose() reads them.
+/// Where in its cycle a process begins is found from the log; drift begins with its first row. Machine and
+/// log match (match.hpp); a log below 0.5 s is refused (bad_input). Costs a few passes over the log.
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log);
 
 } // namespace quadrant::inline v0::diagnosis
