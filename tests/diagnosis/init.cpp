@@ -196,3 +196,38 @@ TEST_CASE("init: a mass of which the log is not sure is told with its standard d
     CHECK(said.find("init: axis x: --mass is missing; the log does not determine it well enough (") == 0);
     CHECK(said.find("kg with a standard deviation of") != std::string::npos);
 }
+
+TEST_CASE(
+    "init: from a log that goes one way, Coulomb friction and a constant force are one number, and neither "
+    "is written") {
+    machine_log log;
+    log.file = "log.csv";
+    log.sample_period_s = 0.001;
+    axis_log a;
+    a.name = "q";
+    a.kind = axis_kind::rotary;
+    a.command_unit = "Nm";
+    a.has_reference = false;
+    double q = 0, v = 0; // it speeds up in steps of the torque
+    for (int k = 0; k < 16000; ++k) {
+        const double torque = 0.05 + 0.005 * (k / 4000);
+        a.position.push_back(q);
+        a.command.push_back(torque);
+        const double acceleration = (torque - 0.04 - 1e-4 * v) / 1.2e-4;
+        q += 0.001 * (v + 0.0005 * acceleration);
+        v += 0.001 * acceleration;
+    }
+    a.reference = a.position;
+    a.position_step = 1e-9;
+    log.axes = {a};
+    log.samples = a.position.size();
+    init_request r;
+    r.from_log = true;
+    const auto begun = init_machine(r, &log);
+    const auto& plant = begun.machine["axes"]["q"]["plant"];
+    CHECK(plant["inertia_kg_m2"] == doctest::Approx(1.2e-4).epsilon(0.02));
+    CHECK(plant["viscous_Nm_s_per_rad"] == doctest::Approx(1e-4).epsilon(0.02));
+    CHECK(!plant.contains("coulomb_Nm"));
+    CHECK(
+        says(begun.notes, "Coulomb friction and a constant torque together (the axis goes one way) 0.04 N m"));
+}

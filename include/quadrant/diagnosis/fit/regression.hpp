@@ -18,6 +18,7 @@ struct regressed {
 /// The last term is asked of a rotary axis only.
 struct axis_regression {
     regressed acceleration, speed, direction, mean, weight;
+    regressed resists;       ///< direction and mean as one, where the record goes one way: neither is known
     regressed lateness;      ///< of the command behind the motion [s], where it is asked for
     regressed curvature;     ///< the command has so much of its second derivative too much [s2], likewise
     double left = 1;         ///< of the command's variance

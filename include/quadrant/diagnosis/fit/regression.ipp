@@ -74,6 +74,13 @@ inline regression_part sum_without(const std::vector<regression_part>& parts, st
     return out;
 }
 
+/// The direction of a record that goes one way, 1 or -1; else 0.
+inline double direction_of_all(const regression_part& all) {
+    constexpr double few = 1e-4; // share of the rows that go the other way
+    const double mean = all.left(2, 3) / all.left(3, 3);
+    return all.left(2, 2) / all.left(3, 3) - mean * mean < 4 * few ? std::copysign(1.0, mean) : 0;
+}
+
 /// Shares of the command's variance that are left with its derivatives and without. energy: of the command;
 /// n: numbers before those of its derivatives.
 inline void add_shares_left(axis_regression& out, const regression_part& all, double energy,
@@ -117,17 +124,26 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
         return Eigen::VectorXd(solved(left, right));
     };
     const Eigen::VectorXd whole = solution(parts);
+    const detail::regression_part all = detail::sum_without(sums, parts);
+    const double onwards = detail::direction_of_all(all);
     Eigen::VectorXd square = Eigen::VectorXd::Zero(n); // jackknife over the parts
-    for (std::size_t i = 0; i < parts; ++i)
-        square += (solution(i) - whole).cwiseAbs2() * (parts - 1.0) / static_cast<double>(parts);
+    double square_of_both = 0;
+    for (std::size_t i = 0; i < parts; ++i) {
+        const Eigen::VectorXd off = solution(i) - whole;
+        constexpr double weight = (parts - 1.0) / static_cast<double>(parts);
+        square += off.cwiseAbs2() * weight;
+        square_of_both += (off[2] + onwards * off[3]) * (off[2] + onwards * off[3]) * weight;
+    }
     const auto number = [&](Eigen::Index i) { return regressed{whole[i], std::sqrt(square[i])}; };
     out.acceleration = number(0);
     out.speed = number(1);
-    out.direction = number(2);
-    out.mean = number(3);
+    if (onwards == 0)
+        out.direction = number(2), out.mean = number(3);
+    else
+        out.resists = {whole[2] + onwards * whole[3], std::sqrt(square_of_both)};
     if (lateness) {
         out.lateness = number(of_axis);
-        detail::add_shares_left(out, detail::sum_without(sums, parts), energy, whole, of_axis);
+        detail::add_shares_left(out, all, energy, whole, of_axis);
     }
     if (curvature) out.curvature = number(of_axis + 1);
     if (turns) {

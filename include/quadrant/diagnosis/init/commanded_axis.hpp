@@ -162,6 +162,7 @@ private:
         add("viscous friction", found.speed, "N s/m");
         add("Coulomb friction", found.direction, "N");
         add("a constant force of", {-found.mean.value, found.mean.spread}, "N");
+        add("Coulomb friction and a constant force together (the axis goes one way)", found.resists, "N");
         add("gravity", found.weight, "N");
         if (found.weight.sure()) sure += fmt::format(" with the weight down at {:.3g} m", found.phase);
         text_.note(fmt::format(
