@@ -118,17 +118,20 @@ TEST_CASE("effects: behind closed loops what resists is searched up to what the 
     }
     record.position = position;
     record.scale.command = 7.4;
-    record.scale.speed = 1;
+    record.scale.speed = 2;
     record.score.skip = 0;
     const tolerance_description tolerance;
     const screening look{described, tolerance, record, leader, residual, innovation};
-    for (const std::string name : {"coulomb_friction", "viscous_friction", "gravity"}) {
-        CAPTURE(name);
-        const auto most = [&] { return effect_named(name)->starts(look).front().front().high; };
+    const double force = look.force_scale();
+    for (const auto& [name, motor_moves] :
+         {std::pair{"coulomb_friction", force}, std::pair{"viscous_friction", force / 2},
+          std::pair{"gravity", force}, std::pair{"quadratic_drag", force / 4}}) {
+        INFO(name);
+        const auto most = [&, e = effect_named(name)] { return e->starts(look).front().front().high; };
         record.observer.closed.reset();
         const double usual = most();
         record.observer.closed = 0.0;
-        CHECK(most() == doctest::Approx(look.force_scale() / record.scale.speed).epsilon(1e-9));
+        CHECK(most() == doctest::Approx(motor_moves).epsilon(1e-9));
         CHECK(most() > 2 * usual);
     }
 }

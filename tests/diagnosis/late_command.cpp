@@ -39,9 +39,9 @@ motion at(double t) {
     return out;
 }
 /// command(t): what acts at that moment.
-template <class Command> axis_log recorded(const Command& command) {
+template <class Command> axis_log recorded(const Command& command, double white = 0.2) {
     std::mt19937 random(5);
-    std::normal_distribution<double> noise(0, 0.2);
+    std::normal_distribution<double> noise(0, white);
     axis_log out;
     for (int k = 0; k < 8000; ++k) {
         const double t = k * T;
@@ -122,6 +122,34 @@ TEST_CASE("late command: a low-pass is no delay of the same size, and is undone"
         CHECK(!low_pass_of_command(recorded([&](double t) { return force(t + (0.5 - rows) * T); }), T, plant));
     }
     CHECK(!low_pass_of_command(in_time, T, plant));
+    // Noise of the current sensor, of half the friction, makes none of a delay.
+    for (const double rows : {2.0, 8.0})
+        CHECK(!low_pass_of_command(recorded([&](double t) { return force(t + (0.5 - rows) * T); }, 15), T,
+                                   plant));
+}
+TEST_CASE("late command: a low-pass that runs all the time is undone, too") {
+    const double tau = 3 * T;
+    axis_log log = recorded(force);
+    double filtered = force(0);
+    constexpr int fine = 50;
+    for (std::size_t k = 0; k < log.command.size(); ++k) {
+        log.command[k] = filtered; // read at the row, in which the force of the row begins to act
+        for (int i = 0; i < fine; ++i)
+            filtered +=
+                (force((static_cast<double>(k) + 0.5) * T) - filtered) * (1 - std::exp(-T / fine / tau));
+    }
+    const auto found = low_pass_of_command(log, T, plant);
+    REQUIRE(found);
+    CHECK(found->time_constant == doctest::Approx(tau + 0.5 * T).epsilon(0.1));
+}
+TEST_CASE("late command: beside missing rows a low-pass is not undone") {
+    axis_log log = recorded(force);
+    log.left_out.assign(log.command.size(), 0);
+    log.left_out[100] = 1;
+    const auto undone = read_before_low_pass(log, {.time_constant = 3 * T}, T);
+    for (std::size_t k = 98; k <= 102; ++k) CHECK(undone.command[k] == log.command[k]);
+    CHECK(undone.command[97] != log.command[97]);
+    CHECK(undone.command[103] != log.command[103]);
 }
 TEST_CASE("late command: what a low-pass of the recorder took is put back") {
     axis_log log = recorded(force);
@@ -138,7 +166,7 @@ TEST_CASE("late command: a machine whose measured command stands behind a low-pa
         auto log = workshop::as_log(workshop::run(real));
         log.axes[0].command = behind_low_pass(log.axes[0].command, kept);
         auto d = diagnose(file, log);
-        CHECK(workshop::says(d, "low-pass"));
+        CHECK(workshop::says(d, "as behind a low-pass"));
         return d;
     };
     workshop::machine real;
@@ -186,20 +214,23 @@ TEST_CASE(
     }
     // A force that no regression knows, and larger than what three rows change: nothing is said.
     const auto spring = [](workshop::machine& m) { m.spring = 5e3; };
-    for (const long rows : {0, 3}) CHECK(lateness(spring, rows) == 0);
+    for (const long rows : {0, 3}) CHECK((lateness(spring, rows) == 0 && !low_pass(spring, rows)));
 }
 TEST_CASE("late command: what a velocity loop answers is no force that moves the axis, however late") {
     const auto answer = [](double t) { return 40 - 500 * at(t - 3 * T).v; };
     CHECK(lateness_of_command(recorded(answer), T, plant, command_origin::measured) == 0);
+    CHECK(!low_pass_of_command(recorded(answer), T, plant));
 }
 TEST_CASE("late command: a motion without acceleration, or a command of noise, says nothing") {
     std::mt19937 random(6);
     std::normal_distribution<double> noise(0, 5);
     CHECK(lateness_of_command(recorded([&](double) { return noise(random); }), T, plant,
                               command_origin::measured) == 0);
+    CHECK(!low_pass_of_command(recorded([&](double) { return noise(random); }), T, plant));
     axis_log rest = recorded(force);
     std::fill(rest.position.begin(), rest.position.end(), 0.1);
     CHECK(lateness_of_command(rest, T, plant, command_origin::measured) == 0);
+    CHECK(!low_pass_of_command(rest, T, plant));
 }
 TEST_CASE("late command: read earlier, a row has what stood later, and the end stays") {
     axis_log log;

@@ -188,6 +188,12 @@ TEST_CASE("read_log: of stamps in whole milliseconds at 1 kHz, a row that stands
     const auto other = read(with_stamps(faster));
     CHECK(other.samples == 500);
     CHECK(other.sample_period_s == doctest::Approx(0.8e-3).epsilon(1e-3));
+    std::vector<std::string> lost; // 2 kHz: every other stamp is equal, and rows are missing
+    for (int k = 0; k < 400; ++k)
+        if (k != 90 && k != 91 && k != 150 && k != 260 && k != 301)
+            lost.push_back(fmt::format("{:.3f}", std::floor(0.5 * k + 1e-9) / 1000));
+    CHECK(refusal(with_stamps(lost)).find("several rows have each stamp, and rows are missing") !=
+          std::string::npos);
 }
 
 TEST_CASE("read_log: stamps may jitter by a fifth of the period, and a note tells the size") {

@@ -114,8 +114,7 @@ private:
 
 inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged, const read_logs& logs,
                               const rules& r, std::vector<std::string>& notes)
-    : axis(a), period(logs.machine.sample_period_s) {
-    if (logged.command_is == command_origin::measured) axis.actuator.command_is = command_origin::measured;
+    : axis(as_logged(a, logged)), period(logs.machine.sample_period_s) {
     if (axis.controller && !axis.drive.closes() && axis.actuator.command_is == command_origin::measured)
         notes.push_back(worded("axis %s: the command was measured behind the amplifier; what the controller "
                                "asked for is not in the log, and nothing is said of the controller.",

@@ -103,7 +103,8 @@ QUADRANT_DIAGNOSIS_DECL forecast_result forecast(const machine_description& mach
                                        detail::noise_beside_rounding(*axis, *was, machine.sample_period_s));
         }
     }
-    const auto before = simulate(machine, expected), after = simulate(corrected, expected);
+    const auto before = simulate(machine, expected, log_columns::as_they_stand),
+               after = simulate(corrected, expected, log_columns::as_they_stand);
     for (std::size_t i = 0; i < after.axes.size(); ++i) {
         forecast_axis a{before.axes[i].name, before.axes[i].gap, after.axes[i].gap, 0, after.axes[i].kind};
         const gap_numbers& left = detail::named(found.axes, a.name)->gap_after;

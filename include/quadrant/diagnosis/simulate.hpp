@@ -28,12 +28,17 @@ struct simulation_result {
     std::vector<std::string> notes;
 };
 
+/// How the columns of a log are taken: one that was sampled later or earlier than the position is read as it
+/// acted, as diagnose() does, or every row as it stands, which is right for a log that was simulated.
+enum class log_columns { in_time, as_they_stand };
+
 /// Predicts a log of a machine and says what remains between the two, in the numbers that a diagnosis
-/// forecasts: residual force behind the logged command, and position and command of the closed loop from
-/// the logged reference. Columns that were not sampled together are read in time, as diagnose() reads them.
-/// Where in its cycle a process begins is found from the log; drift begins with its first row. Machine and
-/// log match (match.hpp); a log below 0.5 s is refused (bad_input). Costs a few passes over the log.
-QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log);
+/// forecasts: residual force behind the logged command, and position and command of the closed loop from the
+/// logged reference. Where in its cycle a process begins is found from the log; drift begins with its first
+/// row. Machine and log match (match.hpp); a log below 0.5 s is refused (bad_input). Costs a few passes over
+/// the log, and as many again to read its columns in time.
+QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log,
+                                                   log_columns how = log_columns::in_time);
 
 } // namespace quadrant::inline v0::diagnosis
 

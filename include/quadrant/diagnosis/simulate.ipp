@@ -58,7 +58,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine,
-                                                   const machine_log& as_read) {
+                                                   const machine_log& as_read, log_columns how) {
     refuse_positions_only(machine, "a simulation");
     const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
@@ -76,12 +76,11 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
             if (logged.name != axis.name || logged.still || axis.positions_only) continue;
             axis_log in_time = detail::with_neighbour(log, logged, machine.sample_period_s,
                                                       bandwidth_of(axis, logged, machine.sample_period_s));
-            axis_description as_logged = axis;
-            if (logged.command_is == command_origin::measured)
-                as_logged.actuator.command_is = command_origin::measured;
+            const axis_description known = as_logged(axis, logged);
             std::optional<axis_log> none;
-            put_columns_in_time(as_logged, machine.sample_period_s, in_time, none, out.notes);
-            out.axes.push_back(detail::simulate_axis(axis, in_time, machine.sample_period_s));
+            if (how == log_columns::in_time)
+                put_columns_in_time(known, machine.sample_period_s, in_time, none, out.notes);
+            out.axes.push_back(detail::simulate_axis(known, in_time, machine.sample_period_s));
         }
     return out;
 }

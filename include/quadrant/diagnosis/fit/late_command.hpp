@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "command_noise.hpp"
 #include "regression.hpp"
 
 #include <optional>
@@ -32,19 +33,20 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
 /// A log with its command read earlier.
 QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, double period);
 
-/// What undoes a first-order low-pass, c1 [s] and c2 [s2] of u = y + c1 y' + c2 y''. Behind a continuous one
-/// c1 is its time constant and c2 zero; one that runs once a row, or is read within it, differs by a part of a
-/// row.
+/// What undoes a first-order low-pass: c1 [s] and c2 [s2] of u = y + c1 y' + c2 y''. Behind one of time
+/// constant tau that runs all the time, read at the row of period T, c1 = tau + T/2 and c2 = tau T/2; behind one
+/// that runs once a row, c1 = tau and c2 = -tau T/2.
 struct low_pass_undone {
     double time_constant = 0, second = 0;
 };
 
 /// The low-pass behind which a measured command was recorded, as drives write their current; none: it is late,
-/// if at all, without one. One that is late by T has c2 = T^2 / 2, and c1 = T.
+/// if at all, without one. One that is late by d has c1 = d and c2 = d^2 / 2; a delay beside a low-pass counts
+/// as one where the low-pass is most of it. What is late alone must leave more.
 QUADRANT_DIAGNOSIS_DECL std::optional<low_pass_undone> low_pass_of_command(const axis_log& log, double period,
                                                                            const plant_description& plant);
 
-/// A log with its command as it was before a low-pass.
+/// A log with its command as it was before a low-pass; beside missing rows it stays as it is.
 QUADRANT_DIAGNOSIS_DECL axis_log read_before_low_pass(axis_log log, const low_pass_undone& by, double period);
 
 } // namespace quadrant::inline v0::diagnosis

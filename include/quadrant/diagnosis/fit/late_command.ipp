@@ -62,42 +62,45 @@ QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, doub
     return log;
 }
 
+namespace detail {
+
+/// Whether these numbers are of a low-pass: neither of a delay nor of a mode, which has a curvature without a
+/// lateness. doubt: standard deviation of c2.
+inline bool is_low_pass(const low_pass_undone& by, double doubt, double period) {
+    const double c1 = by.time_constant, of_delay = c1 * c1 / 2;
+    return c1 > 0 && by.second + 4 * doubt < of_delay && by.second < of_delay / 2 &&
+           by.second > -of_delay - c1 * period / 2;
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL std::optional<low_pass_undone> low_pass_of_command(const axis_log& log, double period,
                                                                            const plant_description& plant) {
-    constexpr int most_turns = 6;
     const double as_described = -0.5 * period - plant.delay_s;
-    const auto read = [&](const axis_log& by) {
-        return regress(read_earlier(by, as_described, period), period, and_lateness::with_curvature);
+    const auto read = [&](double late, and_lateness asked) {
+        return regress(read_earlier(log, as_described + late, period), period, asked,
+                       white_noise_in(log.command));
     };
-    axis_regression r = read(log);
-    const double late = r.lateness.value, second = -r.curvature.value, of_delay = late * late / 2;
-    if (!(late > 0) || !r.lateness.sure() || !detail::is_of_the_plant(r, plant) ||
-        r.left > 0.5 * r.left_in_time)
+    const axis_regression r = read(0, and_lateness::with_curvature);
+    const low_pass_undone by{.time_constant = r.lateness.value, .second = -r.curvature.value};
+    if (!r.lateness.sure() || !detail::is_of_the_plant(r, plant) || !(r.left < 0.5 * r.left_in_time) ||
+        !detail::is_low_pass(by, r.curvature.spread, period))
         return {};
-    // Neither a delay nor a mode, which has a curvature without a lateness.
-    if (second + 4 * r.curvature.spread > of_delay || second > of_delay / 2 ||
-        second < -of_delay - late * period / 2)
-        return {};
-    low_pass_undone by, best;
-    double least = std::numeric_limits<double>::infinity();
-    for (int turn = 0; turn < most_turns; ++turn) {
-        by.time_constant += r.lateness.value;
-        by.second -= r.curvature.value;
-        r = read(read_before_low_pass(log, by, period));
-        if (!(r.left_in_time < least)) break;
-        least = r.left_in_time;
-        best = by;
-    }
-    const command_timing t = timing_of_command(log, period, plant);
-    const axis_log in_time = read_earlier(log, as_described + (t.sure() ? t.later : 0.0), period);
-    if (!(least < regress(in_time, period, and_lateness::up_to_noise).left_in_time)) return {};
-    return best;
+    const double late = lateness_of_command(log, period, plant, command_origin::measured);
+    return r.left < read(late, and_lateness::up_to_noise).left_in_time ? std::optional(by) : std::nullopt;
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_log read_before_low_pass(axis_log log, const low_pass_undone& by, double period) {
-    const std::vector<double> slope = derivative(log.command, period), curve = derivative(slope, period);
-    for (std::size_t k = 0; k < slope.size(); ++k)
-        log.command[k] += by.time_constant * slope[k] + by.second * curve[k];
+    const std::vector<double> y = log.command;
+    const auto whole = [&](std::size_t k) { // nothing is missing two rows each way
+        for (std::size_t j = k < 2 ? 0 : k - 2; j < std::min(k + 3, log.left_out.size()); ++j)
+            if (log.left_out[j]) return false;
+        return true;
+    };
+    for (std::size_t k = 1; k + 1 < y.size(); ++k)
+        if (whole(k))
+            log.command[k] += by.time_constant * (y[k + 1] - y[k - 1]) / (2 * period) +
+                              by.second * (y[k + 1] - 2 * y[k] + y[k - 1]) / (period * period);
     return log;
 }
 

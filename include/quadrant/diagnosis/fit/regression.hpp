@@ -47,17 +47,21 @@ struct regression_part {
 
 } // namespace detail
 
-/// Whether a regression looks for a command that stands by a little later than what it does: no, in the band of
-/// the motion, or in all that stands above noise, where a lateness of less than a row shows; and for its
-/// curvature, which tells a low-pass from a delay.
-enum class and_lateness { no, of_motion, up_to_noise, with_curvature };
+/// Whether a regression looks for a command that stands by a little later than what it does.
+enum class and_lateness {
+    no,
+    of_motion,     ///< in the band of the motion
+    up_to_noise,   ///< in all that stands above noise, where a lateness of less than a row shows
+    with_curvature ///< there, and for its second derivative, which tells a low-pass from a delay
+};
 
 /// Regression of the command on acceleration, speed, direction and, for a rotary axis, sine and cosine of the
 /// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
 /// have any size there. Lateness: on the command's slope, too, and without rows near a change of direction,
 /// where friction builds up late. Curvature: on its second derivative as well.
+/// white: noise of the command [rms of a row], taken out where its derivatives explain.
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period,
-                                                and_lateness asked = and_lateness::no);
+                                                and_lateness asked = and_lateness::no, double white = 0);
 
 } // namespace quadrant::inline v0::diagnosis
 

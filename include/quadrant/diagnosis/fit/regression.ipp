@@ -74,6 +74,24 @@ inline regression_part sum_without(const std::vector<regression_part>& parts, st
     return out;
 }
 
+/// White noise of the command is in its derivatives, too: what it adds to the normal equations is taken out.
+/// from: number of the slope, behind which the second derivative stands.
+inline void take_noise_out(std::vector<regression_part>& parts, double white, double band_Hz, double period,
+                           Eigen::Index from) {
+    std::vector<double> impulse(2001, 0.0);
+    impulse[1000] = white;
+    const auto slope = derivative(zero_phase(impulse, band_Hz, period), period),
+               curve = derivative(slope, period);
+    const double of_slope = std::inner_product(slope.begin(), slope.end(), slope.begin(), 0.0),
+                 of_curve = std::inner_product(curve.begin(), curve.end(), curve.begin(), 0.0);
+    for (regression_part& p : parts) {
+        const double rows = p.left(3, 3);
+        p.left(from, from) -= rows * of_slope;
+        p.left(from + 1, from + 1) -= rows * of_curve;
+        p.right[from + 1] += rows * of_slope; // n n'' has the mean of -n'^2
+    }
+}
+
 /// The direction of a record that goes one way, 1 or -1; else 0.
 inline double direction_of_all(const regression_part& all) {
     constexpr double few = 1e-4; // share of the rows that go the other way
@@ -93,9 +111,11 @@ inline void add_shares_left(axis_regression& out, const regression_part& all, do
 
 } // namespace detail
 
-QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, and_lateness asked) {
+QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, and_lateness asked,
+                                                double white) {
     axis_regression out;
-    out.band_Hz = detail::regression_band(log, period, asked >= and_lateness::up_to_noise);
+    out.band_Hz = detail::regression_band(
+        log, period, asked == and_lateness::up_to_noise || asked == and_lateness::with_curvature);
     if (!(out.band_Hz > 0)) return out;
     const detail::regression_signals of(log, out.band_Hz, period);
     const double fastest = detail::largest(of.v);
@@ -118,6 +138,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
         sums[k / rows].right += of.u[k] * row;
         energy += of.u[k] * of.u[k];
     }
+    if (curvature) detail::take_noise_out(sums, white, out.band_Hz, period, of_axis);
     const auto solution = [&](std::size_t without) {
         auto [left, right] = detail::sum_without(sums, without);
         left.diagonal() *= 1 + 1e-9;
@@ -137,10 +158,8 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     const auto number = [&](Eigen::Index i) { return regressed{whole[i], std::sqrt(square[i])}; };
     out.acceleration = number(0);
     out.speed = number(1);
-    if (onwards == 0)
-        out.direction = number(2), out.mean = number(3);
-    else
-        out.resists = {whole[2] + onwards * whole[3], std::sqrt(square_of_both)};
+    if (onwards == 0) out.direction = number(2), out.mean = number(3);
+    if (onwards != 0) out.resists = {whole[2] + onwards * whole[3], std::sqrt(square_of_both)};
     if (lateness) {
         out.lateness = number(of_axis);
         detail::add_shares_left(out, all, energy, whole, of_axis);

@@ -223,6 +223,7 @@ private:
         if (kept.size() < 2 || !(stamp[kept.back()] > stamp[kept.front()]))
             throw bad_input(name_, "all rows have one stamp");
         for (const std::size_t k : kept) out_.t.push_back(stamp[k] * time.factor);
+        if (!(clock_of_rows(out_.t, time.step()).period > 0)) throw bad_input(name_, stamps_too_coarse);
     }
     template <class T>
     static std::vector<T> taken(const std::vector<T>& x, const std::vector<std::size_t>& rows) {

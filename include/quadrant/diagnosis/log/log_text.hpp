@@ -52,6 +52,7 @@ public:
             throw bad_input(file_, "all rows have one stamp: its period cannot be known");
         log_rows out(t, std::move(kept), time.step.step());
         const row_clock& clock = out.clock();
+        if (!(clock.period > 0)) refuse_stamp(1, stamps_too_coarse);
         if (!clock.even && clock.spread > most_spread)
             refuse_stamp(
                 out.row(clock.worst),

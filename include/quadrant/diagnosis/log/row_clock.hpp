@@ -170,10 +170,16 @@ inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     return out;
 }
 
+/// Why stamps have no clock of a period above zero.
+inline constexpr const char* stamps_too_coarse = "t_s: several rows have each stamp, and rows are missing: "
+                                                 "such stamps do not say where; record them with more "
+                                                 "digits";
+
 /// The rows of stamps that never go back without those that stand twice: a row whose stamp is that of the row
 /// before. Stamps that are written too coarsely to differ are equal where none stands twice: then all rows are
-/// on an even clock.
+/// on an even clock, or many stamps are equal.
 inline std::vector<std::size_t> rows_once(std::span<const double> t, double written) {
+    constexpr double few = 0.05; // share of the rows that stand twice
     std::vector<std::size_t> all, once;
     std::vector<double> stamps;
     for (std::size_t k = 0; k < t.size(); ++k) {
@@ -184,8 +190,9 @@ inline std::vector<std::size_t> rows_once(std::span<const double> t, double writ
     }
     const bool coarse = t.size() > 1 && written * static_cast<double>(t.size() - 1) > t.back() - t.front();
     if (!coarse || once.size() == all.size()) return once;
+    const bool rarely = static_cast<double>(all.size() - once.size()) < few * static_cast<double>(all.size());
     const bool twice =
-        stamps.size() > 2 && !clock_of_rows(t, written).even && clock_of_rows(stamps, written).even;
+        rarely && stamps.size() > 2 && !clock_of_rows(t, written).even && clock_of_rows(stamps, written).even;
     return twice ? once : all;
 }
 

@@ -12,6 +12,12 @@
 
 namespace quadrant::inline v0::diagnosis {
 
+/// An axis with what the names of its log's columns say of it.
+inline axis_description as_logged(axis_description axis, const axis_log& log) {
+    if (log.command_is == command_origin::measured) axis.actuator.command_is = command_origin::measured;
+    return axis;
+}
+
 namespace detail {
 
 /// The log and the hold-out log of one axis, and what was done to them.
@@ -92,8 +98,8 @@ inline void columns_in_time::before_it_was_on() {
 inline void columns_in_time::by_motion() {
     if (axis.actuator.command_is == command_origin::measured) {
         if (const auto low_pass = low_pass_of_command(log, period, axis.plant)) {
-            notes.push_back(fmt::format("axis {}: the measured command was recorded behind a low-pass of "
-                                        "{:.2g} ms; it is read as it was before.",
+            notes.push_back(fmt::format("axis {}: the measured command was recorded late by {:.2g} ms, as "
+                                        "behind a low-pass; it is read as it was before.",
                                         axis.name, 1e3 * low_pass->time_constant));
             return change([&](axis_log l) { return read_before_low_pass(std::move(l), *low_pass, period); });
         }

@@ -96,10 +96,9 @@ public:
     /// Nothing is left that would matter when the claims alone are added: the suspects are not needed.
     bool claims_suffice() const;
     /// What the best model's forces leave along the measured motion, over what those of the calibrated machine
-    /// leave there, both above the noise of a measured command. The same measure for a model that was fitted to
-    /// the readings and for one that was led.
+    /// leave there. The same measure for a model that was fitted to the readings and for one that was led.
     double left_along_motion() const;
-    /// What the forces of each of these plants leave there [N].
+    /// What the forces of each of these plants leave there, above the noise of a measured command [N].
     std::vector<double> left_along_motion(std::span<const plant_model> some) const;
     /// Share of what `from` leaves above the floor that `to` takes off, in energy on held-out motion.
     double takes_off(const candidate& to, const candidate& from) const;

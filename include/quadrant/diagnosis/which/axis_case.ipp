@@ -5,8 +5,7 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// What making the record ready is of a look at it: along a motion, and behind a loop, a first search is part
-/// of that.
+/// What making the record ready is of a look: along a motion, and behind a loop, a first search is part of it.
 constexpr double share_of_record(held_by how) {
     return how == held_by::readings ? 0.08 : how == held_by::motion ? 0.1 : 0.3;
 }
@@ -161,20 +160,22 @@ QUADRANT_DIAGNOSIS_DECL std::vector<double>
 axis_case::left_along_motion(std::span<const plant_model> some) const {
     std::vector<double> out;
     const auto by = motion_to_lead(record, plant_model(axis, record.scale.give()));
+    // Every model leaves the noise of a measured command, which is known to a tenth.
+    const double of_command = record.command_noise_below(record.observer.corner_Hz),
+                 noise_energy = square(of_command) * by->share_that_counts();
     for (; !some.empty(); some = some.subspan(std::min(some.size(), predictor::abreast))) {
         const auto plants = some.first(std::min(some.size(), predictor::abreast));
         std::array<std::vector<double>, predictor::abreast> left;
         record.observer.forces_beside(*by, plants, record.command, std::span(left).first(plants.size()));
-        for (std::size_t i = 0; i < plants.size(); ++i) out.push_back(rms(left[i]));
+        for (std::size_t i = 0; i < plants.size(); ++i)
+            out.push_back(std::sqrt(std::max(square(rms(left[i])) - noise_energy, 0.2 * noise_energy)));
     }
     return out;
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::left_along_motion() const {
     const auto left = left_along_motion(std::array{best().fit.plant, path.front().fit.plant});
-    const double of_command = record.command_noise_below(record.observer.corner_Hz); // every model leaves it
-    const auto above = [&](double x) { return std::max(square(x) - square(of_command), 1e-4 * square(x)); };
-    return std::sqrt(above(left[0]) / above(left[1]));
+    return left[0] / left[1];
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::takes_off(const candidate& to, const candidate& from) const {

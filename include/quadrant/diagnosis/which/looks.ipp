@@ -50,11 +50,7 @@ inline bool answers_too_little(const axis_case& c) {
     if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
         c.best().effects.empty() || c.models.over() || c.best().fit.plant.backlash > 0)
         return false;
-    const auto answer = [](const candidate& m) { // friction that grows with the load takes its share
-        const plant_model& p = m.fit.plant;
-        return p.force_constant * (1 - p.friction.load) / p.moving_mass();
-    };
-    return answer(c.best()) < (1 - c.limits.least_shrink) * answer(c.path.front());
+    return answers_less(c.best(), c.path.front(), c.limits.least_shrink);
 }
 
 /// Whether a measured command leaves a gap open. The command of a real loop answers every force that the model

@@ -35,6 +35,10 @@ inline bool shows_along_motion(const candidate& m) {
     return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
 }
 
+/// Whether a model moves less under the same command than another, by at least this share. Friction that grows
+/// with the load takes its share of the motor's force.
+QUADRANT_DIAGNOSIS_DECL bool answers_less(const candidate& m, const candidate& than, double share);
+
 /// Whether a model answers a measured command less than the calibrated machine and leaves more of the forces
 /// along the measured motion than the best model. A stiff loop makes a measured command answer every force
 /// that a model lacks, and neither that nor the noise of its sensor moves the axis: a heavy model of a weak

@@ -53,14 +53,18 @@ QUADRANT_DIAGNOSIS_DECL double explained_by(const axis_case& c, std::size_t whic
     return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
 
+QUADRANT_DIAGNOSIS_DECL bool answers_less(const candidate& m, const candidate& than, double share) {
+    const auto answer = [](const plant_model& p) {
+        return p.force_constant * (1 - p.friction.load) / p.moving_mass();
+    };
+    return answer(m.fit.plant) < (1 - share) * answer(than.fit.plant);
+}
+
 QUADRANT_DIAGNOSIS_DECL bool ignores_the_command(const axis_case& c, const candidate& m) {
     if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
         c.record.observer.led || !shows_along_motion(m) || !shows_along_motion(c.best()))
         return false;
-    const auto answer = [](const candidate& x) {
-        return x.fit.plant.force_constant / x.fit.plant.moving_mass();
-    };
-    if (!(answer(m) < (1 - c.limits.least_shrink) * answer(c.path.front()))) return false;
+    if (!answers_less(m, c.path.front(), c.limits.least_shrink)) return false;
     const auto left = c.left_along_motion(std::array{m.fit.plant, c.best().fit.plant});
     return left[0] > (1 + c.limits.least_shrink) * left[1];
 }
