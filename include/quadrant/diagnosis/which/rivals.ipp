@@ -104,15 +104,18 @@ inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, co
             if (again[i].total > out[same[i]].model.total) out[same[i]].model = std::move(again[i]);
     }
     // A form without a name is a rival when it takes the name's place: it takes most of what is left off, and
-    // beside it the name is no longer needed. A polynomial in the velocity comes close to Coulomb friction, but
-    // the jump is missing in it.
+    // beside it the name is no longer needed, or does far less than without it. A polynomial in the velocity
+    // comes close to Coulomb friction, but the jump is missing in it.
     if (!c.settled && !c.models.over()) {
         const auto forms = c.models.forms();
         const auto models = c.models.with_these(without, forms, c.limits.forms);
-        for (std::size_t i = 0; i < models.size(); ++i)
-            if (c.takes_off(models[i], c.best()) > 0.5 &&
-                !c.models.pays(c.models.with(models[i], own), models[i]))
+        const auto does = [&](const candidate& m) { return rms(c.models.does(m, *own)); };
+        for (std::size_t i = 0; i < models.size(); ++i) {
+            if (!(c.takes_off(models[i], c.best()) > 0.5)) continue;
+            const candidate both = c.models.with(models[i], own);
+            if (!c.models.pays(both, models[i]) || does(both) < does(c.best()) / 3)
                 out.push_back({.model = models[i], .name = forms[i]});
+        }
     }
     // What takes most of the gap off is not replaced by a name that leaves it: the score alone is also raised
     // by models that stand still, or that hide the motor's motion behind a play.
