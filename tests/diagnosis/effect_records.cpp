@@ -93,16 +93,6 @@ TEST_CASE("effects: a key without member and law is kept under its name, whateve
     CHECK(axis.numbers.size() == 2);
 }
 
-TEST_CASE("effects: what does the same as an effect, or as the one that it holds, has a key of its own") {
-    const auto asymmetry = [](const char* name) {
-        return has_equivalent_with(*effect_named(name), "coulomb_asymmetry");
-    };
-    CHECK(asymmetry("constant_force"));
-    CHECK(asymmetry("position_spring")); // which holds a constant force
-    CHECK(asymmetry("cutting_force"));
-    CHECK(!asymmetry("mass"));
-    CHECK(!asymmetry("coulomb_friction"));
-}
 TEST_CASE("effects: behind closed loops what resists is searched up to what the motor can move") {
     plant_description described;
     described.mass_kg = 0.0075;

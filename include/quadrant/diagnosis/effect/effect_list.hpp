@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <span>
 
 namespace quadrant::inline v0::diagnosis {
@@ -54,18 +53,6 @@ inline const machine_key* key_named(std::string_view name) {
 inline std::string key_in_box(std::string_view box, std::string_view key, axis_kind kind) {
     const machine_key* known = key_named(box == "plant" ? std::string(key) : fmt::format("{}.{}", box, key));
     return known ? known->key_for(kind) : key_of(key, kind);
-}
-
-/// Whether an effect that is equivalent to this one, or to the one that it holds, has this key.
-inline bool has_equivalent_with(const effect& e, std::string_view key) {
-    const auto has_it = [&](std::string_view name) {
-        const effect* other = effect_named(name);
-        return other && std::any_of(other->keys.begin(), other->keys.end(),
-                                    [&](const machine_key& k) { return k.name == key; });
-    };
-    const effect* held = e.holds.empty() ? nullptr : effect_named(e.holds);
-    return std::any_of(e.equivalent.begin(), e.equivalent.end(), has_it) ||
-           (held && has_equivalent_with(*held, key));
 }
 
 /// A law that a machine file can name: one of an effect of the list.

@@ -160,9 +160,15 @@ begun_where(const fit_result& found, const std::vector<std::vector<parameter>>& 
     return std::nullopt;
 }
 
-/// Whether calibration moves this number from nothing, and what does the same as this effect does it by it.
-inline bool is_of_equivalent(const parameter& p, const effect& e) {
-    return p.spread > 0 && p.expected == 0 && has_equivalent_with(e, p.key);
+/// A constant force that is searched takes the difference of the directions' friction to it: of both, fitted
+/// together, neither is known. True where `q` is that difference.
+inline bool gives_way_to_constant(const parameter& q, plant_model& plant, std::vector<parameter>& start) {
+    const auto constant = std::find_if(start.begin(), start.end(),
+                                       [](const parameter& p) { return p.key == "constant_force_N"; });
+    if (q.key != "coulomb_asymmetry" || !(q.spread > 0) || constant == start.end()) return false;
+    const double taken = plant.friction.coulomb * std::exchange(q.of(plant), q.expected);
+    constant->start = std::clamp(constant->start - taken, constant->low, constant->high);
+    return true;
 }
 
 } // namespace detail
@@ -177,18 +183,17 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
         starts.clear();
         if (where) starts.push_back(std::move(*where));
     }
-    for (const auto& start : starts) {
+    for (auto& start : starts) {
         plant_model plant = from.fit.plant;
         added.join(plant, look);
         std::vector<parameter> ps;
         known_slopes known{.from = &slopes};
         for (std::size_t i = 0; i < resumed_from.size(); ++i) {
-            // The effect's own parameters replace the described ones, and those that do the same.
+            // The effect's own parameters replace the described ones.
             const parameter& q = resumed_from[i];
             const auto is_it = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
-            if (detail::is_of_equivalent(q, added))
-                q.of(plant) = q.expected;
-            else if (std::none_of(start.begin(), start.end(), is_it))
+            if (std::none_of(start.begin(), start.end(), is_it) &&
+                !detail::gives_way_to_constant(q, plant, start))
                 ps.push_back(q), known.which.push_back(i);
         }
         const std::size_t own = ps.size();
