@@ -113,15 +113,17 @@ TEST_CASE("effects: behind closed loops what resists is searched up to what the 
     const tolerance_description tolerance;
     const screening look{described, tolerance, record, leader, residual, innovation};
     const double force = look.force_scale();
-    for (const auto& [name, motor_moves] :
-         {std::pair{"coulomb_friction", force}, std::pair{"viscous_friction", force / 2},
-          std::pair{"gravity", force}, std::pair{"quadratic_drag", force / 4}}) {
-        INFO(name);
-        const auto most = [&, e = effect_named(name)] { return e->starts(look).front().front().high; };
+    const std::vector<std::pair<std::string, double>> moved{{"coulomb_friction", force},
+                                                            {"viscous_friction", force / 2},
+                                                            {"gravity", force},
+                                                            {"quadratic_drag", force / 4}};
+    for (const auto& of : moved) {
+        INFO(of.first);
+        const auto most = [&, e = effect_named(of.first)] { return e->starts(look).front().front().high; };
         record.observer.closed.reset();
         const double usual = most();
         record.observer.closed = 0.0;
-        CHECK(most() == doctest::Approx(motor_moves).epsilon(1e-9));
+        CHECK(most() == doctest::Approx(of.second).epsilon(1e-9));
         CHECK(most() > 2 * usual);
     }
 }
