@@ -185,26 +185,19 @@ machine_log behind_noisy_sensor(double white) {
     std::mt19937_64 random(1);
     std::normal_distribution<double> noise(0, white);
     constexpr double step = 0.001, read = 6e-4;
-    axis_log l;
-    l.name = "q";
-    l.kind = axis_kind::rotary;
-    l.position_step = l.command_step = 1e-6;
+    std::vector<double> position, measured;
     double q = 0, v = 0;
     for (int k = 0; k < 12000; ++k) {
         const double torque = k < 4000 ? 0.05 : 0.06;
-        l.position.push_back(std::round(q / read) * read);
-        l.command.push_back(torque + noise(random));
+        position.push_back(std::round(q / read) * read);
+        measured.push_back(torque + noise(random));
         for (int i = 0; i < 10; ++i) {
             const double h = step / 10, a = (torque - 0.03 * std::tanh(v / 0.5) - 7e-5 * v) / 1.2e-4;
             q += h * (v + h / 2 * a);
             v += h * a;
         }
     }
-    machine_log out;
-    out.sample_period_s = step;
-    out.samples = l.position.size();
-    out.axes.push_back(std::move(l));
-    return out;
+    return workshop::torque_log(position, measured, step, 1e-6);
 }
 
 } // namespace

@@ -419,3 +419,22 @@ TEST_CASE("import: stamps rounded to a digit do not change the period of rows th
     const auto in = import_log(read_import_map(map, "map.json"), text, "in.csv", {.resample = true});
     CHECK(near(in.log.sample_period_s, tick, 1e-4)); // most steps are 0.016 s
 }
+TEST_CASE(
+    "import: a row that stands twice among stamps in whole milliseconds is dropped, and stamps that have no "
+    "clock are refused") {
+    const std::string map =
+        R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "t", "unit": "s"},
+        "axes": {"q": {"position": {"column": "at", "unit": "rad"}, "command": {"column": "torque", "unit": "Nm"}}}})";
+    std::string twice = "t,at,torque\n", lost = twice; // at 1 kHz; at 2 kHz, with rows missing
+    const auto row = [](double t, int k) { return fmt::format("{:.3f},{:.6f},0.25\n", t, std::sin(0.01 * k)); };
+    for (int k = 0; k < 500; ++k) {
+        twice += row(1e-3 * k, k);
+        for (const int again : {7, 20, 90, 101, 230, 480})
+            if (k == again) twice += row(1e-3 * k, k);
+        if (k != 90 && k != 91 && k != 150 && k != 261) lost += row(std::floor(0.5 * k + 1e-9) / 1000, k);
+    }
+    const auto in = import_log(read_import_map(map, "map.json"), twice, "in.csv");
+    CHECK(in.log.samples == 500);
+    CHECK(in.notes.at(0) == "6 rows have the stamp of the row before and are dropped");
+    CHECK(of_log(lost, map).find("several rows have each stamp, and rows are missing") != std::string::npos);
+}

@@ -134,29 +134,18 @@ namespace {
 /// A slow axis with friction alone, read in coarse counts, or a fast one whose command is far earlier than the
 /// reading: neither shows by its acceleration whether the command is turned.
 std::string pushed(double sign, double friction, double inertia, double frequency, double lead) {
-    machine_log log;
-    log.file = "log.csv";
-    log.sample_period_s = 0.01;
-    axis_log a;
-    a.name = "q";
-    a.kind = axis_kind::rotary;
-    a.command_unit = "Nm";
-    a.has_reference = false;
+    std::vector<double> position, torque;
     for (int k = 0; k < 6000; ++k) {
         const double t = 0.01 * k, w = 2 * std::numbers::pi * frequency;
         const auto x = [&](double s) { return std::sin(w * s) + 0.4 * std::sin(2.3 * w * s + 1); };
         const double v = x(t + 1e-4) - x(t - 1e-4), e = t + lead;
         const double acceleration = (x(e + 1e-3) - 2 * x(e) + x(e - 1e-3)) / 1e-6;
-        a.position.push_back(0.002 * std::round(x(t) / 0.002));
-        a.command.push_back(sign * (friction * (v > 0 ? 1 : -1) + inertia * acceleration + 3 +
+        position.push_back(0.002 * std::round(x(t) / 0.002));
+        torque.push_back(sign * (friction * (v > 0 ? 1 : -1) + inertia * acceleration + 3 +
                                     0.3 * std::sin(1.7 * k) + 0.1 * std::sin(0.0071 * k)));
     }
-    a.reference = a.position;
-    a.position_step = 0.002;
-    log.axes = {a};
-    log.samples = a.position.size();
     imported_log in;
-    in.log = log;
+    in.log = workshop::torque_log(position, torque, 0.01, 0.002);
     return refusal_of([&] { check_physics(in); });
 }
 } // namespace

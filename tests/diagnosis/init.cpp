@@ -200,27 +200,17 @@ TEST_CASE("init: a mass of which the log is not sure is told with its standard d
 TEST_CASE(
     "init: from a log that goes one way, Coulomb friction and a constant force are one number, and neither "
     "is written") {
-    machine_log log;
-    log.file = "log.csv";
-    log.sample_period_s = 0.001;
-    axis_log a;
-    a.name = "q";
-    a.kind = axis_kind::rotary;
-    a.command_unit = "Nm";
-    a.has_reference = false;
+    std::vector<double> position, torques;
     double q = 0, v = 0; // it speeds up in steps of the torque
     for (int k = 0; k < 16000; ++k) {
         const double torque = 0.05 + 0.005 * (k / 4000);
-        a.position.push_back(q);
-        a.command.push_back(torque);
+        position.push_back(q);
+        torques.push_back(torque);
         const double acceleration = (torque - 0.04 - 1e-4 * v) / 1.2e-4;
         q += 0.001 * (v + 0.0005 * acceleration);
         v += 0.001 * acceleration;
     }
-    a.reference = a.position;
-    a.position_step = 1e-9;
-    log.axes = {a};
-    log.samples = a.position.size();
+    const machine_log log = workshop::torque_log(position, torques, 0.001, 1e-9);
     init_request r;
     r.from_log = true;
     const auto begun = init_machine(r, &log);

@@ -56,6 +56,24 @@ double force(double t) {
     return 90 * m.a + 300 * m.v + std::copysign(30.0, m.v);
 }
 
+/// The machine file of a machine whose command is measured; its controller is not described.
+machine_description with_measured_command(const workshop::machine& m) {
+    auto file = workshop::described(m);
+    file.axes[0].actuator.command_is = command_origin::measured;
+    file.axes[0].controller.reset();
+    return file;
+}
+/// What is said of a machine whose command `record` changed before it was logged; a note has these words.
+template <class Record>
+diagnosis_result diagnosed_as_recorded(const workshop::machine& real, const machine_description& file,
+                                       const Record& record, const char* words) {
+    auto log = workshop::as_log(workshop::run(real));
+    record(log.axes[0].command);
+    auto d = diagnose(file, log);
+    CHECK(workshop::says(d, words));
+    return d;
+}
+
 } // namespace
 
 TEST_CASE("late command: one that was sent 2.3 rows after the position is read as much earlier, and one that "
@@ -83,18 +101,13 @@ TEST_CASE(
     "late command: a machine whose command was recorded rows late has the causes that it has in time, and the "
     "report says so") {
     const auto diagnosed_late = [](const workshop::machine& real, const machine_description& file, long rows) {
-        auto log = workshop::as_log(workshop::run(real));
-        workshop::stand_later(log.axes[0].command, rows);
-        auto d = diagnose(file, log);
-        CHECK(workshop::says(d, "the command stands"));
-        return d;
+        return diagnosed_as_recorded(
+            real, file, [&](auto& command) { workshop::stand_later(command, rows); }, "the command stands");
     };
     for (const double delay : {0.0, 0.0006}) { // read later than the motion, or than the described delay
         workshop::machine real;
         real.delay = delay;
-        auto file = workshop::described(real);
-        file.axes[0].actuator.command_is = command_origin::measured;
-        file.axes[0].controller.reset();
+        const auto file = with_measured_command(real);
         for (const long rows : {1, 3}) CHECK(diagnosed_late(real, file, rows).causes.empty());
         real.coulomb *= 1.3;
         workshop::named(diagnosed_late(real, file, 2), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
@@ -118,7 +131,7 @@ TEST_CASE("late command: a low-pass is no delay of the same size, and is undone"
         log.command = behind_low_pass(in_time.command, kept);
         const auto found = low_pass_of_command(log, T, plant);
         REQUIRE(found);
-        CHECK(found->time_constant == doctest::Approx(rows * T).epsilon(0.1));
+        CHECK(found->of_slope == doctest::Approx(rows * T).epsilon(0.1));
         CHECK(!low_pass_of_command(recorded([&](double t) { return force(t + (0.5 - rows) * T); }), T, plant));
     }
     CHECK(!low_pass_of_command(in_time, T, plant));
@@ -140,13 +153,13 @@ TEST_CASE("late command: a low-pass that runs all the time is undone, too") {
     }
     const auto found = low_pass_of_command(log, T, plant);
     REQUIRE(found);
-    CHECK(found->time_constant == doctest::Approx(tau + 0.5 * T).epsilon(0.1));
+    CHECK(found->of_slope == doctest::Approx(tau + 0.5 * T).epsilon(0.1));
 }
 TEST_CASE("late command: beside missing rows a low-pass is not undone") {
     axis_log log = recorded(force);
     log.left_out.assign(log.command.size(), 0);
     log.left_out[100] = 1;
-    const auto undone = read_before_low_pass(log, {.time_constant = 3 * T}, T);
+    const auto undone = read_before_low_pass(log, {.of_slope = 3 * T}, T);
     for (std::size_t k = 98; k <= 102; ++k) CHECK(undone.command[k] == log.command[k]);
     CHECK(undone.command[97] != log.command[97]);
     CHECK(undone.command[103] != log.command[103]);
@@ -157,22 +170,19 @@ TEST_CASE("late command: what a low-pass of the recorder took is put back") {
     for (int k = 0; k < 2000; ++k) log.command.push_back(std::sin(0.1 * k));
     const auto before = log.command;
     log.command = behind_low_pass(before, 0.7);
-    const auto after = read_before_low_pass(log, {.time_constant = 7.0 / 3 * T, .second = -3.5 / 3 * T * T}, T);
+    const auto after =
+        read_before_low_pass(log, {.of_slope = 7.0 / 3 * T, .of_curvature = -3.5 / 3 * T * T}, T);
     for (std::size_t k = 100; k < 1900; ++k) CHECK(std::abs(after.command[k] - before[k]) < 0.01);
 }
 TEST_CASE("late command: a machine whose measured command stands behind a low-pass has the causes that it has "
           "without") {
     const auto diagnosed = [](const workshop::machine& real, const machine_description& file, double kept) {
-        auto log = workshop::as_log(workshop::run(real));
-        log.axes[0].command = behind_low_pass(log.axes[0].command, kept);
-        auto d = diagnose(file, log);
-        CHECK(workshop::says(d, "as behind a low-pass"));
-        return d;
+        return diagnosed_as_recorded(
+            real, file, [&](auto& command) { command = behind_low_pass(command, kept); },
+            "as behind a low-pass");
     };
     workshop::machine real;
-    auto file = workshop::described(real);
-    file.axes[0].actuator.command_is = command_origin::measured;
-    file.axes[0].controller.reset();
+    const auto file = with_measured_command(real);
     for (const double kept : {0.65, 0.85}) CHECK(diagnosed(real, file, kept).causes.empty());
     real.coulomb *= 1.3;
     workshop::named(diagnosed(real, file, 0.65), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);

@@ -76,6 +76,25 @@ TEST_CASE("simulate: a reference that was logged a row late is read in time, as 
     CHECK(late.notes[0].find("the reference stands 1 row later in the log") != std::string::npos);
     CHECK(workshop::near(only(late).gap.position_rms_m, only(in_time).gap.position_rms_m, 0.05));
 }
+TEST_CASE(
+    "simulate: a column that the log says is measured is read before the low-pass behind which it stands") {
+    const workshop::machine m;
+    auto file = exact(m);
+    file.axes[0].controller.reset();
+    auto log = workshop::as_log(workshop::run(m));
+    auto& command = log.axes[0].command;
+    for (std::size_t k = 1; k < command.size(); ++k) command[k] += 0.7 * (command[k - 1] - command[k]);
+    const auto asked = simulate(file, log);
+    log.axes[0].command_is = command_origin::measured;
+    const auto measured = simulate(file, log);
+    const auto says_so = [](const simulation_result& s) {
+        return std::any_of(s.notes.begin(), s.notes.end(),
+                           [](const auto& n) { return n.find("as behind a low-pass") != n.npos; });
+    };
+    CHECK(!says_so(asked));
+    CHECK(says_so(measured));
+    CHECK(only(measured).gap.force_rms_N < 0.5 * only(asked).gap.force_rms_N);
+}
 TEST_CASE("simulate: without a controller the force alone is judged") {
     const workshop::machine m;
     auto file = exact(m);

@@ -242,4 +242,22 @@ inline quadrant::diagnosis::machine_log as_log(quadrant::diagnosis::axis_log axi
     return out;
 }
 
+/// The log of a rotary axis q of which position and torque alone are known, in rows of this period.
+inline quadrant::diagnosis::machine_log torque_log(std::vector<double> position, std::vector<double> torque,
+                                                   double row, double position_step) {
+    quadrant::diagnosis::axis_log q;
+    q.name = "q";
+    q.kind = quadrant::diagnosis::axis_kind::rotary;
+    q.command_unit = "Nm";
+    q.has_reference = false;
+    q.reference = position;
+    q.position = std::move(position);
+    q.command = std::move(torque);
+    q.position_step = position_step;
+    auto out = as_log(std::move(q));
+    out.file = "log.csv";
+    out.sample_period_s = row;
+    return out;
+}
+
 } // namespace workshop

@@ -33,11 +33,12 @@ QUADRANT_DIAGNOSIS_DECL double lateness_of_command(const axis_log& log, double p
 /// A log with its command read earlier.
 QUADRANT_DIAGNOSIS_DECL axis_log read_earlier(axis_log log, double seconds, double period);
 
-/// What undoes a first-order low-pass: c1 [s] and c2 [s2] of u = y + c1 y' + c2 y''. Behind one of time
+/// What undoes a first-order low-pass, the factors c1 and c2 of u = y + c1 y' + c2 y''. Behind one of time
 /// constant tau that runs all the time, read at the row of period T, c1 = tau + T/2 and c2 = tau T/2. Behind
 /// one that runs once a row, c1 = tau and c2 = -tau T/2.
 struct low_pass_undone {
-    double time_constant = 0, second = 0;
+    double of_slope = 0;     ///< c1 [s]
+    double of_curvature = 0; ///< c2 [s2]
 };
 
 /// The low-pass behind which a measured command was recorded, as drives write their current; none: it is late,

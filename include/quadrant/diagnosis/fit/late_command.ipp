@@ -67,9 +67,9 @@ namespace detail {
 /// Whether these numbers are of a low-pass: neither of a delay nor of a mode, which has a curvature without a
 /// lateness. doubt: standard deviation of c2.
 inline bool is_low_pass(const low_pass_undone& by, double doubt, double period) {
-    const double c1 = by.time_constant, of_delay = c1 * c1 / 2;
-    return c1 > 0 && by.second + 4 * doubt < of_delay && by.second < of_delay / 2 &&
-           by.second > -of_delay - c1 * period / 2;
+    const double c1 = by.of_slope, of_delay = c1 * c1 / 2;
+    return c1 > 0 && by.of_curvature + 4 * doubt < of_delay && by.of_curvature < of_delay / 2 &&
+           by.of_curvature > -of_delay - c1 * period / 2;
 }
 
 } // namespace detail
@@ -77,17 +77,16 @@ inline bool is_low_pass(const low_pass_undone& by, double doubt, double period) 
 QUADRANT_DIAGNOSIS_DECL std::optional<low_pass_undone> low_pass_of_command(const axis_log& log, double period,
                                                                            const plant_description& plant) {
     const double as_described = -0.5 * period - plant.delay_s;
-    const auto read = [&](double late, and_lateness asked) {
-        return regress(read_earlier(log, as_described + late, period), period, asked,
-                       white_noise_in(log.command));
-    };
-    const axis_regression r = read(0, and_lateness::with_curvature);
-    const low_pass_undone by{.time_constant = r.lateness.value, .second = -r.curvature.value};
+    const axis_regression r = regress(read_earlier(log, as_described, period), period,
+                                      and_lateness::with_curvature, white_noise_in(log.command));
+    const low_pass_undone by{.of_slope = r.lateness.value, .of_curvature = -r.curvature.value};
     if (!r.lateness.sure() || !detail::is_of_the_plant(r, plant) || !(r.left < 0.5 * r.left_in_time) ||
         !detail::is_low_pass(by, r.curvature.spread, period))
         return {};
     const double late = lateness_of_command(log, period, plant, command_origin::measured);
-    return r.left < read(late, and_lateness::up_to_noise).left_in_time ? std::optional(by) : std::nullopt;
+    const axis_regression of_late =
+        regress(read_earlier(log, as_described + late, period), period, and_lateness::up_to_noise);
+    return r.left < of_late.left_in_time ? std::optional(by) : std::nullopt;
 }
 
 QUADRANT_DIAGNOSIS_DECL axis_log read_before_low_pass(axis_log log, const low_pass_undone& by, double period) {
@@ -99,8 +98,8 @@ QUADRANT_DIAGNOSIS_DECL axis_log read_before_low_pass(axis_log log, const low_pa
     };
     for (std::size_t k = 1; k + 1 < y.size(); ++k)
         if (whole(k))
-            log.command[k] += by.time_constant * (y[k + 1] - y[k - 1]) / (2 * period) +
-                              by.second * (y[k + 1] - 2 * y[k] + y[k - 1]) / (period * period);
+            log.command[k] += by.of_slope * (y[k + 1] - y[k - 1]) / (2 * period) +
+                              by.of_curvature * (y[k + 1] - 2 * y[k] + y[k - 1]) / (period * period);
     return log;
 }
 

@@ -12,11 +12,12 @@ namespace quadrant::inline v0::diagnosis {
 struct led_motion {
     std::vector<double> way;           ///< smoothed without phase at the corner [m]
     std::vector<unsigned char> counts; ///< of every row: 1 where the axis surely moves
+    double mass, force_constant;       ///< of the machine file: forces are compared in units of the command
+
     double share_that_counts() const {
         return static_cast<double>(std::count(counts.begin(), counts.end(), 1)) /
                static_cast<double>(counts.size());
     }
-    double mass, force_constant; ///< of the machine file: forces are compared in units of the command
 };
 
 } // namespace quadrant::inline v0::diagnosis

@@ -59,9 +59,9 @@ enum class and_lateness {
 /// position. All signals pass the same zero-phase low-pass first. Rows near rest are left out: friction may
 /// have any size there. Lateness: on the command's slope, too, and without rows near a change of direction,
 /// where friction builds up late. Curvature: on its second derivative as well.
-/// white: noise of the command [rms of a row], taken out where its derivatives explain.
+/// white_noise: of the command [rms of a row], taken out where its derivatives explain.
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period,
-                                                and_lateness asked = and_lateness::no, double white = 0);
+                                                and_lateness asked = and_lateness::no, double white_noise = 0);
 
 } // namespace quadrant::inline v0::diagnosis
 

@@ -76,10 +76,10 @@ inline regression_part sum_without(const std::vector<regression_part>& parts, st
 
 /// White noise of the command is in its derivatives, too: what it adds to the normal equations is taken out.
 /// from: number of the slope, behind which the second derivative stands.
-inline void take_noise_out(std::vector<regression_part>& parts, double white, double band_Hz, double period,
-                           Eigen::Index from) {
+inline void take_noise_out(std::vector<regression_part>& parts, double white_noise, double band_Hz,
+                           double period, Eigen::Index from) {
     std::vector<double> impulse(2001, 0.0);
-    impulse[1000] = white;
+    impulse[1000] = white_noise;
     const auto slope = derivative(zero_phase(impulse, band_Hz, period), period),
                curve = derivative(slope, period);
     const double of_slope = std::inner_product(slope.begin(), slope.end(), slope.begin(), 0.0),
@@ -112,7 +112,7 @@ inline void add_shares_left(axis_regression& out, const regression_part& all, do
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double period, and_lateness asked,
-                                                double white) {
+                                                double white_noise) {
     axis_regression out;
     out.band_Hz = detail::regression_band(
         log, period, asked == and_lateness::up_to_noise || asked == and_lateness::with_curvature);
@@ -138,7 +138,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
         sums[k / rows].right += of.u[k] * row;
         energy += of.u[k] * of.u[k];
     }
-    if (curvature) detail::take_noise_out(sums, white, out.band_Hz, period, of_axis);
+    if (curvature) detail::take_noise_out(sums, white_noise, out.band_Hz, period, of_axis);
     const auto solution = [&](std::size_t without) {
         auto [left, right] = detail::sum_without(sums, without);
         left.diagonal() *= 1 + 1e-9;

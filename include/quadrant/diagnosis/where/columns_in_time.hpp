@@ -100,7 +100,7 @@ inline void columns_in_time::by_motion() {
         if (const auto low_pass = low_pass_of_command(log, period, axis.plant)) {
             notes.push_back(fmt::format("axis {}: the measured command was recorded late by {:.2g} ms, as "
                                         "behind a low-pass; it is read as it was before.",
-                                        axis.name, 1e3 * low_pass->time_constant));
+                                        axis.name, 1e3 * low_pass->of_slope));
             return change([&](axis_log l) { return read_before_low_pass(std::move(l), *low_pass, period); });
         }
     }

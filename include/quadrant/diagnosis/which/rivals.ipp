@@ -81,6 +81,11 @@ inline void leave_out_the_unlikely(std::vector<rival>& rivals, double all) {
         if ((out += r->weight) < 0.05 * all) r->unlikely = true;
 }
 
+/// Whether an effect does far less in a model than this force, so that something beside it does the work there.
+inline bool does_far_less(const axis_case& c, const candidate& m, const effect& e, double than) {
+    return !(rms(c.models.does(m, e)) > than / 3);
+}
+
 /// The cause number `which` and the names that stand in its place on top of the model `without` it.
 inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, const candidate& without) {
     const effect* own = c.best().effects[which];
@@ -109,11 +114,11 @@ inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, co
     if (!c.settled && !c.models.over()) {
         const auto forms = c.models.forms();
         const auto models = c.models.with_these(without, forms, c.limits.forms);
-        const auto does = [&](const candidate& m) { return rms(c.models.does(m, *own)); };
+        const double of_own = rms(c.models.does(c.best(), *own));
         for (std::size_t i = 0; i < models.size(); ++i) {
             if (!(c.takes_off(models[i], c.best()) > 0.5)) continue;
             const candidate both = c.models.with(models[i], own);
-            if (!c.models.pays(both, models[i]) || does(both) < does(c.best()) / 3)
+            if (!c.models.pays(both, models[i]) || does_far_less(c, both, *own, of_own))
                 out.push_back({.model = models[i], .name = forms[i]});
         }
     }
@@ -193,7 +198,7 @@ private:
     bool stands_in(const rival& r, const rival& first) const {
         if (&r == &first || !by_force(r)) return true;
         if (!force_of_own_) force_of_own_ = rms(case_.models.does(case_.best(), own_));
-        return rms(case_.models.does(r.model, *r.name)) > *force_of_own_ / 3;
+        return !does_far_less(case_, r.model, *r.name, *force_of_own_);
     }
 
     const axis_case& case_;
