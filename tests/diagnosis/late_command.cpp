@@ -56,6 +56,11 @@ double force(double t) {
     return 90 * m.a + 300 * m.v + std::copysign(30.0, m.v);
 }
 
+/// As a drive writes its current: behind a first-order low-pass that runs once a row.
+std::vector<double> behind_low_pass(std::vector<double> x, double kept) {
+    for (std::size_t k = 1; k < x.size(); ++k) x[k] += kept * (x[k - 1] - x[k]);
+    return x;
+}
 /// The machine file of a machine whose command is measured; its controller is not described.
 machine_description with_measured_command(const workshop::machine& m) {
     auto file = workshop::described(m);
@@ -113,16 +118,6 @@ TEST_CASE(
         workshop::named(diagnosed_late(real, file, 2), "coulomb_friction", "coulomb_N", real.coulomb, 0.1);
     }
 }
-namespace {
-
-/// As a drive writes its current: behind a first-order low-pass that runs once a row.
-std::vector<double> behind_low_pass(std::vector<double> x, double kept) {
-    for (std::size_t k = 1; k < x.size(); ++k) x[k] += kept * (x[k - 1] - x[k]);
-    return x;
-}
-
-} // namespace
-
 TEST_CASE("late command: a low-pass is no delay of the same size, and is undone") {
     const axis_log in_time = recorded([](double t) { return force(t + 0.5 * T); });
     for (const double kept : {0.5, 0.7, 0.85}) {
