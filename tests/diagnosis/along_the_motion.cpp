@@ -4,6 +4,7 @@
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/which/axis_case.hpp>

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/fit/with_drives.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>

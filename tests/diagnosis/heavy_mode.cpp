@@ -2,6 +2,7 @@
 #include "claims.hpp"
 
 #include <quadrant/diagnosis/effect/effects.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/which/axis_case.hpp>
 
 using namespace quadrant::diagnosis;

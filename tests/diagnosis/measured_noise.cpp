@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // The floor of a measured command and of a coarse count: only what the axis did not follow is noise of the
 // measurement, and rounding is a tone only while the axis creeps.
-#include <quadrant/diagnosis/fit/record.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ axis_description motor() {
 
 /// A motor that swings by a torque of 0.4 N m and white torque on top. `added`: by the measurement, or by
 /// what is asked, which moves the motor.
-axis_log shaken(double white, bool added) {
+axis_log shaken(double white, bool added, double read_to = count) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal(0, white);
     axis_log l;
@@ -37,7 +37,7 @@ axis_log shaken(double white, bool added) {
         const double shake = normal(random);
         const double swing = 0.4 * std::cos(2 * 3.14159265358979 * 0.7 * k * period);
         const double torque = swing + (added ? 0 : shake);
-        l.position.push_back(std::round(q / count) * count);
+        l.position.push_back(std::round(q / read_to) * read_to);
         l.command.push_back(swing + shake);
         const double a = (torque - 0.05 * v) / inertia;
         q += period * (v + period / 2 * a);
@@ -66,6 +66,25 @@ TEST_CASE("noise of a measured command: what moves the axis is none") {
         CHECK(of_asked.score.channels[i].command_noise < 0.4 * whole);
     }
     CHECK(of_asked.command_noise < 0.4 * of_measured.command_noise);
+}
+
+TEST_CASE("noise of a measured command: what its acceleration follows is none, before there is a model") {
+    const axis_log asked = shaken(0.05, false, count / 100), measured = shaken(0.05, true, count / 100);
+    CHECK(white_noise_in(asked.command) > 0.04); // it may be, by the command alone
+    CHECK(white_noise_in(asked.command, asked.position) < 0.02);
+    CHECK(white_noise_in(measured.command, measured.position) == doctest::Approx(0.05).epsilon(0.1));
+}
+
+TEST_CASE("noise of a measured command: a wrong machine leaves more, and none of that is noise") {
+    const axis_log asked = shaken(0.05, false, count / 100);
+    axis_description half = motor();
+    half.plant.mass_kg /= 2;
+    axis_record of_half = ready(half, asked);
+    std::vector<double> e;
+    of_half.observer.run(plant_model(half, of_half.scale.give()), e);
+    for (channel& c : of_half.score.channels)
+        c.command_noise *= 3; // by what half of the mass leaves, all of that may be
+    CHECK(share_added_by_measurement(e, of_half.score.channels, 1e-9) == 1);
 }
 
 TEST_CASE("noise of a measured command: no more than the innovations hold in any channel") {

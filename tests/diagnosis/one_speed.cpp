@@ -5,6 +5,7 @@
 
 #include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/effect/repeating.hpp>
+#include <quadrant/diagnosis/fit/for_machine.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 #include <quadrant/diagnosis/which/axis_case.hpp>

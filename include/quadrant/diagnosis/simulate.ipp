@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "fit/for_machine.hpp"
 #include "fit/neighbour.hpp"
 #include "fit/with_drives.hpp"
 #include "how_far/how_far.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../fit/for_machine.hpp"
 #include "../fit/neighbour.hpp"
 #include "../log/sensor_box.hpp"
 #include "../result/result.hpp"

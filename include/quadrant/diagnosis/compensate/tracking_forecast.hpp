@@ -2,6 +2,7 @@
 #pragma once
 #include "../../analysis/quadrant_glitch.hpp"
 #include "../../base/version.hpp"
+#include "../fit/for_machine.hpp"
 #include "../how_far/closed_loop.hpp"
 #include "../how_far/driven_loop.hpp"
 #include "../log/sensor_box.hpp"

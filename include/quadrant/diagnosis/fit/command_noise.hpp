@@ -20,8 +20,9 @@ namespace quadrant::inline v0::diagnosis {
 /// White noise that a logged signal may carry, rms: as much as its power density is anywhere, at its lowest
 /// in half of the stretches (Hann windows, half overlapped). What moves the axis stands on top of it, steps in
 /// few of the stretches; a filter behind the measurement leaves a frequency with less, and then none is
-/// assumed. 0 of fewer than 512 rows.
-QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x);
+/// assumed. Nor is what the acceleration of this `position` follows, by their coherence: a loop that shakes
+/// its axis at every frequency adds no noise. 0 of fewer than 512 rows.
+QUADRANT_DIAGNOSIS_DECL double white_noise_in(std::span<const double> x, std::span<const double> position = {});
 
 /// What such noise of a measured command, as a force of rms `force`, leaves in the means of a channel behind an
 /// observer around a free mass: rms [m].

@@ -78,7 +78,7 @@ QUADRANT_DIAGNOSIS_DECL std::optional<low_pass_undone> low_pass_of_command(const
                                                                            const plant_description& plant) {
     const double as_described = -0.5 * period - plant.delay_s;
     const axis_regression r = regress(read_earlier(log, as_described, period), period,
-                                      and_lateness::with_curvature, white_noise_in(log.command));
+                                      and_lateness::with_curvature, white_noise_in(log.command, log.position));
     const low_pass_undone by{.of_slope = r.lateness.value, .of_curvature = -r.curvature.value};
     if (!r.lateness.sure() || !detail::is_of_the_plant(r, plant) || !(r.left < 0.5 * r.left_in_time) ||
         !detail::is_low_pass(by, r.curvature.spread, period))

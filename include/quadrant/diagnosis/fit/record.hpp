@@ -114,13 +114,6 @@ QUADRANT_DIAGNOSIS_DECL void judge_path(axis_record& r, const plant_model& descr
 /// the expense of the rest.
 QUADRANT_DIAGNOSIS_DECL void judge_beside_what_is_left(axis_record& r, const plant_model& nearest);
 
-/// The record with its observer stepping as finely as the described machine needs.
-/// `nearest`: to what the machine does, of the models that are known, for what is evaluated on its path or led
-/// along its motion; null: the described machine, and no floor but that of the reading.
-QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
-                                                held_by how = held_by::readings,
-                                                const plant_model* nearest = nullptr);
-
 } // namespace quadrant::inline v0::diagnosis
 
 #ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION

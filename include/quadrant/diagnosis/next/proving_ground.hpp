@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../fit/for_machine.hpp"
 #include "../fit/with_drives.hpp"
 #include "../how_far/closed_loop.hpp"
 #include "../how_far/driven_loop.hpp"

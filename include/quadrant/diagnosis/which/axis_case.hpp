@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../fit/for_machine.hpp"
 #include "../log/log.hpp"
 #include "../log/sensor_box.hpp"
 #include "../where/controller_mismatch.hpp"

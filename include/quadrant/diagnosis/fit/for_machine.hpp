@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSL-1.0
+#pragma once
+#include "../../base/version.hpp"
+#include "record.hpp"
+#include "regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace quadrant::inline v0::diagnosis {
+
+/// The record with its observer stepping as finely as the described machine needs.
+/// `nearest`: to what the machine does, of the models that are known, for what is evaluated on its path or led
+/// along its motion; null: the described machine, and no floor but that of the reading.
+QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
+                                                held_by how = held_by::readings,
+                                                const plant_model* nearest = nullptr);
+
+} // namespace quadrant::inline v0::diagnosis
+
+#ifndef QUADRANT_DIAGNOSIS_SEPARATE_COMPILATION
+#    include "for_machine.ipp"
+#endif
