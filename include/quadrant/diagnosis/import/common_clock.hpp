@@ -2,6 +2,7 @@
 #pragma once
 #include "../log/even_rows.hpp"
 #include "../log/sensor_box.hpp"
+#include "../log/slow_readings.hpp"
 #include "../log/wrong_readings.hpp"
 #include "foreign_table.hpp"
 #include "import_choice.hpp"
@@ -29,6 +30,7 @@ public:
     void take() {
         const foreign_table& first = tables_.front();
         period_ = choice_.period_s > 0 ? choice_.period_s : usual_period(first);
+        for (std::size_t i = 0; i < tables_.size(); ++i) find_slow_readings(i);
         const double period = period_;
         double begin = std::max(0.0, choice_.from_s), end = std::min(first.t.back(), choice_.to_s);
         for (const auto& table : tables_) {
@@ -68,6 +70,27 @@ private:
         // Steps that are rounded to the last digit of the stamps differ from the period by up to it.
         return *middle > 0 && std::abs(*middle - clock.period) > table.written ? *middle : clock.period;
     }
+    /// What is read more slowly than the rows come. No period that was not asked for is shorter than that.
+    void find_slow_readings(std::size_t file) {
+        const foreign_table& table = tables_[file];
+        for (const auto& c : table.columns) {
+            if (c.name.find("_pos_") == c.name.npos) continue;
+            auto found = slow_reading_check(table.t, c.values, observed_count(c.values, c.step())).take();
+            if (!found) continue;
+            tell_(file, fmt::format("{}: {:.0f} % of the rows of a motion repeat the reading before; a new one "
+                                    "comes every {:.2g} s, and only these count",
+                                    c.name, 100 * found.share, found.interval));
+            if (!(choice_.period_s > 0)) period_ = std::max(period_, found.interval);
+            slow_.push_back({file, c.name.substr(0, c.name.find("pos_")), std::move(found)});
+        }
+    }
+    const slow_readings* slow_readings_of(std::size_t file, const foreign_column& c) const {
+        for (const auto& slow : slow_)
+            if (slow.file == file && c.name.starts_with(slow.axis) && comes_with(slow.readings, c.values))
+                return &slow.readings;
+        return nullptr;
+    }
+
     void resample(std::size_t file, double begin, double period) {
         foreign_table& table = tables_[file];
         const auto clock = clock_of_rows(table.t, table.written);
@@ -80,18 +103,37 @@ private:
             at.push_back((t - begin) / period);
         }
         std::vector<unsigned char> apart = clock.after_gap;
-        if (choice_.period_s > 0) // on a slower clock a gap is what leaves samples of that clock out
+        if (choice_.period_s > 0 || !slow_.empty()) // on a slower clock a gap is what leaves samples out
             for (std::size_t k = 1; k < apart.size(); ++k)
                 if (table.t[k] - table.t[k - 1] <= longest_step * period) apart[k] = 0;
-        const even_rows rows(std::move(at), std::move(apart), samples_);
-        const auto left = rows.left_out();
+        const even_rows rows(at, std::move(apart), samples_);
         tell_clock(file, clock, period);
-        for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= left[k];
-        for (auto& c : table.columns) resample(file, table, rows, c);
+        for (auto& c : table.columns) {
+            const slow_readings* slow = is_held(c.name) ? nullptr : slow_readings_of(file, c);
+            slow ? resample_new_readings(file, table, at, *slow, c) : resample(file, table, rows, c);
+        }
+    }
+    /// A column of which only some rows are new.
+    void resample_new_readings(std::size_t file, const foreign_table& table, const std::vector<double>& at,
+                               const slow_readings& slow, foreign_column& c) {
+        foreign_table fresh;
+        std::vector<double> values, place;
+        std::vector<unsigned char> after_gap;
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            if (slow.repeated[k]) continue;
+            const double step = fresh.t.empty() ? 0 : table.t[k] - fresh.t.back();
+            after_gap.push_back(step > slow_reading_check::longest * slow.interval);
+            fresh.t.push_back(table.t[k]);
+            values.push_back(c.values[k]);
+            place.push_back(at[k]);
+        }
+        c.values = std::move(values);
+        resample(file, fresh, even_rows(std::move(place), std::move(after_gap), samples_), c);
     }
     void resample(std::size_t file, const foreign_table& table, const even_rows& rows, foreign_column& c) {
         if (is_held(c.name)) {
             c.values = rows.held(c.values);
+            leave_out(rows.left_out());
             return;
         }
         const bool position = c.name.find("_pos_") != c.name.npos;
@@ -101,9 +143,8 @@ private:
             if (found.wrong + found.stale > 0)
                 tell_(file, fmt::format("{}: {} wrong and {} repeated readings are left out", c.name,
                                         found.wrong, found.stale));
-            const auto left = rows.left_out(found.bad);
-            for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= left[k];
         }
+        leave_out(rows.left_out(found.bad));
         const std::span<const unsigned char> bad = found.bad;
         if (const double error = position ? rows.interpolation_error(c.values, bad) : 0; error > 0)
             tell_(file, fmt::format(
@@ -111,6 +152,9 @@ private:
                             "adds between rows); a stamp that is itself wrong adds the speed times its error",
                             c.name, error, c.name.ends_with("rad") ? "rad" : "m"));
         c.values = rows.smooth(c.values, bad);
+    }
+    void leave_out(const std::vector<unsigned char>& samples) {
+        for (std::size_t k = 0; k < samples_; ++k) left_out_[k] |= samples[k];
     }
     void tell_clock(std::size_t file, const row_clock& clock, double period) {
         if (!map_.files[file].time && std::abs(clock.period / period - 1) < 1e-9)
@@ -125,7 +169,7 @@ private:
     void tell_of_pieces(std::size_t file, const row_clock& clock) {
         const auto& t = tables_[file].t;
         constexpr std::size_t many = 30; // rows from gap to gap, below which the pieces are too short to use
-        if (choice_.period_s > 0 || clock.gaps < 3 || t.size() > many * clock.gaps) return;
+        if (choice_.period_s > 0 || !slow_.empty() || clock.gaps < 3 || t.size() > many * clock.gaps) return;
         std::vector<double> steps; // across the gaps
         for (std::size_t k = 1; k < t.size(); ++k)
             if (clock.after_gap[k]) steps.push_back(t[k] - t[k - 1]);
@@ -149,6 +193,12 @@ private:
     const import_choice& choice_;
     std::vector<foreign_table>& tables_;
     tell_of_file tell_;
+    struct slow_axis {
+        std::size_t file;
+        std::string axis; ///< and the stroke behind it, as its columns begin
+        slow_readings readings;
+    };
+    std::vector<slow_axis> slow_{};
     double period_ = 0;
     std::size_t samples_ = 0;
     std::vector<unsigned char> left_out_{};
