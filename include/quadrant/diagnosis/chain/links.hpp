@@ -26,9 +26,6 @@ QUADRANT_DIAGNOSIS_DECL double slope(std::span<const double> x, std::span<const 
 /// What the machine file says of the gears of an axis.
 QUADRANT_DIAGNOSIS_DECL link_model described_gears(const axis_description& axis);
 
-/// Units of the load for one metre that was asked or counted.
-QUADRANT_DIAGNOSIS_DECL double of_a_counted_metre(const transmission_description& t);
-
 /// The motor's reading in units of the load; refuses one that the machine file cannot turn into those, or that
 /// moves otherwise than the scale by far more than any machine is wrong.
 QUADRANT_DIAGNOSIS_DECL double motor_to_load(const axis_description& axis, const axis_log& log,

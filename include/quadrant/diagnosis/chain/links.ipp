@@ -33,26 +33,20 @@ QUADRANT_DIAGNOSIS_DECL link_model described_gears(const axis_description& axis)
     return m;
 }
 
-QUADRANT_DIAGNOSIS_DECL double of_a_counted_metre(const transmission_description& t) {
-    return t.counted_per_turn_m && t.travel_per_turn_m ? *t.travel_per_turn_m / *t.counted_per_turn_m : 1;
-}
-
 QUADRANT_DIAGNOSIS_DECL double motor_to_load(const axis_description& axis, const axis_log& log,
                                              const std::string& file) {
     const transmission_description& t = axis.transmission;
     const double measured = slope(log.motor, log.position);
     const std::string m = key_of("m", axis.kind);
-    double to_load = of_a_counted_metre(t);
-    if (log.motor_unit == "rad" && t.travel_per_turn_m) to_load = *t.travel_per_turn_m / (2 * std::numbers::pi);
-    const bool unknown = log.motor_unit == "rad" && !t.travel_per_turn_m;
+    const std::optional<double> described = t.to_load(log.motor_unit);
     const double turn = measured * 2 * std::numbers::pi;
-    if (unknown)
+    if (!described)
         throw bad_input(file,
                         fmt::format("axis {0}: axes.{0}.transmission.travel_per_turn_{1} is missing; the scale "
                                     "moves {2:.4g} {1} a turn of the motor's encoder",
                                     axis.name, m, turn));
-    const double ratio = measured / to_load;
-    if (std::abs(ratio - 1) <= tolerance_description::unstated) return to_load;
+    const double ratio = measured / *described;
+    if (std::abs(ratio - 1) <= tolerance_description::unstated) return *described;
     if (log.turn)
         throw bad_input(file, fmt::format("axis {0}: end {2} moves {1:.4g} times as far as end {3}: {4}",
                                           axis.name, ratio, log.turn->second, log.turn->first,
@@ -112,7 +106,7 @@ QUADRANT_DIAGNOSIS_DECL described_link asked_to(const axis_description& axis, co
     if (geared) out.described = described_gears(axis);
     out.from = "what was asked";
     out.to = geared ? "the scale" : "the motor's encoder";
-    out.to_load = of_a_counted_metre(axis.transmission);
+    out.to_load = *axis.transmission.to_load("m");
     l.asked = true;
     l.geared = geared;
     l.first = scaled(log.reference, geared ? out.to_load : 1);
@@ -142,7 +136,9 @@ QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_descriptio
     const auto velocity = derivative(smooth, l.period), acceleration = derivative(velocity, l.period);
     const double mass = l.motor_mass = axis.transmission.motor_mass_kg.value_or(0);
     l.compliance = d.described.compliance;
-    l.force_doubt = std::hypot(axis.tolerance.of("force_constant"), mass > 0 ? axis.tolerance.of("mass") : 0);
+    l.force_doubt = std::hypot(axis.drive.closes() ? axis.tolerance.of("velocity_gain")
+                                                   : axis.tolerance.of("force_constant"),
+                               mass > 0 ? axis.tolerance.of("mass") : 0);
     std::vector<double> sign(l.rows());
     l.force.resize(l.rows());
     for (std::size_t k = 0; k < l.rows(); ++k) {

@@ -59,7 +59,9 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::from_several(const fitted& given) const {
         while (way.model.freed.size() < most) {
             auto next = with_each(way);
             if (next.empty()) break;
-            way = pruned(std::move(next.front()));
+            fitted on = pruned(std::move(next.front()));
+            if (!(value(on) > value(way))) break; // one term came for another, and would go for it again
+            way = std::move(on);
         }
         if (value(way) > value(best)) best = std::move(way);
     }

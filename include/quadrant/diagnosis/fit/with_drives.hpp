@@ -35,6 +35,21 @@ inline std::vector<double> measured_behind(const axis_description& axis, const a
     return log.effort.empty() ? std::vector<double>{} : force(log.effort, log.effort_unit, log.effort_step);
 }
 
+/// The position on which a drive closes its loops: the motor's where that was read, in units of the load and
+/// from its mean zero. A transmission that gives way is then outside of the loop.
+inline std::vector<double> seen_by_drive(const axis_description& axis, const axis_log& log) {
+    const std::optional<double> to_load = axis.transmission.to_load(log.motor_unit);
+    if (log.motor.empty() || log.turn || !to_load) return log.position;
+    std::vector<double> out = log.motor;
+    double zero = 0;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        out[k] *= *to_load;
+        zero += (log.position[k] - out[k]) / static_cast<double>(out.size());
+    }
+    for (double& x : out) x += zero;
+    return out;
+}
+
 /// The log of an axis whose drive closes loops of its own, made ready: its command is what the actuator got.
 inline axis_log with_drive(const axis_description& axis, const axis_log& log, double period) {
     axis_log out = log;
@@ -45,7 +60,7 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     const bool command_in_m = log.command_unit == key_of("m", axis.kind);
     motion->set_point = d.kind == drive_kind::velocity || command_in_m ? log.command : log.reference;
     motion->in_volts = log.command_unit == "V";
-    motion->position = log.position;
+    motion->position = seen_by_drive(axis, log);
     motion->off = log.drive_off;
     for (std::size_t k = 0; k < log.drive_off.size() && k < out.left_out.size(); ++k)
         if (log.drive_off[k]) out.left_out[k] = 0; // the mechanics go on

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <array>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,13 @@ struct transmission_description {
     std::optional<double> motor_coulomb_N; ///< friction on the motor's side, in units of the load
     std::optional<double> motor_mass_kg;   ///< the part of the mass on the motor's side
 
+    /// Units of the load for one of the motor's reading: "rad" of its turn, or "m" as it was counted; empty:
+    /// not described.
+    std::optional<double> to_load(std::string_view motor_unit) const {
+        if (motor_unit == "rad" && !travel_per_turn_m) return {};
+        if (motor_unit == "rad") return *travel_per_turn_m / (2 * std::numbers::pi);
+        return counted_per_turn_m && travel_per_turn_m ? *travel_per_turn_m / *counted_per_turn_m : 1;
+    }
     bool operator==(const transmission_description&) const = default;
 };
 
