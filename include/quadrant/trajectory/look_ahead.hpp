@@ -101,8 +101,9 @@ public:
             piece& next = *at(1);
             const std::size_t fresh = count_ - planned_;
             if (!next.settled && (fresh >= Window / 4 || (fresh > 0 && planned_ <= Window / 2))) plan();
+            const quickest_change change(kind_, now.whole.within);
             c.out = highest(std::min(in, next.speed), next.speed, enough(now),
-                            [&](double out) { return room(now, c.leg_in, in, next.joint, out); });
+                            [&](double out) { return room(now, c.leg_in, change(in, out), next.joint); });
             next.speed = c.out;
             c.leg_out = next.joint.leg(c.out);
         }
@@ -164,11 +165,10 @@ private:
                near(last.whole.within.acceleration, next.within.acceleration, 0.5) &&
                near(last.whole.within.jerk, next.within.jerk, 0.5);
     }
-    /// What is left of a piece [m] when the speed goes from `in` to `out` between its two joints; below 0: it
-    /// cannot. A stop keeps one period in hand, so that its time can be fitted to whole periods.
-    double room(const piece& p, double leg_in, double in, const corner& end, double out) const noexcept {
-        const double way = speed_change::quickest(kind_, in, out, p.whole.within).distance();
-        return p.whole.length - leg_in - way - end.leg(out) - (out > 0 ? 0 : in * period_);
+    /// What is left of a piece [m] when the speed changes so between its two joints; below 0: it cannot. A stop
+    /// keeps one period in hand, so that its time can be fitted to whole periods.
+    double room(const piece& p, double leg_in, const speed_change& by, const corner& end) const noexcept {
+        return p.whole.length - leg_in - by.distance() - end.leg(by.to) - (by.to > 0 ? 0 : by.from * period_);
     }
     /// Backwards from the newest piece to the second, or to what no further move can change: a joint at its
     /// highest speed, and all before it.
@@ -181,8 +181,9 @@ private:
             const bool newest = i + 1 == count_;
             const corner& end = newest ? stop : at(i + 1)->joint;
             const double out = newest ? 0 : at(i + 1)->speed, most = p.joint.most();
+            const quickest_change change(kind_, p.whole.within);
             p.speed = most <= out ? most : highest(out, most, enough(p), [&](double in) {
-                return room(p, p.joint.leg(in), in, end, out);
+                return room(p, p.joint.leg(in), change(in, out), end);
             });
             settled = settled || p.speed == most;
             p.settled = settled;

@@ -19,13 +19,13 @@ class speed_profile {
 public:
     static bool feasible(profile_kind kind, const bounds& within, double length, double from,
                          double to) noexcept {
-        return speed_change::quickest(kind, from, to, within).distance() <= length;
+        return quickest_change(kind, within)(from, to).distance() <= length;
     }
 
     speed_profile() = default;
     /// Needs `feasible`, and both speeds at most that of `within`.
     speed_profile(profile_kind kind, const bounds& within, double length, double from, double to) noexcept
-        : kind_(kind), within_(within), length_(length), from_(from), to_(to) {
+        : kind_(kind), change_(kind, within), length_(length), from_(from), to_(to) {
         const double low = std::max(from, to), high = std::max(low, std::min(within.velocity, 1e9));
         cruise_at(highest(low, high, 1e-13 * length, [this](double v) { return left(v); }));
     }
@@ -71,14 +71,11 @@ public:
     }
 
 private:
-    speed_change change(double from, double to) const noexcept {
-        return speed_change::quickest(kind_, from, to, within_);
-    }
     double left(double v) const noexcept { // of the length for the cruise
-        return length_ - change(from_, v).distance() - change(v, to_).distance();
+        return length_ - change_(from_, v).distance() - change_(v, to_).distance();
     }
     double lasts(double v) const noexcept {
-        const speed_change rise = change(from_, v), fall = change(v, to_);
+        const speed_change rise = change_(from_, v), fall = change_(v, to_);
         return rise.duration + fall.duration + cruise_time(v, rise, fall);
     }
     double cruise_time(double v, const speed_change& rise, const speed_change& fall) const noexcept {
@@ -87,13 +84,13 @@ private:
     }
     void cruise_at(double v) noexcept {
         cruise_ = v;
-        rise_ = change(from_, v);
-        fall_ = change(v, to_);
+        rise_ = change_(from_, v);
+        fall_ = change_(v, to_);
         held_ = cruise_time(v, rise_, fall_);
     }
 
     profile_kind kind_ = profile_kind::trapezoidal_acceleration;
-    bounds within_;
+    quickest_change change_;
     double length_ = 0, from_ = 0, to_ = 0, cruise_ = 0, held_ = 0;
     speed_change rise_, fall_;
 };
@@ -131,7 +128,7 @@ public:
         if (!speed_profile::feasible(p.kind, within, length, from, to)) {
             bounds free = within;
             free.jerk = unlimited;
-            const double needs = speed_change::quickest(p.kind, from, to, within).distance();
+            const double needs = quickest_change(p.kind, within)(from, to).distance();
             using quadrant::detail::shortest;
             const bool by_jerk = speed_profile::feasible(p.kind, free, length, from, to);
             refuse_line(p.line, quadrant::detail::rule(by_jerk ? "the jerk limit" : "the acceleration limit") +

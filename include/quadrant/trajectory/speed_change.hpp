@@ -23,25 +23,6 @@ struct speed_change {
     double from = 0, to = 0, duration = 0, ramp = 0; ///< [m/s, m/s, s, s]; ramp is at most duration / 2
     bool cubic = false;
 
-    /// The shortest one within the acceleration and jerk of `within`, as far as `kind` knows them.
-    static speed_change quickest(profile_kind kind, double from, double to, const bounds& within) noexcept {
-        speed_change c{from, to, 0, 0, kind == profile_kind::cubic_acceleration};
-        const double dv = std::abs(to - from), a = within.acceleration;
-        const double j =
-            c.cubic ? within.jerk / 1.5 : within.jerk; // of a straight ramp as long as the cubic one
-        if (!(dv > 0) || kind == profile_kind::constant_velocity || (a == unlimited && j == unlimited))
-            return c;
-        if (kind == profile_kind::constant_acceleration || j == unlimited) {
-            c.duration = dv / a;
-        } else if (dv * j >= a * a) {
-            c.ramp = a / j;
-            c.duration = dv / a + c.ramp;
-        } else { // the acceleration is not reached
-            c.ramp = std::sqrt(dv / j);
-            c.duration = 2 * c.ramp;
-        }
-        return c;
-    }
     /// The same, slower: all derivatives become smaller.
     speed_change stretched(double longer) const noexcept {
         return {from, to, longer, duration > 0 ? ramp * (longer / duration) : 0, cubic};
@@ -72,6 +53,32 @@ private:
         return {t * (v0 + a * t * x2 * (0.25 - 0.1 * x)), v0 + a * t * x2 * (1 - 0.5 * x), a * x2 * (3 - 2 * x),
                 a / ramp * 6 * x * (1 - x)};
     }
+};
+
+/// The shortest changes of speed within an acceleration and a jerk, as far as a kind of profile knows them.
+class quickest_change {
+public:
+    quickest_change() = default;
+    quickest_change(profile_kind kind, const bounds& within) noexcept
+        : cubic_(kind == profile_kind::cubic_acceleration) {
+        if (kind != profile_kind::constant_velocity) acceleration_ = within.acceleration;
+        if (kind >= profile_kind::trapezoidal_acceleration)
+            jerk_ = cubic_ ? within.jerk / 1.5 : within.jerk; // of a straight ramp as long as the cubic one
+        square_ = acceleration_ * acceleration_;
+        if (jerk_ < unlimited) whole_ramp_ = acceleration_ / jerk_;
+    }
+    /// Without limits both formulae give no time.
+    speed_change operator()(double from, double to) const noexcept {
+        const double dv = std::abs(to - from);
+        if (dv * jerk_ >= square_) return {from, to, dv / acceleration_ + whole_ramp_, whole_ramp_, cubic_};
+        const double ramp = std::sqrt(dv / jerk_); // the acceleration is not reached
+        return {from, to, 2 * ramp, ramp, cubic_};
+    }
+
+private:
+    double acceleration_ = unlimited, jerk_ = unlimited, square_ = unlimited,
+           whole_ramp_ = 0; ///< up to the whole acceleration [s]
+    bool cubic_ = false;
 };
 
 /// The highest x between `low` and `high` that leaves some slack, for a slack that falls with x: not below 0
