@@ -164,12 +164,15 @@ private:
     struct moved {
         path::point r, v, a, j;
     };
-    static moved on(const typename look_ahead<Window>::place& at, const path_motion& y) noexcept {
+    [[gnu::always_inline]] static moved on(const typename look_ahead<Window>::place& at,
+                                           const path_motion& y) noexcept {
+        const auto* straight = std::get_if<path::line>(&at.path->shape());
+        if (!straight) return on_curve(at, y);
+        const path::point t = straight->tangent(at.s);
+        return {straight->position(at.s), y.v * t, y.a * t, y.j * t};
+    }
+    static moved on_curve(const typename look_ahead<Window>::place& at, const path_motion& y) noexcept {
         const path::segment& path = *at.path;
-        if (const auto* straight = std::get_if<path::line>(&path.shape())) { // what the sums below are, sooner
-            const path::point t = straight->tangent(at.s);
-            return {straight->position(at.s), y.v * t, y.a * t, y.j * t};
-        }
         const path::point t = path.tangent(at.s), k = path.curvature(at.s), d = third_derivative(path, at.s);
         return {path.position(at.s), y.v * t, y.a * t + y.v * y.v * k,
                 y.j * t + 3 * y.v * y.a * k + y.v * y.v * y.v * d};
