@@ -14,12 +14,10 @@ namespace quadrant_cnc {
 using quadrant::path::point;
 using quadrant::path::segment;
 
-/// The path length of the place on a piece that is nearest to `at`; of several, as on a circle driven twice,
-/// the one around `guess`.
-inline double nearest(const segment& path, point at, double guess) noexcept {
+/// The path length of the place on an arc or a spline that is nearest to `at`; of several, as on a circle
+/// driven twice, the one around `guess`.
+inline double nearest_on_curve(const segment& path, point at, double guess) noexcept {
     const double length = path.length();
-    if (const auto* straight = std::get_if<quadrant::path::line>(&path.shape()))
-        return std::clamp(dot(at - straight->start(), straight->tangent(0)), 0.0, length);
     double s = std::clamp(guess, 0.0, length);
     if (const auto* round = std::get_if<quadrant::path::arc>(&path.shape())) {
         const point c = round->centre(), from = path.position(s);
@@ -39,10 +37,27 @@ inline double nearest(const segment& path, point at, double guess) noexcept {
     return s;
 }
 
+/// A place on a piece of path, and how far another place is from it.
+struct foot_of {
+    double s; ///< along the piece [m]
+    point foot;
+    double away; ///< [m]
+    /// The place nearest to `at`; of several, the one around `guess`.
+    [[gnu::always_inline]] foot_of(const segment& path, point at, double guess) noexcept {
+        if (const auto* straight = std::get_if<quadrant::path::line>(&path.shape())) {
+            s = std::clamp(dot(at - straight->start(), straight->tangent(0)), 0.0, straight->length());
+            foot = straight->position(s);
+        } else {
+            s = nearest_on_curve(path, at, guess);
+            foot = path.position(s);
+        }
+        away = distance(at, foot);
+    }
+};
+
 /// Walks along the program with the reference and keeps no more of it than lies around it. The distance is that
-/// to the stretch
-/// of path on both sides of the reference that is twice as long as the table is away from it: where a path
-/// crosses itself or comes back, the other branch does not count.
+/// to the stretch of path on both sides of the reference that is twice as long as the table is away from it:
+/// where a path crosses itself or comes back, the other branch does not count.
 class contour {
 public:
     static constexpr std::size_t kept = 512; ///< pieces, those ahead included
@@ -66,15 +81,14 @@ public:
         const std::size_t before = here_;
         reference_ = reference;
         while (here_ + 1 < count_ && at(here_).line < line) ++here_, s_ = 0, way = 0;
-        s_ = nearest(at(here_).path, reference, s_ + way);
-        double off = distance(reference, at(here_).path.position(s_));
-        while (here_ + 1 < count_ && at(here_ + 1).line <= line && s_ >= at(here_).path.length() * (1 - 1e-9)) {
-            const double s = nearest(at(here_ + 1).path, reference, 0);
-            const double next = distance(reference, at(here_ + 1).path.position(s));
-            if (next > off + 1e-12) break;
-            ++here_, s_ = s, off = next;
+        foot_of here(at(here_).path, reference, s_ + way);
+        while (here_ + 1 < count_ && at(here_ + 1).line <= line &&
+               here.s >= at(here_).path.length() * (1 - 1e-9)) {
+            const foot_of next(at(here_ + 1).path, reference, 0);
+            if (next.away > here.away + 1e-12) break;
+            ++here_, here = next;
         }
-        off_ = off;
+        s_ = here.s, off_ = here.away;
         passed_ = here_ != before;
     }
     /// Where the reference is on the path [m]; when it has just passed a joint: there, so that a line through
@@ -84,17 +98,22 @@ public:
         // Further along the path than this only another branch of it can be nearer, which is not the one that
         // is driven.
         const double reach = 2 * (distance(place, reference_) + off_) + 1e-9;
-        found best{at(here_).path, nearest(at(here_).path, place, s_), place};
+        const segment& here = at(here_).path;
+        foot_of best(here, place, s_);
+        const auto look_at = [&](const segment& path, double guess) {
+            const foot_of other(path, place, guess);
+            if (other.away < best.away) best = other;
+        };
         double way = s_;
         for (std::size_t i = here_; way < reach && i > 0 && count_ - i < kept; --i) {
             const segment& path = at(i - 1).path;
-            best.take(path, nearest(path, place, path.length()), place);
+            look_at(path, path.length());
             way += path.length();
         }
-        way = at(here_).path.length() - s_;
+        way = here.length() - s_;
         for (std::size_t i = here_ + 1; way < reach && i < count_; ++i) {
             const segment& path = at(i).path;
-            best.take(path, nearest(path, place, 0), place);
+            look_at(path, 0);
             way += path.length();
         }
         return {best.foot, place - best.foot};
@@ -104,16 +123,6 @@ private:
     struct piece {
         segment path;
         std::size_t line;
-    };
-    struct found {
-        point foot;
-        double away;
-        found(const segment& path, double s, point place)
-            : foot(path.position(s)), away(distance(place, foot)) {}
-        void take(const segment& path, double s, point place) noexcept {
-            const found other(path, s, place);
-            if (other.away < away) *this = other;
-        }
     };
     const piece& at(std::size_t i) const noexcept { return pieces_[i % kept]; }
 
