@@ -33,16 +33,17 @@ public:
         }
     }
     axis_sample step(const axis_motion<>& asked) noexcept override {
-        const axis_measurement<> now = drive_->measured();
-        axis_sample s{
-            .reading = now.position.value(), .velocity = now.velocity.value(), .place = drive_->place()};
-        s.command = control_->step(asked, now);
-        if (inner_) s.command = (*inner_)(s.command, asked, now);
+        const drive_side::sample& drive = drive_->now();
+        axis_sample s{.reading = drive.measured.position.value(),
+                      .velocity = drive.measured.velocity.value(),
+                      .place = drive.place};
+        s.command = control_->step(asked, drive.measured);
+        if (inner_) s.command = (*inner_)(s.command, asked, drive.measured);
         drive_->step(volts::from_value(s.command), load_ ? load_->next() : 0);
         s.reference = control_->due();
-        s.effort = shown_ * drive_->effort();
-        s.limited = control_->limited() || (inner_ && inner_->limited()) || drive_->limited();
-        s.faulted = control_->faulted() || drive_->faulted();
+        s.effort = shown_ * drive.effort;
+        s.limited = control_->limited() || (inner_ && inner_->limited()) || drive.limited;
+        s.faulted = control_->faulted() || drive.faulted;
         return s;
     }
     void settle(double at) noexcept override {

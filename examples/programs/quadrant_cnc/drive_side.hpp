@@ -16,28 +16,44 @@ using namespace quadrant;
 using volts = quantity_of<signal::voltage>;
 
 /// The machine's side of an axis, whatever its drive.
-struct drive_side {
+class drive_side {
+public:
+    /// What a drive shows at the beginning of a period, and what it did in the period before.
+    struct sample {
+        axis_measurement<> measured{};
+        double place = 0;  ///< of the table [m]
+        double effort = 0; ///< current [A], or command of the motor [V]
+        bool limited = false, faulted = false;
+    };
+
     virtual ~drive_side() = default;
     virtual void step(volts command, double push_N) noexcept = 0; ///< push: on the table, from outside
-    virtual axis_measurement<> measured() const noexcept = 0;
     virtual void settle(double at) noexcept = 0;
-    virtual double place() const noexcept = 0;
-    virtual double effort() const noexcept = 0;
-    virtual bool limited() const noexcept = 0;
-    virtual bool faulted() const noexcept = 0;
+    const sample& now() const noexcept { return now_; }
+
+protected:
+    sample now_{};
 };
 
-template <class Boxes> struct drive_of final : drive_side {
+template <class Boxes> class drive_of final : public drive_side {
+public:
     drive_of(const typename Boxes::parameters& p, double period)
-        : drive{.box = {p, duration::from_value(period)}} {}
-    void step(volts command, double push_N) noexcept override { drive(command, in_si(push_N)); }
-    axis_measurement<> measured() const noexcept override { return drive.measured(); }
-    void settle(double at) noexcept override { drive.settle(in_si(at)); }
-    double place() const noexcept override { return drive.wire.place.value(); }
-    double effort() const noexcept override { return drive.wire.effort.value(); }
-    bool limited() const noexcept override { return drive.limited(); }
-    bool faulted() const noexcept override { return drive.faulted(); }
-    feed_drive<Boxes> drive;
+        : drive_{.box = {p, duration::from_value(period)}} {}
+    void step(volts command, double push_N) noexcept override {
+        drive_(command, in_si(push_N));
+        look();
+    }
+    void settle(double at) noexcept override {
+        drive_.settle(in_si(at));
+        look();
+    }
+
+private:
+    void look() noexcept {
+        now_ = {drive_.measured(), drive_.wire.place.value(), drive_.wire.effort.value(), drive_.limited(),
+                drive_.faulted()};
+    }
+    feed_drive<Boxes> drive_;
 };
 
 template <class Parameters> void add_sensors(Parameters& p, const sensor_description& s, std::uint64_t seed) {

@@ -52,14 +52,16 @@ public:
     }
     std::size_t lead() const { return control_->lead(); }
     quadrant::analysis::loop_sample step(const axis_motion<>& asked, double push) {
-        const axis_measurement<> now = drive_->measured();
-        const double place = where_ == seen::at_table ? drive_->place() : now.position.value(),
+        const axis_measurement<> now = drive_->now().measured;
+        const double place = where_ == seen::at_table ? drive_->now().place : now.position.value(),
                      of_law = control_->step(asked, now);
         const double command = (inner_ ? (*inner_)(of_law, asked, now) : of_law) + push;
         drive_->step(volts::from_value(command), 0);
         return {command, place, control_->due()};
     }
-    bool limited() const { return control_->limited() || (inner_ && inner_->limited()) || drive_->limited(); }
+    bool limited() const {
+        return control_->limited() || (inner_ && inner_->limited()) || drive_->now().limited;
+    }
 
 private:
     std::unique_ptr<drive_side> drive_;
