@@ -11,13 +11,21 @@
 /// What a run of the virtual machine leaves behind; SI. Its size does not grow with the program.
 namespace quadrant_cnc {
 
-/// The largest magnitude of a signal, where it was, and its mean square.
+/// The largest magnitude of a signal, and where it was.
 struct extreme {
-    double most = 0, time = 0, squares = 0;
+    double most = 0, time = 0;
     std::size_t line = 0; ///< of the program
     void add(double value, double t, std::size_t at_line) {
-        squares += value * value;
         if (std::abs(value) > most) most = std::abs(value), time = t, line = at_line;
+    }
+};
+
+/// The same, and its mean square.
+struct extreme_and_mean : extreme {
+    double squares = 0;
+    void add(double value, double t, std::size_t at_line) {
+        squares += value * value;
+        extreme::add(value, t, at_line);
     }
     double rms(std::size_t samples) const { return samples > 0 ? std::sqrt(squares / double(samples)) : 0; }
 };
@@ -25,8 +33,8 @@ struct extreme {
 struct axis_outcome {
     std::string name, effort_unit;
     double effort_limit = unlimited;
-    extreme error{};                            ///< reference minus table [m]
-    extreme effort{};                           ///< current [A] or command [V]
+    extreme_and_mean error{};                   ///< reference minus table [m]
+    extreme_and_mean effort{};                  ///< current [A] or command [V]
     extreme velocity{}, acceleration{}, jerk{}; ///< that the trajectory asked for
     std::size_t limited = 0;                    ///< periods
 };
@@ -42,7 +50,7 @@ struct run_outcome {
     std::string cnc_file, path_file;
     double period = 0, duration = 0, path_length = 0;
     std::size_t samples = 0, moves = 0, lines = 0;
-    extreme contour; ///< distance to the path [m]
+    extreme_and_mean contour; ///< distance to the path [m]
     quadrant::path::point worst_place;
     std::vector<axis_outcome> axes;
     std::vector<std::string> notes;

@@ -172,16 +172,18 @@ private:
         for (one& a : axes_) a.box->cut(in_the_cut);
     }
     void take(std::size_t i, const trajectory::motion& asked, double error, const axis_sample& s, double t) {
+        const double velocity = asked.velocity.value(), acceleration = asked.acceleration.value(),
+                     jerk = asked.jerk.value();
         axis_outcome& o = out_.axes[i];
-        double* const v = values_.data() + 1 + run_outcome::of_axis * i;
-        v[0] = error, v[1] = asked.velocity.value(), v[2] = asked.acceleration.value(),
-        v[3] = asked.jerk.value(), v[4] = s.effort;
-        o.error.add(v[0], t, line_);
-        o.velocity.add(v[1], t, line_);
-        o.acceleration.add(v[2], t, line_);
-        o.jerk.add(v[3], t, line_);
-        o.effort.add(v[4], t, line_);
+        o.error.add(error, t, line_);
+        o.velocity.add(velocity, t, line_);
+        o.acceleration.add(acceleration, t, line_);
+        o.jerk.add(jerk, t, line_);
+        o.effort.add(s.effort, t, line_);
         o.limited += s.limited;
+        if (!drawn_) return;
+        double* const v = values_.data() + 1 + run_outcome::of_axis * i;
+        v[0] = error, v[1] = velocity, v[2] = acceleration, v[3] = jerk, v[4] = s.effort;
     }
 
     const cnc_description& cnc_;
