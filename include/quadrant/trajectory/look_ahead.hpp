@@ -102,8 +102,9 @@ public:
             const std::size_t fresh = count_ - planned_;
             if (!next.settled && (fresh >= Window / 4 || (fresh > 0 && planned_ <= Window / 2))) plan();
             const quickest_change change(kind_, now.whole.within);
-            c.out = highest(std::min(in, next.speed), next.speed, enough(now),
-                            [&](double out) { return room(now, c.leg_in, change(in, out), next.joint); });
+            c.out = highest(std::min(in, next.speed), next.speed, enough(now), [&](double out) {
+                return room(now, c.leg_in, change(in, out), next.joint.leg(out));
+            });
             next.speed = c.out;
             c.leg_out = next.joint.leg(c.out);
         }
@@ -167,23 +168,22 @@ private:
     }
     /// What is left of a piece [m] when the speed changes so between its two joints; below 0: it cannot. A stop
     /// keeps one period in hand, so that its time can be fitted to whole periods.
-    double room(const piece& p, double leg_in, const speed_change& by, const corner& end) const noexcept {
-        return p.whole.length - leg_in - by.distance() - end.leg(by.to) - (by.to > 0 ? 0 : by.from * period_);
+    double room(const piece& p, double leg_in, const speed_change& by, double leg_out) const noexcept {
+        return p.whole.length - leg_in - by.distance() - leg_out - (by.to > 0 ? 0 : by.from * period_);
     }
     /// Backwards from the newest piece to the second, or to what no further move can change: a joint at its
     /// highest speed, and all before it.
     void plan() noexcept {
-        const corner stop;
         bool settled = false;
         for (std::size_t i = count_ - 1; i >= 1; --i) {
             piece& p = *at(i);
             if (p.settled) break;
             const bool newest = i + 1 == count_;
-            const corner& end = newest ? stop : at(i + 1)->joint;
             const double out = newest ? 0 : at(i + 1)->speed, most = p.joint.most();
+            const double leg_out = newest ? 0 : at(i + 1)->joint.leg(out);
             const quickest_change change(kind_, p.whole.within);
             p.speed = most <= out ? most : highest(out, most, enough(p), [&](double in) {
-                return room(p, p.joint.leg(in), change(in, out), end);
+                return room(p, p.joint.leg(in), change(in, out), leg_out);
             });
             settled = settled || p.speed == most;
             p.settled = settled;
