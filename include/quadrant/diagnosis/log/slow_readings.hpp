@@ -84,8 +84,8 @@ private:
         std::nth_element(intervals.begin(), middle, intervals.end());
         return *middle;
     }
-    /// Whether the interval is not that of the speed: its slope over the speed, both as logarithms, is nearer to
-    /// 0 than to the -1 of an axis in steps. At one speed nobody can tell.
+    /// Whether the interval is not that of the speed: its slope over the speed, both as logarithms, is nearer
+    /// to 0 than to the -1 of an axis in steps. At one speed nobody can tell.
     static bool keeps_its_interval(std::span<const step> steps) {
         constexpr double least_spread = 0.1; // of the speed, relative
         const auto n = static_cast<double>(steps.size());
