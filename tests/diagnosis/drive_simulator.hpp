@@ -20,6 +20,7 @@ struct machine {
     double position_gain = 0, duty_gain = 0, supply = 12, kt = 0.1; ///< position loop; position servo
     double minimum_duty = 0, rate_limit = 1e9, delay = 0, count = 1e-6;
     double force_limit = 1e9;           ///< of the velocity loop [N]
+    double velocity_filter = 0;         ///< time constant with which the drive measures its velocity [s]
     double off_from = 0, off_until = 0; ///< the drive gives nothing then [s]
     double clock_slip = 0;              ///< its clock's period is longer by this share
     int rows_of_a_set_point = 1;        ///< it takes a new one after so many rows
@@ -62,7 +63,7 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 0.3 * m.count);
     std::vector<double> command;
-    double x = 0, v = 0, integral = 0, followed = 0, last = 0;
+    double x = 0, v = 0, felt = 0, integral = 0, followed = 0, last = 0;
     std::ostringstream out;
     out.precision(10);
     out << "t_s,q_ref_" << unit << ",q_pos_" << unit
@@ -116,8 +117,9 @@ inline std::string log(takes kind, const machine& m, double period, double pace,
                                          : m.position_gain * (before + part * (command[row] - before) - x);
                 const auto newest = static_cast<std::size_t>(std::max(0.0, at)); // a force is held over a row
                 const auto within = [&](double f) { return std::clamp(f, -m.force_limit, m.force_limit); };
-                force = within(m.gain * (asked - v) + integral + (m.added.empty() ? 0 : m.added[newest]));
-                integral = within(integral + h * m.integral * (asked - v));
+                felt += m.velocity_filter > h ? h / m.velocity_filter * (v - felt) : v - felt;
+                force = within(m.gain * (asked - felt) + integral + (m.added.empty() ? 0 : m.added[newest]));
+                integral = within(integral + h * m.integral * (asked - felt));
             }
             if (off) {
                 force = integral = 0;

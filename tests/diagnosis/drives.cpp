@@ -264,6 +264,21 @@ TEST_CASE("velocity drive: set-points that come late are the drive's delay" * do
     REQUIRE((delay = only_claim(d, "command_delay")));
     CHECK(value_of(*delay, "drive.command_delay_s") == doctest::Approx(4e-3).epsilon(0.1));
 }
+TEST_CASE("velocity drive: one that measures its velocity late has no set-points that come early") {
+    auto m = pi_drive;
+    m.mass = 120;
+    m.velocity_filter = 0.3e-3;
+    const auto d = diagnosed(linear(coulomb, of_pi), recorded(takes::volts, m));
+    INFO(name_of(d.verdict));
+    for (const cause& c : d.causes) {
+        CAPTURE(c.probability);
+        if (c.effect == "mass") CHECK(c.probability > 0.9);
+        if (c.effect == "command_delay") CHECK(c.group_probability < 0.5);
+    }
+    CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+        return note.find("may as well be a velocity that the drive measures as much late") != note.npos;
+    }));
+}
 TEST_CASE("position drive: the friction that its loops hide is found, from the reference alone" *
           doctest::test_suite("all")) {
     auto m = p_drive;

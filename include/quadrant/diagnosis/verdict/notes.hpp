@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../where/places.hpp"
-#include "../which/axis_case.hpp"
+#include "../which/late_velocity.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -67,6 +67,17 @@ inline void note_rows_of_delay(diagnosis_result& out, const axis_case& c, const 
             std::abs(rows) == 1 ? "one row" : fmt::format("{:.0f} rows", std::abs(rows)),
             rows > 0 ? "late" : "early", rows > 0 ? "early" : "late"));
     }
+}
+
+/// Set-points that seem to come early.
+inline void note_late_velocity(diagnosis_result& out, const axis_case& c, const std::vector<cause>& causes) {
+    for (const cause& x : causes)
+        if (const double earlier = late_velocity(c, x); earlier > 0)
+            out.notes.push_back(fmt::format(
+                "axis {}: set-points that come {:.2g} ms earlier than described may as well be a velocity that "
+                "the drive measures as much late. Read the filter of its velocity, and write "
+                "drive.velocity_filter_Hz.",
+                c.axis.name, 1e3 * earlier));
 }
 
 /// What the owner excludes although it explains the record better than what is named.

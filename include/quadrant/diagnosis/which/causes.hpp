@@ -3,6 +3,7 @@
 #include "cause_values.hpp"
 #include "doubt.hpp"
 #include "interval.hpp"
+#include "late_velocity.hpp"
 #include "rivals.hpp"
 
 namespace quadrant::inline v0::diagnosis {
