@@ -95,7 +95,7 @@ std::string others(const diagnosis_result& d, std::string_view but) {
     return out;
 }
 
-/// What the first cause says of this key; 0 where it says nothing.
+/// What a cause says of this key; 0 where none does.
 double value_found(const diagnosis_result& d, std::string_view key) {
     for (const cause& c : d.causes)
         for (const auto& p : c.parameters)

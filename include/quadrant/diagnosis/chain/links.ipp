@@ -136,8 +136,8 @@ QUADRANT_DIAGNOSIS_DECL void give_force(described_link& d, const axis_descriptio
     const auto velocity = derivative(smooth, l.period), acceleration = derivative(velocity, l.period);
     const double mass = l.motor_mass = axis.transmission.motor_mass_kg.value_or(0);
     l.compliance = d.described.compliance;
-    l.force_doubt = std::hypot(axis.drive.closes() ? axis.tolerance.of("velocity_gain")
-                                                   : axis.tolerance.of("force_constant"),
+    l.force_doubt = std::hypot(axis.drive.has_velocity_loop() ? axis.tolerance.of("velocity_gain")
+                                                              : axis.tolerance.of("force_constant"),
                                mass > 0 ? axis.tolerance.of("mass") : 0);
     std::vector<double> sign(l.rows());
     l.force.resize(l.rows());

@@ -81,7 +81,7 @@ inline constexpr effect drive_gain{
         };
         if (d.kind == drive_kind::velocity && s.record.observer.drive->in_volts)
             add("drive.velocity_per_V", [](plant_model& p) -> double& { return p.drive.velocity_per_V; });
-        if (d.kind == drive_kind::velocity || d.kind == drive_kind::position) {
+        if (d.has_velocity_loop()) {
             add("drive.velocity_gain_N_s_per_m",
                 [](plant_model& p) -> double& { return p.drive.velocity_gain; });
             add("drive.velocity_integral_N_per_m",

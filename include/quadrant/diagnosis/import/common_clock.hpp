@@ -110,27 +110,26 @@ private:
         tell_clock(file, clock, period);
         for (auto& c : table.columns) {
             const slow_readings* slow = is_held(c.name) ? nullptr : slow_readings_of(file, c);
-            slow ? resample_new_readings(file, table, at, *slow, c) : resample(file, table, rows, c);
+            slow ? resample_new_readings(file, table.t, at, *slow, c) : resample(file, table.t, rows, c);
         }
     }
     /// A column of which only some rows are new.
-    void resample_new_readings(std::size_t file, const foreign_table& table, const std::vector<double>& at,
+    void resample_new_readings(std::size_t file, std::span<const double> t, std::span<const double> at,
                                const slow_readings& slow, foreign_column& c) {
-        foreign_table fresh;
-        std::vector<double> values, place;
+        std::vector<double> fresh, values, place;
         std::vector<unsigned char> after_gap;
         for (std::size_t k = 0; k < at.size(); ++k) {
             if (slow.repeated[k]) continue;
-            const double step = fresh.t.empty() ? 0 : table.t[k] - fresh.t.back();
+            const double step = fresh.empty() ? 0 : t[k] - fresh.back();
             after_gap.push_back(step > slow_reading_check::longest * slow.interval);
-            fresh.t.push_back(table.t[k]);
+            fresh.push_back(t[k]);
             values.push_back(c.values[k]);
             place.push_back(at[k]);
         }
         c.values = std::move(values);
         resample(file, fresh, even_rows(std::move(place), std::move(after_gap), samples_), c);
     }
-    void resample(std::size_t file, const foreign_table& table, const even_rows& rows, foreign_column& c) {
+    void resample(std::size_t file, std::span<const double> t, const even_rows& rows, foreign_column& c) {
         if (is_held(c.name)) {
             c.values = rows.held(c.values);
             leave_out(rows.left_out());
@@ -139,7 +138,7 @@ private:
         const bool position = c.name.find("_pos_") != c.name.npos;
         wrong_readings found;
         if (position) {
-            found = reading_check(table.t, c.values, observed_count(c.values, c.step())).take();
+            found = reading_check(t, c.values, observed_count(c.values, c.step())).take();
             if (found.wrong + found.stale > 0)
                 tell_(file, fmt::format("{}: {} wrong and {} repeated readings are left out", c.name,
                                         found.wrong, found.stale));

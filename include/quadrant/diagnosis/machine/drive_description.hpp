@@ -40,6 +40,8 @@ struct drive_description {
 
     /// Whether the drive closes a loop of its own around the motor.
     bool closes() const { return kind != drive_kind::current; }
+    /// Whether that is a velocity loop, whose gain gives the force.
+    bool has_velocity_loop() const { return kind == drive_kind::velocity || kind == drive_kind::position; }
     /// Whether the reference of the log is what the drive receives when there is no command.
     bool takes_position() const { return kind == drive_kind::position || kind == drive_kind::position_servo; }
 };

@@ -42,6 +42,7 @@ struct transmission_description {
         if (motor_unit == "rad") return *travel_per_turn_m / (2 * std::numbers::pi);
         return counted_per_turn_m && travel_per_turn_m ? *travel_per_turn_m / *counted_per_turn_m : 1;
     }
+
     bool operator==(const transmission_description&) const = default;
 };
 

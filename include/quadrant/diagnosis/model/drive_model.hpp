@@ -61,12 +61,11 @@ struct drive_model {
 
     bool operator==(const drive_model&) const = default;
     bool closes() const { return kind != drive_kind::current; }
+    bool has_velocity_loop() const { return kind == drive_kind::velocity || kind == drive_kind::position; }
     /// Whether its registers are read one after another; other drives take all readings of a row at once.
     bool reads_in_turn() const { return kind == drive_kind::position_servo; }
     /// Whether the velocity loop remembers a force that no row shows.
-    bool has_integral() const {
-        return (kind == drive_kind::velocity || kind == drive_kind::position) && velocity_integral > 0;
-    }
+    bool has_integral() const { return has_velocity_loop() && velocity_integral > 0; }
 
     position_loop<>::parameters position_loop_numbers() const {
         return {.gain = position_gain,
