@@ -97,6 +97,18 @@ def main(program):
         columns = out.read_text().splitlines()[0] if out.exists() else ""
         expect(done.returncode == 0 and columns == "t_s,x_ref_m,x_pos_m,x_cmd_V", f"a matrix and integers through a map {done.stderr.strip()}")
 
+        # A file holds more than the log: what the map does not name may be of any length.
+        beside = [variable("drive", [[7.0] * 900]), variable("short", [[1.0, 2.0]]), *native]
+        told.write_text("""{"schema": "quadrant.import/1", "header": 1, "time": {"column": "t_s", "unit": "s"}, "axes": {"x": {
+            "position": {"column": "x_pos_m", "unit": "m"}, "reference": {"column": "x_ref_m", "unit": "m"},
+            "command": {"column": "x_cmd_V", "unit": "V"}}}}""")
+        done = run(mat(beside), "--map", str(told))
+        expect(done.returncode == 0 and out.read_text() == expected, f"variables of other lengths beside the log {done.stderr.strip()}")
+        told.write_text(told.read_text().replace("x_cmd_V", "drive"))
+        done = run(mat(beside), "--map", str(told))
+        expect(done.returncode == 2 and ":402:" in done.stderr and "t_s has no more rows, x_cmd_V goes on" in done.stderr and not out.exists(),
+               f"a longer one in the log: {done.stderr.strip()[-110:]}")
+
         # What is refused says the file and the byte.
         whole, packed = mat(record()), mat(record(), packed=True)
         first = 128 + len(text_variable("note")) + len(variable("gain", [[3.0]]))
@@ -117,7 +129,8 @@ def main(program):
                 ("a bomb of a size", whole[:128] + variable("a", [[1.0]]).replace(struct.pack("<ii", 1, 1), struct.pack("<ii", 2 ** 30, 2 ** 30)),
                  "a: has more numbers than the file has bytes"),
                 ("a bomb of zeros", whole[:128] + element("<", 15, zlib.compress(bytes(257 << 20))), "its compressed variables hold more than 256 MiB"),
-                ("other lengths", mat([variable("t_s", [t]), variable("x_pos_m", [pos[:-1]])]), "x_pos_m has 399 rows, t_s has 400"),
+                ("other lengths", mat([variable("t_s", [t]), variable("x_ref_m", [ref]), variable("x_pos_m", [pos[:-1]])]),
+                 ":401:27: x_pos_m has no more rows, t_s goes on"),
                 ("only texts", mat([text_variable("note"), text_variable("run", STRUCT)]), "holds no vector of numbers"),
                 ("level 7.3", mat([], text=b"MATLAB 7.3 MAT-file, Platform: GLNXA64", version=0x0200), "save it in MATLAB with save(..., '-v7')"),
                 ("another version", mat([], version=0x0300), "byte 124: version 0x0300")):

@@ -4,6 +4,7 @@
 #include "../text/json_node.hpp"
 #include "foreign_lines.hpp"
 #include "missing_column.hpp"
+#include "number_table.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -129,6 +130,7 @@ private:
                 continue;
             }
             if (blank_line) lines_.refuse(0, "the line before is blank, inside the log");
+            if (ended(cells)) break;
             const auto lacks = [&](const foreign_column& c) { return lines_.lacks(c.index); };
             if (layout_.time && std::any_of(out_.columns.begin() + 1, out_.columns.end(), lacks)) {
                 ++lacking; // its stamp tells that it is missing
@@ -148,6 +150,20 @@ private:
         if (skipped > 0)
             out_.notes.push_back(fmt::format(
                 "{} lines between the names of the columns and the first row are skipped", skipped));
+    }
+    /// Whether the columns of the log are over; a file of numbers may hold longer ones.
+    bool ended(const std::vector<foreign_lines::cell>& cells) const {
+        const auto over = [&](const foreign_column& c) {
+            return c.index < cells.size() && cells[c.index].text == past_the_end;
+        };
+        const auto first = std::find_if(out_.columns.begin(), out_.columns.end(), over);
+        if (first == out_.columns.end()) return false;
+        const auto longer = std::find_if_not(out_.columns.begin(), out_.columns.end(), over);
+        if (longer != out_.columns.end())
+            lines_.refuse(cells[first->index].offset,
+                          fmt::format("{} has no more rows, {} goes on: the columns of one log have one length",
+                                      first->name, longer->name));
+        return true;
     }
     /// halscope writes one row more than it sampled.
     void drop_last() {

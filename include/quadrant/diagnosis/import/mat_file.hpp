@@ -3,6 +3,7 @@
 #pragma once
 #include "../text/bad_input.hpp"
 #include "inflated.hpp"
+#include "number_table.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -217,26 +218,14 @@ private:
             throw bad_input(file_,
                             "holds no vector of numbers: save time, position and command as vectors, not in "
                             "structures or cells");
-        const variable& first = variables_.front();
-        std::string out;
-        for (const variable& v : variables_) {
-            if (v.rows != first.rows)
-                throw bad_input(file_,
-                                fmt::format("{} has {} rows, {} has {}: save only what belongs to one log",
-                                            v.name, v.rows, first.name, first.rows));
-            for (std::size_t k = 0; k < v.columns; ++k)
-                out += (out.empty() ? "" : ",") + v.name + (v.columns > 1 ? fmt::format("_{}", k + 1) : "");
-        }
-        out += '\n';
-        for (std::uint64_t row = 0; row < first.rows; ++row) {
-            const char* before = "";
-            for (const variable& v : variables_)
-                for (std::size_t k = 0; k < v.columns; ++k, before = ",")
-                    fmt::format_to(std::back_inserter(out), "{}{}", before,
-                                   v.values[static_cast<std::size_t>(k * v.rows + row)]);
-            out += '\n';
-        }
-        return out;
+        std::vector<number_column> columns;
+        for (const variable& v : variables_)
+            for (std::uint64_t k = 0; k < v.columns; ++k) {
+                const auto begin = v.values.begin() + static_cast<std::ptrdiff_t>(k * v.rows);
+                columns.push_back({v.columns > 1 ? fmt::format("{}_{}", v.name, k + 1) : v.name,
+                                   {begin, begin + static_cast<std::ptrdiff_t>(v.rows)}});
+            }
+        return text_of_table(columns);
     }
 
     std::string_view file_, file_bytes_, bytes_; ///< bytes_: of the file, or what a compressed variable holds
@@ -253,7 +242,7 @@ inline bool is_mat_file(std::string_view bytes) { return detail::mat_reader::is_
 
 /// The vectors and matrices of a MAT-file (level 5, also compressed) as a table of text whose first line names
 /// the variables: what import_log reads. Single numbers, texts, structures and cells are left out. Refuses
-/// other levels, complex numbers, vectors of different lengths, and a damaged file with its byte (bad_input).
+/// other levels, complex numbers, and a damaged file with its byte (bad_input).
 inline std::string table_of_mat_file(std::string_view bytes, std::string_view file) {
     return detail::mat_reader(bytes, file).take();
 }

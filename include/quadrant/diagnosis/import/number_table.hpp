@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../text/bad_input.hpp"
-
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <string>
@@ -24,22 +23,25 @@ inline std::string column_name(std::string_view name) {
     return out;
 }
 
-/// What import_log reads: a line of names, then rows. No value is an empty cell. Columns of one log are of one
-/// length.
-inline std::string text_of_table(const std::vector<number_column>& columns, std::string_view file) {
+/// A cell behind the last row of a column that is shorter than another of its file.
+inline constexpr std::string_view past_the_end = "end";
+
+/// What import_log reads: a line of names, then rows. No value is an empty cell. A file may hold columns of
+/// several lengths; those of one log are of one length, which the reader of the table checks.
+inline std::string text_of_table(const std::vector<number_column>& columns) {
     std::string out;
+    std::size_t rows = 0;
     for (const number_column& c : columns) {
-        if (c.values.size() != columns.front().values.size())
-            throw bad_input(file,
-                            fmt::format("{} has {} rows, {} has {}: save only what belongs to one log", c.name,
-                                        c.values.size(), columns.front().name, columns.front().values.size()));
         out += (out.empty() ? "" : ",") + c.name;
+        rows = std::max(rows, c.values.size());
     }
     out += '\n';
-    for (std::size_t row = 0; row < columns.front().values.size(); ++row) {
+    for (std::size_t row = 0; row < rows; ++row) {
         const char* before = "";
         for (const number_column& c : columns) {
-            if (std::isnan(c.values[row]))
+            if (row >= c.values.size())
+                out.append(before).append(past_the_end);
+            else if (std::isnan(c.values[row]))
                 out += before;
             else
                 fmt::format_to(std::back_inserter(out), "{}{}", before, c.values[row]);
