@@ -99,6 +99,10 @@ QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f) {
                 next.motor_coulomb = std::max(0.0, next.motor_coulomb + by / compliance);
                 change = std::max(change, std::abs(by) / std::max(next.motor_coulomb * compliance, 1e-300));
             }
+            if (f.of[j] == term::rate) {
+                next.rate = std::max(next.rate + by, 0.05 * next.rate);
+                change = std::max(change, std::abs(by) / std::max(next.rate, 1e-300));
+            }
             if ((f.of[j] == term::delay || f.of[j] == term::first_order) && first_of_its_term) {
                 next.lag = std::max(next.lag + by, 0.05 * next.lag);
                 change = std::max(change, std::abs(by) / std::max(next.lag, 1e-300));

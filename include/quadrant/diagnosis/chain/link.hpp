@@ -127,6 +127,14 @@ struct between_rows {
     }
 };
 
+/// What goes after x by at most so much from row to row.
+inline std::vector<double> at_most_as_fast(std::span<const double> x, double a_row) {
+    std::vector<double> out(x.begin(), x.end());
+    for (std::size_t k = 1; k < out.size(); ++k)
+        out[k] = out[k - 1] + std::clamp(x[k] - out[k - 1], -a_row, a_row);
+    return out;
+}
+
 /// What follows x late by `lag` seconds: as it was then, or with a first-order lag (a position loop of gain 1 /
 /// lag).
 inline std::vector<double> followed(std::span<const double> x, double period, following how, double lag) {

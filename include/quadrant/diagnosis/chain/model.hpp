@@ -13,6 +13,7 @@ namespace quadrant::inline v0::diagnosis::chain {
 
 /// What may lie between two readings of one axis.
 enum class term {
+    rate,
     delay,
     first_order,
     scale,
@@ -25,13 +26,15 @@ enum class term {
     steps,
     drift
 };
-inline constexpr std::array all_terms{term::delay, term::first_order, term::scale,         term::play,
-                                      term::pitch, term::smooth,      term::cyclic,        term::spring,
-                                      term::steps, term::drift,       term::motor_friction};
+inline constexpr std::array all_terms{term::rate,   term::delay, term::first_order, term::scale,
+                                      term::play,   term::pitch, term::smooth,      term::cyclic,
+                                      term::spring, term::steps, term::drift,       term::motor_friction};
 
 /// The effect that a term is, by its name in the list; empty: no name.
 constexpr std::string_view name_of(term t) {
     switch (t) {
+    case term::rate:
+        return "setpoint_rate_limit";
     case term::delay:
         return "command_delay";
     case term::first_order:
@@ -63,6 +66,7 @@ struct link_model {
     std::vector<term> freed{};
     following how = following::at_once;
     double lag = 0;                             ///< [s]
+    double rate = 0;                            ///< at most, of what is followed; 0: any [m/s]
     double play = 0;                            ///< [m]
     double compliance = 0;                      ///< 1 / stiffness [m/N]
     double motor_coulomb = 0;                   ///< [N]
@@ -74,6 +78,11 @@ struct link_model {
     std::vector<double> smooth{};               ///< as described, of order 2 on, see smooth_curve() [m]
     double smooth_from = 0, smooth_to = 0;      ///< [m]
 
+    /// What the set-points x, a row each, make the axis ask for, and what follows that; `later`: more lag [s].
+    std::vector<double> follows(std::span<const double> x, double period, double later = 0) const {
+        return followed(rate > 0 ? at_most_as_fast(x, rate * period) : std::vector(x.begin(), x.end()), period,
+                        how, lag + later);
+    }
     bool has(term t) const { return std::find(freed.begin(), freed.end(), t) != freed.end(); }
 };
 

@@ -85,6 +85,7 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
     if (given.play > 0) waiting.push_back(term::play);
     if (given.compliance > 0 && !d.readings.force.empty()) waiting.push_back(term::spring);
     if (given.motor_coulomb > 0 && !d.readings.force.empty()) waiting.push_back(term::motor_friction);
+    if (given.rate > 0) waiting.push_back(term::rate);
     if (given.how == following::delayed) waiting.push_back(term::delay);
     if (given.how == following::first_order) waiting.push_back(term::first_order);
     described_link out = d;
@@ -107,6 +108,7 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
             if (t == term::play) out.described.play = value;
             if (t == term::spring) out.described.compliance = 1 / value;
             if (t == term::motor_friction) out.described.motor_coulomb = value;
+            if (t == term::rate) out.described.rate = value;
             if (t == term::delay) out.described.lag = value;
             if (t == term::first_order) out.described.lag = 1 / value;
         }

@@ -55,7 +55,7 @@ public:
     equations of_model(const link_model& m) const;
     /// A function of the place, at every row, as smooth as the readings.
     template <class Value> std::vector<double> along_travel(const link_model& m, Value value) const {
-        return as_smooth(followed(link_.first, link_.period, m.how, m.lag), value);
+        return as_smooth(m.follows(link_.first, link_.period), value);
     }
     /// The same of the place where the scale is read.
     template <class Value> std::vector<double> along_scale(Value value) const {
@@ -68,6 +68,7 @@ public:
 
 private:
     void choose_rows();
+    void leave_bends_out(std::vector<unsigned char>& out);
     void round_again();
     std::vector<Eigen::VectorXd> columns_of(const link_model& m, term t, std::span<const double> driven) const;
 

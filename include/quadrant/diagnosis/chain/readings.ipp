@@ -11,16 +11,7 @@ QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
     const std::size_t n = link_.rows();
     std::vector<unsigned char> out(n, 0);
     for (std::size_t k = 0; k < link_.left_out.size(); ++k) out[k] |= link_.left_out[k];
-    // Between the rows of a slow record what was asked is not known where it bends: a cubic is wrong by 3 / 128
-    // of the fourth difference in the middle.
-    for (std::size_t k = 0; link_.asked && k < n; ++k)
-        if (k < 2 || k + 3 >= n) out[k] = 1; // no four rows around it
-    for (std::size_t k = 2; link_.asked && k + 3 < n; ++k) {
-        const auto& x = link_.first;
-        const double bends = x[k - 2] - 4 * x[k - 1] + 6 * x[k] - 4 * x[k + 1] + x[k + 2];
-        if (std::abs(bends) * 3 / 128 > noise_)
-            for (std::size_t i = k - 2; i <= k + 3; ++i) out[i] = 1;
-    }
+    if (link_.asked) leave_bends_out(out);
     double low = first_[0], high = low;
     for (std::size_t k = 0; k < n && high - low < 0.1 * travel_; ++k) {
         low = std::min(low, first_[k]);
@@ -52,6 +43,29 @@ QUADRANT_DIAGNOSIS_DECL void readings::choose_rows() {
         for (std::size_t i = 0; i < rows_.size(); i += stride) some.push_back(rows_[i]);
         rows_ = std::move(some);
     }
+}
+
+/// Between the rows of a slow record what was asked is not known where it bends: a cubic is wrong by 3 / 128 of
+/// the fourth difference in the middle. Such rows do not count; where most of the motion is in them they do,
+/// and what is not known is noise.
+QUADRANT_DIAGNOSIS_DECL void readings::leave_bends_out(std::vector<unsigned char>& out) {
+    const auto& x = link_.first;
+    const std::size_t n = link_.rows();
+    std::vector<unsigned char> bent(n, 0);
+    double unknown = 0, moved = 0, moved_in_bends = 0;
+    for (std::size_t k = 2; k + 3 < n; ++k) {
+        const double wrong = 3.0 / 128 * std::abs(x[k - 2] - 4 * x[k - 1] + 6 * x[k] - 4 * x[k + 1] + x[k + 2]);
+        unknown += wrong * wrong / static_cast<double>(n);
+        if (wrong > noise_) std::fill_n(bent.begin() + static_cast<std::ptrdiff_t>(k) - 2, 6, 1);
+    }
+    for (std::size_t k = 1; k < n; ++k) {
+        moved += std::abs(x[k] - x[k - 1]);
+        if (bent[k]) moved_in_bends += std::abs(x[k] - x[k - 1]);
+    }
+    const bool most = moved_in_bends > 0.5 * moved;
+    if (most) noise_ = std::hypot(noise_, std::sqrt(unknown));
+    for (std::size_t k = 0; k < n; ++k)
+        if (k < 2 || k + 3 >= n || (bent[k] && !most)) out[k] = 1; // or no four rows around it
 }
 
 /// Where a coarse reading moves slowly its rounding is a slow wave, which no smoothing takes off: so the smooth
@@ -102,10 +116,16 @@ readings::columns_of(const link_model& m, term t, std::span<const double> driven
         return out;
     };
     switch (t) {
+    case term::rate: {
+        link_model faster = m;
+        faster.rate *= 1.001;
+        const auto then = faster.follows(first_, link_.period);
+        return {by_row([&](std::size_t k) { return (then[k] - driven[k]) / (faster.rate - m.rate); })};
+    }
     case term::delay:
     case term::first_order: {
         const double more = 0.05 * link_.period;
-        const auto later = followed(first_, link_.period, m.how, m.lag + more);
+        const auto later = m.follows(first_, link_.period, more);
         const auto speed = derivative(driven, link_.period);
         const Eigen::VectorXd by_lag = by_row([&](std::size_t k) { return (later[k] - driven[k]) / more; });
         if (t == term::delay) return {by_lag};
@@ -149,7 +169,7 @@ readings::columns_of(const link_model& m, term t, std::span<const double> driven
 
 QUADRANT_DIAGNOSIS_DECL equations readings::of_model(const link_model& m) const {
     equations out{.rows = rows_, .difference = {}, .columns = {}, .of = {}};
-    const auto driven = followed(first_, link_.period, m.how, m.lag);
+    const auto driven = m.follows(first_, link_.period);
     const auto behind = m.play > 0 ? offset(m, driven, m.play) : std::vector<double>(driven.size(), 0.0);
     const auto n = static_cast<Eigen::Index>(rows_.size());
     const harmonics pitch(m.pitch_period, m.pitch, m.pitch_phase);

@@ -17,7 +17,7 @@ inline std::vector<one_reversal> lost_by_reversal(const readings& r, const fitte
         std::size_t from, to; // of the rows that count
         double side;
     };
-    const auto driven = followed(r.first(), r.of().period, f.model.how, f.model.lag);
+    const auto driven = f.model.follows(r.first(), r.of().period);
     const auto offset = r.offset(f.model, driven, f.model.play);
     const double half = f.model.play / 2;
     std::vector<stroke> strokes;

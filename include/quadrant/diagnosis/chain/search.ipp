@@ -89,6 +89,13 @@ QUADRANT_DIAGNOSIS_DECL bool seeker::pays(const fitted& with, const fitted& with
 QUADRANT_DIAGNOSIS_DECL double seeker::half_range(const fitted& f, term t) const {
     if (t == term::play) return f.model.play / 2;
     if (t == term::delay || t == term::first_order) return f.model.lag * r_.speed();
+    if (t == term::rate) { // how far what is asked runs away
+        const auto free = r_.first();
+        const auto held = at_most_as_fast(free, f.model.rate * r_.of().period);
+        double most = 0;
+        for (std::size_t k = 0; k < held.size(); ++k) most = std::max(most, std::abs(free[k] - held[k]));
+        return most;
+    }
     const auto part = f.part(t);
     if (t == term::motor_friction) { // beside a play its level is no column: it decides the side in contact
         double compliance = f.model.compliance;
@@ -143,6 +150,7 @@ QUADRANT_DIAGNOSIS_DECL fitted seeker::joined(const fitted& from, const fitted& 
     m.freed.push_back(t);
     if (t == term::play) m.play = best.model.play;
     if (t == term::delay || t == term::first_order) m.how = best.model.how, m.lag = best.model.lag;
+    if (t == term::rate) m.rate = best.model.rate;
     if (t == term::pitch)
         m.pitch_period = best.model.pitch_period, m.pitch_harmonics = best.model.pitch_harmonics;
     if (t == term::cyclic) m.cyclic_period = best.model.cyclic_period;
@@ -189,6 +197,12 @@ QUADRANT_DIAGNOSIS_DECL void seeker::weigh(const answer& out, finding& f) const 
         known = std::min(known, 0.45);
     // Nor is any curve known to more than five per cent of another one that lies under it.
     if (of_place(f.what) && explained < law_error * law_error * largest_of_place(out.best))
+        known = std::min(known, 0.45);
+    // A wrong ratio is wrong everywhere. A large one that leaves more than any law does is how a follower looks
+    // that does not keep up.
+    const auto ratio = std::find(out.best.of.begin(), out.best.of.end(), term::scale);
+    if (f.what == term::scale && r_.of().asked && left > law_error * law_error * explained &&
+        std::abs(out.best.values[ratio - out.best.of.begin()]) > tolerance_description::unstated)
         known = std::min(known, 0.45);
     // Two waves so near each other that one beats with the other over the travel: which of them is there, or
     // whether one stands for what the other leaves, neither says.

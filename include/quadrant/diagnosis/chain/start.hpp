@@ -4,6 +4,7 @@
 #include "../effect/rules.hpp"
 #include "../fit/spatial_spectrum.hpp"
 #include "fit.hpp"
+#include "possible.hpp"
 
 /// How each term joins a model: where its fit begins.
 namespace quadrant::inline v0::diagnosis::chain {
@@ -44,10 +45,6 @@ QUADRANT_DIAGNOSIS_DECL bool sudden(const readings& r, const fitted& f);
 
 /// Jumps, one after the other, while each pays.
 QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from, double margin);
-
-/// Whether a model can be: no play is narrower than nothing, no spring gives way against its load, and no
-/// friction drives the motor. A fit that needs such a value imitates another term.
-QUADRANT_DIAGNOSIS_DECL bool possible(const fitted& f);
 
 /// A model with one term more, fitted; the model itself where the term cannot join, or where the values would
 /// not be possible(). `margin`: what each jump has to pay.

@@ -5,7 +5,7 @@ namespace quadrant::inline v0::diagnosis::chain {
 
 QUADRANT_DIAGNOSIS_DECL std::vector<term> suspects_of(const position_link& l) {
     std::vector<term> out;
-    if (l.asked) out.insert(out.end(), {term::delay, term::first_order, term::steps});
+    if (l.asked) out.insert(out.end(), {term::delay, term::first_order, term::rate, term::steps});
     if (l.geared) {
         out.insert(out.end(), {term::scale, term::play, term::pitch, term::smooth});
         if (l.turn > 0) out.push_back(term::cyclic); // else it is reported as a pitch error
@@ -105,31 +105,9 @@ QUADRANT_DIAGNOSIS_DECL fitted with_steps(const readings& r, const fitted& from,
     return best;
 }
 
-QUADRANT_DIAGNOSIS_DECL bool possible(const fitted& f) {
-    const link_model& m = f.model;
-    double play = m.play, compliance = m.compliance, friction = 0, narrowest = 0, deviation = 0;
-    for (std::size_t j = 0; j < f.of.size(); ++j) {
-        const auto i = static_cast<Eigen::Index>(j);
-        const double value = f.values[i];
-        if (f.of[j] == term::play && f.of[j - 1] != term::play) {
-            play += value;
-            const double along = f.values[i + 1], turned = along > 0 ? -1 : 1;
-            narrowest = play - std::abs(along); // at one end of the travel
-            deviation = std::sqrt(std::max(0.0, f.covariance(i, i) + f.covariance(i + 1, i + 1) +
-                                                    2 * turned * f.covariance(i, i + 1)));
-        }
-        if (f.of[j] == term::spring) compliance += value;
-        if (f.of[j] == term::motor_friction) friction += value;
-    }
-    friction += m.motor_coulomb * compliance;
-    constexpr double sure = 3; // deviations
-    return !(m.has(term::play) && (play <= 0 || narrowest < -sure * deviation)) &&
-           !(m.has(term::spring) && compliance <= 0) && !(m.has(term::motor_friction) && friction < 0);
-}
-
 QUADRANT_DIAGNOSIS_DECL fitted with_term(const readings& r, const fitted& from, term t, double margin) {
     fitted out = begun_with_term(r, from, t, margin);
-    return possible(out) ? out : from;
+    return possible(r, out) ? out : from;
 }
 
 inline fitted begun_with_lag(const readings& r, const fitted& from, term t) {
@@ -145,6 +123,17 @@ inline fitted begun_with_lag(const readings& r, const fitted& from, term t) {
         },
         0.002 * r.of().period, seconds / 20, 22, 12);
     if (!m.has(t)) m.freed.push_back(t);
+    return settled(r, fit_columns(r, m));
+}
+inline fitted begun_with_rate(const readings& r, const fitted& from) {
+    link_model m = from.model;
+    m.rate = least(
+        [&](double rate) {
+            m.rate = rate;
+            return fit_columns(r, m).rms;
+        },
+        0.02 * r.speed(), r.speed(), 16, 12);
+    if (!m.has(term::rate)) m.freed.push_back(term::rate);
     return settled(r, fit_columns(r, m));
 }
 inline fitted begun_with_pitch(const readings& r, const fitted& from) {
@@ -188,6 +177,8 @@ QUADRANT_DIAGNOSIS_DECL fitted begun_with_term(const readings& r, const fitted& 
         if (!x.has(t)) x.freed.push_back(t);
     };
     switch (t) {
+    case term::rate:
+        return begun_with_rate(r, from);
     case term::delay:
     case term::first_order:
         return begun_with_lag(r, from, t);
@@ -229,6 +220,7 @@ QUADRANT_DIAGNOSIS_DECL fitted without_term(const readings& r, const fitted& fro
     std::erase(m.freed, t);
     if (t == term::play) m.play = described.play;
     if (t == term::delay || t == term::first_order) m.how = described.how, m.lag = described.lag;
+    if (t == term::rate) m.rate = described.rate;
     if (t == term::motor_friction) m.motor_coulomb = described.motor_coulomb;
     if (t == term::steps) m.steps.clear();
     fitted out = settled(r, fit_columns(r, m));

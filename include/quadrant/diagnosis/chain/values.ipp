@@ -17,6 +17,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
     case term::play:
         return {{"transmission.backlash_m",
                  {with_interval(m.play + value(at[0]), deviation(at[0]), half_a_count)}}};
+    case term::rate:
+        return {
+            {"drive.setpoint_rate_limit_m_per_s", {with_interval(m.rate + value(at[0]), deviation(at[0]), 0)}}};
     case term::delay:
         return {{"drive.command_delay_s", {with_interval(m.lag + value(at[0]), deviation(at[0]), 0)}}};
     case term::first_order: {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace quadrant::inline v0::diagnosis {
@@ -16,6 +17,11 @@ namespace quadrant::inline v0::diagnosis {
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a,
                                                 held_by how = held_by::readings,
                                                 const plant_model* nearest = nullptr);
+
+/// The described machine with the mass, friction, constant force and gravity that a regression of the command
+/// on the record's motion has; nothing where it is not sure of a mass.
+QUADRANT_DIAGNOSIS_DECL std::optional<plant_model>
+as_regressed_on_motion(const axis_record& r, axis_kind kind, const plant_model& described);
 
 } // namespace quadrant::inline v0::diagnosis
 

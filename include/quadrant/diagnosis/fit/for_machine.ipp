@@ -54,12 +54,19 @@ inline void add_noise_of_measured(axis_record& r, const axis_description& a, con
         return add_command_noise(r, {described}, white_noise_in(r.observer.drive->measured, r.position));
     if (a.actuator.command_is != command_origin::measured || r.observer.drive) return;
     std::vector<plant_model> machines{described};
-    const axis_regression by = regress_on_motion(r, a.kind);
-    if (by.acceleration.sure() && by.acceleration.value > 0) machines.push_back(as_regressed(described, by));
+    if (auto other = as_regressed_on_motion(r, a.kind, described)) machines.push_back(*other);
     add_command_noise(r, machines, described.force_constant * white_noise_in(r.command, r.position));
 }
 
 } // namespace detail
+
+QUADRANT_DIAGNOSIS_DECL std::optional<plant_model>
+as_regressed_on_motion(const axis_record& r, axis_kind kind, const plant_model& described) {
+    if (r.observer.drive) return {}; // its command is no force
+    const axis_regression by = detail::regress_on_motion(r, kind);
+    if (!by.acceleration.sure() || !(by.acceleration.value > 0)) return {};
+    return detail::as_regressed(described, by);
+}
 
 QUADRANT_DIAGNOSIS_DECL axis_record for_machine(axis_record r, const axis_description& a, held_by how,
                                                 const plant_model* nearest) {

@@ -42,6 +42,21 @@ public:
         const std::string_view text = cells_[index].text;
         return text.empty() || text == "nan" || text == "NaN" || text == "NA";
     }
+    /// One entry, from 1, of a cell that holds a list: "[1.5, 2.5]", "(1.5 2.5)", "1.5;2.5".
+    std::string_view entry(std::string_view list, std::size_t offset, std::size_t wanted,
+                           std::string_view column) const {
+        constexpr std::string_view between = " \t,;[]()";
+        std::size_t at = 0;
+        for (std::size_t k = 1;; ++k) {
+            at = list.find_first_not_of(between, at);
+            if (at == list.npos)
+                refuse(offset, fmt::format("{}: the list has {} entries; {} is number {}", in_quotes(list), k - 1,
+                                           column, wanted));
+            const std::size_t end = std::min(list.find_first_of(between, at), list.size());
+            if (k == wanted) return list.substr(at, end - at);
+            at = end;
+        }
+    }
     /// The number in a cell; null, or what is wrong with it.
     const char* parse(std::string_view text, double& value) const {
         if (layout_.decimal == '.') return parse_number(text, value);

@@ -177,7 +177,7 @@ private:
             lines_.refuse(lines_.length(), fmt::format("the row has {} cells; {} is number {}", cells.size(),
                                                        c.name, c.index + 1));
         const auto [offset, cell] = cells[c.index];
-        const std::string_view text = c.element == 0 ? cell : entry(cell, offset, c);
+        const std::string_view text = c.element == 0 ? cell : lines_.entry(cell, offset, c.element, c.name);
         double value = 0;
         if (const char* fault = lines_.parse(text, value))
             lines_.refuse(offset, fmt::format("{}: {} {}", c.name, in_quotes(text), fault));
@@ -185,21 +185,6 @@ private:
         std::string as_written(text);
         std::replace(as_written.begin(), as_written.end(), ',', '.');
         c.written.add(as_written, value);
-    }
-
-    /// One entry of a cell that holds a list: "[1.5, 2.5]", "(1.5 2.5)", "1.5;2.5".
-    std::string_view entry(std::string_view cell, std::size_t offset, const foreign_column& c) const {
-        constexpr std::string_view between = " \t,;[]()";
-        std::size_t at = 0;
-        for (std::size_t k = 1;; ++k) {
-            at = cell.find_first_not_of(between, at);
-            if (at == cell.npos)
-                lines_.refuse(offset, fmt::format("{}: the list has {} entries; {} is number {}",
-                                                  in_quotes(cell), k - 1, c.name, c.element));
-            const std::size_t end = std::min(cell.find_first_of(between, at), cell.size());
-            if (k == c.element) return cell.substr(at, end - at);
-            at = end;
-        }
     }
 
     /// Stamps in seconds; rows whose stamp is that of the row before are dropped.

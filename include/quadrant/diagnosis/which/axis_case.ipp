@@ -56,6 +56,7 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     if (how == held_by::motion && before) {
         std::vector<plant_model> known{first().with(before->best().effects).fit.plant};
         for (const candidate& m : before->path) known.push_back(m.fit.plant);
+        if (auto other = as_regressed_on_motion(out, log.kind, {axis, out.scale.give()})) known.push_back(*other);
         const auto left = before->left_along_motion(known);
         nearest_ = known[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
     } else if (how == held_by::loop) {
@@ -80,8 +81,7 @@ QUADRANT_DIAGNOSIS_DECL void axis_case::follow(std::vector<candidate> way) {
     claims = path.size() - 1;
     noise = models.noise(best());
     const auto ms = detail::beside_own_noise(best().fit.ms, record, log, best().fit.plant);
-    settled = models.settled(ms, noise);
-    if (!best().effects.empty()) settled = settled && models.near_its_laws(best());
+    settled = models.settled(ms, noise) && (best().effects.empty() || models.near_its_laws(best()));
     excused = settled && !(models.immaterial(path.front()) && models.structure(best(), noise) > 0);
     if (tested_apart()) settled_on_second = second_log(best()).settled;
 }

@@ -53,12 +53,38 @@ inline bool answers_too_little(const axis_case& c) {
     return answers_less(c.best(), c.path.front(), c.limits.least_shrink);
 }
 
+/// Whether the plant forgets its velocity before the corrections of the readings end: its damping turns every
+/// force that it does not have into a small step, and little of it shows in the predictions.
+inline bool damps_what_it_lacks(const axis_case& c) {
+    const plant_model& best = c.best().fit.plant;
+    return !c.axis.drive.closes() && !c.models.over() && shows_along_motion(c.best()) &&
+           best.friction.viscous_slope * c.record.scale.response() > best.moving_mass();
+}
+
 /// Whether a measured command leaves a gap open. The command of a real loop answers every force that the model
 /// does not have; where these are many, the score of the predictions rests on what the corrections carry.
 inline bool open_by_measured_command(const axis_case& c) {
     return c.axis.actuator.command_is == command_origin::measured && !c.axis.drive.closes() &&
            !c.models.over() && !c.at_floor() && !c.within_its_laws() && !c.best().effects.empty() &&
            !(c.best().fit.plant.backlash > 0);
+}
+
+/// Why an axis is looked at again with models led along its motion, and what that look leaves along it at most,
+/// over what the calibrated machine leaves. No why: it is not.
+struct second_look {
+    const char* why = "";
+    double leaves_at_most = 0;
+};
+inline second_look along_its_motion(const axis_case& c) {
+    const bool stands = contradicts_motion(c), little = answers_too_little(c), open = open_by_measured_command(c),
+               damps = damps_what_it_lacks(c);
+    if (!stands && !little && !open && !damps) return {};
+    return {stands   ? "standing where the axis moves"
+            : little ? "answering the measured command too little"
+            : damps  ? "a damping so stiff that no force shows in them"
+                     : "leaving to the corrections what no name explains",
+            (open || damps ? 1 + c.limits.least_shrink : 1 - c.limits.least_shrink) *
+                (stands ? 1 : c.left_along_motion())};
 }
 
 /// What is left in both logs, in energy [N^2].
@@ -111,18 +137,13 @@ look_at(const looked_at& of, const std::string& file, const progress& tell, std:
     // Looks at the forces along the measured motion where the predictions mislead. Returns why it is
     // evaluated on them, or nothing.
     const auto along_motion = [&](std::unique_ptr<axis_case>& found, bool exchanged) {
-        const bool stands = contradicts_motion(*found), little = answers_too_little(*found),
-                   open = open_by_measured_command(*found);
-        if (!stands && !little && !open) return "";
+        const second_look again = along_its_motion(*found);
+        if (!*again.why) return "";
         tell("axis " + of.axis.name + ": again, along the measured motion");
         auto led = look(held_by::motion, found.get(), exchanged);
-        const double least =
-            (open ? 1 + least_shrink : 1 - least_shrink) * (stands ? 1 : found->left_along_motion());
-        if (!(led->left_along_motion() < least)) return "";
+        if (!(led->left_along_motion() < again.leaves_at_most)) return "";
         found = std::move(led);
-        return stands   ? "standing where the axis moves"
-               : little ? "answering the measured command too little"
-                        : "leaving to the corrections what no name explains";
+        return again.why;
     };
     auto found = look(of.soft ? held_by::loop : held_by::readings, nullptr, false);
     need_blocks(*found, file);

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSL-1.0
+// A robot's joint whose torque and angle were logged ten times a second: a row is a third of the time in which
+// its friction would stop it. A model that is damped much more follows every torque at once, and little of what
+// it lacks shows in its predictions.
+#include "claims.hpp"
+
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <sstream>
+#include <string>
+
+using namespace quadrant::diagnosis;
+using workshop::said;
+
+namespace {
+
+constexpr double inertia = 8.2, viscous = 31.5, coulomb = 21.2;
+
+/// Place on a way of trapezoidal moves from end to end, a shorter one after each.
+double asked_at(double t) {
+    constexpr double speed = 1, acceleration = 1.5, pause = 0.3;
+    for (int move = 0;; ++move) {
+        const double length = 2.4 - 0.15 * (move / 2 % 14), ramp = speed / acceleration,
+                     cruise = length / speed - ramp;
+        const double lasts = cruise + 2 * ramp, from = move % 2 ? length : 0, sign = move % 2 ? -1 : 1;
+        if (t < lasts) {
+            const double up = std::min(t, ramp), even = std::clamp(t - ramp, 0.0, cruise),
+                         down = std::max(0.0, t - ramp - cruise);
+            return from + sign * (acceleration * up * up / 2 + speed * even + speed * down -
+                                  acceleration * down * down / 2);
+        }
+        t -= lasts + pause;
+        if (t < 0) return move % 2 ? 0 : length;
+    }
+}
+
+/// A stiff loop in steps of a millisecond; every hundredth is logged.
+std::string record() {
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> noise(0, 0.5);
+    std::string out = "t_s,q_pos_rad,q_torque_Nm\n";
+    double q = 0, v = 0;
+    constexpr double h = 1e-3;
+    for (int k = 0; k < 60000; ++k) {
+        const double t = k * h;
+        const double torque = inertia * (3600 * (asked_at(t) - q) - 100 * v);
+        if (k % 100 == 0) {
+            char row[80];
+            std::snprintf(row, sizeof row, "%.6f,%.9f,%.6f\n", t, q, torque + noise(random));
+            out += row;
+        }
+        v += h / inertia * (torque - viscous * v - coulomb * std::tanh(v / 0.002));
+        q += h * v;
+    }
+    return out;
+}
+
+} // namespace
+
+TEST_CASE("diagnose: no friction beyond what the torque shows, where rows are slow") {
+    const auto machine =
+        read_machine(std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1,
+        "axes": {"q": {"plant": {"inertia_kg_m2": 8.2}, "encoder": {"resolution_rad": 1e-5},
+        "actuator": {"command_is": "measured"}}}})"),
+                     "joint.json");
+    std::istringstream file(record());
+    const auto d = diagnose(machine, read_log(file, "joint.csv"));
+    CAPTURE(said(d));
+    bool dry = false;
+    for (const cause& c : d.causes) {
+        dry |= c.effect == "coulomb_friction" && c.group_probability > 0.3;
+        if (c.effect != "viscous_friction" || c.group_probability < 0.5) continue;
+        const estimate& found = c.parameters.at(0).values.at(0);
+        CHECK(found.low < viscous);
+        CHECK(found.high > viscous);
+    }
+    CHECK(dry);
+    // What is left is told in torque: twice the friction that is there leaves half of it.
+    for (const axis_result& a : d.axes) CHECK(a.gap_after.force_rms_N > 0);
+}
