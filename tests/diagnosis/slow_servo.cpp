@@ -32,8 +32,8 @@ struct servo {
     double shortest_move = 0.2;     ///< [s]
 };
 
-/// A hand that trembles leads it: moves of all speeds, and rests. The servo: late, never faster than it can, and behind
-/// a soft loop.
+/// A hand that trembles leads it: moves of all speeds, and rests. The servo is late, never faster than it can,
+/// and behind a soft loop.
 std::string led_by_hand(const servo& s, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(0, 1);

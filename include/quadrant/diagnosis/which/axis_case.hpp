@@ -9,6 +9,7 @@
 #include "pieces.hpp"
 #include "restart.hpp"
 #include "search.hpp"
+#include "stages.hpp"
 
 #include <array>
 #include <optional>
@@ -112,7 +113,8 @@ public:
     on_second second_log(const candidate& m) const;
     /// The log-scores alone, of several models.
     std::vector<double> scores_on_second(const std::vector<const candidate*>& some) const;
-    /// What a model is worth on motion that it was not fitted to: of this log, and of the hold-out log.
+    /// What a model is worth on motion that it was not fitted to: of this log, and of the hold-out log. Behind
+    /// the replay of a drive one that leaves more of the force than the best model is worth nothing.
     double worth(const candidate& m) const;
     /// Score on this log below which a model counts little beside the best, whatever the hold-out log says.
     double least_score() const;

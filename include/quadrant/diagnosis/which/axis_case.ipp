@@ -3,15 +3,6 @@
 
 namespace quadrant::inline v0::diagnosis {
 
-namespace detail {
-
-/// What making the record ready is of a look: along a motion, and behind a loop, a first search is part of it.
-constexpr double share_of_record(held_by how) {
-    return how == held_by::readings ? 0.08 : how == held_by::motion ? 0.1 : 0.3;
-}
-
-} // namespace detail
-
 QUADRANT_DIAGNOSIS_DECL axis_case::axis_case(const axis_description& a, const axis_log& l,
                                              const axis_log* other, double period, const exclusions& excluded,
                                              const rules& r, const progress& tell, held_by how,
@@ -213,7 +204,14 @@ axis_case::scores_on_second(const std::vector<const candidate*>& some) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::worth(const candidate& m) const {
-    return m.total + (tested_apart() && record.replayed() ? second_log(m).score : 0);
+    if (!tested_apart() || !record.replayed()) return m.total;
+    // A replay scores no slow force: its integral drifts. What leaves more of the force is worth nothing.
+    const auto left = [&](const candidate& x) {
+        return square(models.held_out_force(x)) + square(second_log(x).force);
+    };
+    if (left(m) * square(1 - limits.least_shrink) > left(best()))
+        return -std::numeric_limits<double>::infinity();
+    return m.total + second_log(m).score;
 }
 
 QUADRANT_DIAGNOSIS_DECL double axis_case::least_score() const {

@@ -20,6 +20,13 @@ inline bool lies_beyond(const cause& found, const candidate& best) {
     return found.described && best.ends_at_a_bound(found.parameters.front().key);
 }
 
+/// Whether an interval does not say which way a force acts, or which way a number is off.
+inline bool has_open_sign(const parameter_estimate& found) {
+    const machine_key* key = key_named(found.key);
+    const estimate& value = found.values.front();
+    return key && key->rule.holds(value.low) && value.low < 0 && value.high > 0;
+}
+
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
     constexpr double guess = 0.4;
     for (cause& x : causes) {
@@ -69,6 +76,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
+        const bool either_way = !named.described && detail::has_open_sign(named.parameters.front());
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
         constexpr double least = 0.08;
@@ -81,7 +89,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
         const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
         if ((of_laws && on_axis && detail::may_be_friction(c, e)) || c.is_error_of_its_law(e) || undetermined ||
-            detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
+            either_way || detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
             detail::is_as_described(named, e, as_given) || detail::lies_beyond(named, c.best()) ||
             detail::late_velocity(c, named) > 0 ||
             (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside)))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
-#include "../../base/version.hpp"
+#include "../fit/record.hpp"
 
 namespace quadrant::inline v0::diagnosis::detail {
 
@@ -12,6 +12,10 @@ struct stages {
 };
 inline stages stages_of(bool may_look_again) {
     return may_look_again ? stages{.first_look = 0.4, .search = 0.7} : stages{.first_look = 0.7, .search = 0.7};
+}
+/// What making the record ready is of a look: along a motion, and behind a loop, a first search is part of it.
+constexpr double share_of_record(held_by how) {
+    return how == held_by::readings ? 0.08 : how == held_by::motion ? 0.1 : 0.3;
 }
 
 } // namespace quadrant::inline v0::diagnosis::detail
