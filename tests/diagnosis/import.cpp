@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <sstream>
 
 using namespace quadrant::diagnosis;
@@ -437,4 +438,34 @@ TEST_CASE(
     CHECK(in.log.samples == 500);
     CHECK(in.notes.at(0) == "6 rows have the stamp of the row before and are dropped");
     CHECK(of_log(lost, map).find("several rows have each stamp, and rows are missing") != std::string::npos);
+}
+
+TEST_CASE("import: clock times of ISO 8601 are stamps in seconds, over midnight and in any zone") {
+    const auto map = read_import_map(std::string_view(R"({"schema": "quadrant.import/1",
+        "time": {"column": "timestamp", "unit": "s"}, "axes": {"x": {"reference": {"column": "asked", "unit": "m"},
+        "position": {"column": "read", "unit": "m"}}}})"),
+                                     "map.json");
+    const auto log_of = [&](const std::string& a, const std::string& b, const std::string& c) {
+        return "timestamp,asked,read\n" + a + ",0.1,0.11\n" + b + ",0.2,0.21\n" + c + ",0.3,0.32\n";
+    };
+    const std::array ways{
+        log_of("2025-12-31T23:59:59.850Z", "2025-12-31T23:59:59.950Z", "2026-01-01T00:00:00.050Z"),
+        log_of("2025-12-31 23:59:59.850", "2025-12-31 23:59:59.950", "2026-01-01 00:00:00.050"),
+        log_of("2026-01-01T00:59:59.850+01:00", "2026-01-01T00:59:59.950+01:00", "2025-12-31T19:00:00.050-0500"),
+        log_of("09:27:03.748", "09:27:03.848", "09:27:03.948")};
+    for (const std::string& log : ways) {
+        CAPTURE(log);
+        const auto in = import_log(map, log, "in.csv");
+        CHECK(in.log.sample_period_s == doctest::Approx(0.1).epsilon(1e-9));
+        CHECK(in.text.find("t_s,x_ref_m,x_pos_m\n0.000000000,0.1") == 0);
+    }
+    // What is no stamp is told by its cell; a unit that a clock does not have, too.
+    CHECK(refusal_of([&] { import_log(map, log_of("09:27:03.748", "09:61:03.848", "09:27:04"), "in.csv"); })
+              .find(R"(in.csv:3:1: t_s: "09:61:03.848")") == 0);
+    const auto ms = read_import_map(std::string_view(R"({"schema": "quadrant.import/1", "header": 1,
+        "time": {"column": "timestamp", "unit": "ms"}, "axes": {"x": {"reference": {"column": "asked", "unit": "m"},
+        "position": {"column": "read", "unit": "m"}}}})"),
+                                    "map.json");
+    CHECK(refusal_of([&] { import_log(ms, ways[0], "in.csv"); }).find("is a clock time: its unit is s") !=
+          std::string::npos);
 }

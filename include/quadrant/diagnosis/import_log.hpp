@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "import/common_clock.hpp"
-#include "import/foreign_table.hpp"
+#include "import/foreign_table_reader.hpp"
 #include "import/import_choice.hpp"
 #include "import/integrated.hpp"
 #include "import/own_header.hpp"

@@ -4,7 +4,9 @@
 #include "../log/sensor_box.hpp"
 #include "../log/slow_readings.hpp"
 #include "../log/wrong_readings.hpp"
+#include "../text/bad_input.hpp"
 #include "foreign_table.hpp"
+#include "map.hpp"
 #include "import_choice.hpp"
 #include "own_text.hpp"
 

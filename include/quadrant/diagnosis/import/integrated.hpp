@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "foreign_table.hpp"
+#include "map.hpp"
 
 #include <algorithm>
 #include <cmath>
