@@ -4,6 +4,7 @@
 #include "doubt.hpp"
 #include "interval.hpp"
 #include "late_velocity.hpp"
+#include "of_the_motion.hpp"
 #include "rivals.hpp"
 
 namespace quadrant::inline v0::diagnosis {

@@ -91,7 +91,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
         if ((of_laws && on_axis && detail::may_be_friction(c, e)) || c.is_error_of_its_law(e) || undetermined ||
             either_way || detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
             detail::is_as_described(named, e, as_given) || detail::lies_beyond(named, c.best()) ||
-            detail::late_velocity(c, named) > 0 ||
+            detail::late_velocity(c, named) > 0 || detail::repeats_with_the_motion(c.record, named) ||
             (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside)))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
