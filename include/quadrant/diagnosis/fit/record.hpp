@@ -94,6 +94,11 @@ QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, 
 /// closed on them and nothing but their path compared.
 enum class held_by { readings, motion, loop };
 
+/// Whether a plant forgets its velocity by its own damping before the corrections of the readings end.
+inline bool forgets_within_the_response(const plant_model& p, const axis_record& r) {
+    return p.friction.viscous_slope * r.scale.response() > p.moving_mass();
+}
+
 /// Rows after which a signal has forgotten itself, for its mean square: sum of the squared correlation of its
 /// rows, up to where they are opposite for the first time.
 QUADRANT_DIAGNOSIS_DECL double rows_of_memory(std::span<const double> e);

@@ -47,7 +47,9 @@ QUADRANT_DIAGNOSIS_DECL axis_record axis_case::record_of(double period, const ex
     if (how == held_by::motion && before) {
         std::vector<plant_model> known{first().with(before->best().effects).fit.plant};
         for (const candidate& m : before->path) known.push_back(m.fit.plant);
-        if (auto other = as_regressed_on_motion(out, log.kind, {axis, out.scale.give()})) known.push_back(*other);
+        if (forgets_within_the_response(before->best().fit.plant, out))
+            if (const auto other = as_regressed_on_motion(out, log.kind, {axis, out.scale.give()}))
+                known.push_back(*other);
         const auto left = before->left_along_motion(known);
         nearest_ = known[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
     } else if (how == held_by::loop) {

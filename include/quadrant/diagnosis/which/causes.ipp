@@ -75,8 +75,9 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
                 if (j != i && r.same && r.name != effects[j])
                     detail::widen(named.parameters, estimates(r.model, e, c.record.score));
         const bool undetermined = detail::is_undetermined(named.parameters); // by its own scatter
+        const bool either_way =
+            !named.described && detail::has_open_sign(estimates(c.best(), e, c.record.score).front());
         detail::add_model_error(named.parameters, e, c, detail::left_beside(c, i));
-        const bool either_way = !named.described && detail::has_open_sign(named.parameters.front());
         // A suspect that is worth its place on held-out motion was there in one of eleven, however little spoke
         // for it (docs/trial.md).
         constexpr double least = 0.08;

@@ -53,12 +53,11 @@ inline bool answers_too_little(const axis_case& c) {
     return answers_less(c.best(), c.path.front(), c.limits.least_shrink);
 }
 
-/// Whether the plant forgets its velocity before the corrections of the readings end: its damping turns every
-/// force that it does not have into a small step, and little of it shows in the predictions.
+/// Whether the damping of the best model turns every force that it does not have into a small step, so that
+/// little of it shows in the predictions.
 inline bool damps_what_it_lacks(const axis_case& c) {
-    const plant_model& best = c.best().fit.plant;
     return !c.axis.drive.closes() && !c.models.over() && shows_along_motion(c.best()) &&
-           best.friction.viscous_slope * c.record.scale.response() > best.moving_mass();
+           forgets_within_the_response(c.best().fit.plant, c.record);
 }
 
 /// Whether a measured command leaves a gap open. The command of a real loop answers every force that the model
