@@ -265,3 +265,18 @@ TEST_CASE("between slow rows: a late and a lagging sine are those, not their str
         CHECK(std::abs(lagged[k] - answer) < 5e-4);
     }
 }
+
+TEST_CASE("between slow rows: where a motion stops, what follows it late does not overshoot and turn back") {
+    using diagnosis::chain::following;
+    std::vector<double> x;
+    for (int k = 0; k < 60; ++k) x.push_back(k < 20 ? 0 : k < 40 ? 0.005 * (k - 20) : 0.1);
+    for (const double late : {0.004, 0.018, 0.043, 0.061}) {
+        const auto delayed = diagnosis::chain::followed(x, 0.05, following::delayed, late);
+        for (std::size_t k = 1; k < x.size(); ++k) {
+            CHECK(delayed[k] >= delayed[k - 1]);
+            CHECK(delayed[k] <= 0.1);
+        }
+        // So a play behind it stays where the motion has pushed it.
+        CHECK(diagnosis::chain::play_of(delayed, 2e-6).offset.back() == doctest::Approx(-1e-6));
+    }
+}

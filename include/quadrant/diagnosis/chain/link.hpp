@@ -102,9 +102,11 @@ inline std::vector<double> held_later(std::span<const double> x, double period, 
 }
 
 /// The cubic through four rows, from the second of them on, in periods: between rows that are tens of
-/// milliseconds apart a motion is no straight line.
+/// milliseconds apart a motion is no straight line. Where the four rows rise, or fall, it stays between the two
+/// in the middle: an overshoot at a stop would drive a play through.
 struct between_rows {
     double at_row, once, twice, thrice; ///< coefficients of s^0 to s^3
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 
     /// Between row k and k + 1.
     between_rows(std::span<const double> x, std::ptrdiff_t k) {
@@ -117,8 +119,12 @@ struct between_rows {
         once = -a / 3 - b / 2 + c - d / 6;
         twice = a / 2 - b + c / 2;
         thrice = (d - a) / 6 + (b - c) / 2;
+        const bool rises = a <= b && b <= c && c <= d, falls = a >= b && b >= c && c >= d;
+        if (rises || falls) low = std::min(b, c), high = std::max(b, c);
     }
-    double operator()(double s) const { return at_row + s * (once + s * (twice + s * thrice)); }
+    double operator()(double s) const {
+        return std::clamp(at_row + s * (once + s * (twice + s * thrice)), low, high);
+    }
     /// What is at rest behind a first-order lag of `lag` periods while this goes on: the part of its answer
     /// that does not depend on where it began.
     double lagged(double s, double lag) const {

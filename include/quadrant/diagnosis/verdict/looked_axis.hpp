@@ -7,6 +7,7 @@
 #include "../fit/with_drives.hpp"
 #include "../log/thinned.hpp"
 #include "../where/columns_in_time.hpp"
+#include "../where/places.hpp"
 #include "../which/looks.hpp"
 #include "diagnose_axis.hpp"
 
