@@ -27,6 +27,19 @@ inline bool has_open_sign(const parameter_estimate& found) {
     return key && key->rule.holds(value.low) && value.low < 0 && value.high > 0;
 }
 
+/// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than laws
+/// of friction are wrong by.
+inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, const plant_model& as_given,
+                        bool of_laws) {
+    // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
+    const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
+    return (of_laws && on_axis && may_be_friction(c, e)) || c.is_error_of_its_law(e) ||
+           may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
+           is_as_described(named, e, as_given) || lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
+           repeats_with_the_motion(c.record, named) ||
+           (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside));
+}
+
 QUADRANT_DIAGNOSIS_DECL void to_suspects(std::span<cause> causes) {
     constexpr double guess = 0.4;
     for (cause& x : causes) {
@@ -87,13 +100,7 @@ QUADRANT_DIAGNOSIS_DECL std::vector<cause> plant_causes(const axis_case& c,
             (1 - detail::unknown(c, i)) * detail::against_others(c, rivals[i]) * (1 - excluded.probability);
         named.probability = std::max(least, named.probability * known);
         named.group_probability = std::max(named.probability, named.group_probability * known);
-        // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
-        const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
-        if ((of_laws && on_axis && detail::may_be_friction(c, e)) || c.is_error_of_its_law(e) || undetermined ||
-            either_way || detail::may_be_inside_its_tolerance(c, named.parameters) || detail::drowns_in_the_rest(c, e) ||
-            detail::is_as_described(named, e, as_given) || detail::lies_beyond(named, c.best()) ||
-            detail::late_velocity(c, named) > 0 || detail::repeats_with_the_motion(c.record, named) ||
-            (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside)))
+        if (undetermined || either_way || detail::is_no_claim(c, e, named, as_given, of_laws))
             detail::to_suspects({&named, 1});
         out.push_back(std::move(named));
     }
