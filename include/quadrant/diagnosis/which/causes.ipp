@@ -27,8 +27,8 @@ inline bool has_open_sign(const parameter_estimate& found) {
     return key && key->rule.holds(value.low) && value.low < 0 && value.high > 0;
 }
 
-/// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than laws
-/// of friction are wrong by.
+/// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than
+/// laws of friction are wrong by.
 inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, const plant_model& as_given,
                         bool of_laws) {
     // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
