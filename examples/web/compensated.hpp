@@ -20,10 +20,10 @@ inline nlohmann::json tracking_row(const std::string& name, const std::string& r
             text(t.command_rms_V, command_unit)};
 }
 
-/// The tracking error of the simulated loop, reference minus position.
+/// The tracking error of the simulated loop, reference minus position, on a log whose columns are in time.
 inline nlohmann::json tracking_curve(const machine_description& machine, const machine_log& log,
                                      const std::string& axis) {
-    const simulation_result run = simulate(machine, log);
+    const simulation_result run = simulate(machine, log, log_columns::as_they_stand, force_places::left_out);
     const simulated_axis& simulated = *detail::named(run.axes, axis);
     const axis_log& logged = *detail::named(log.axes, axis);
     std::vector<double> error(simulated.position.size());

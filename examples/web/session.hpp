@@ -145,9 +145,20 @@ private:
                                  {"causes", knobs(result_)},
                                  {"has_calibration", has_calibration(result_)},
                                  {"machine_text", machine_text_},
-                                 {"before", drawn(simulate(machine_, log_), log_)}};
-        if (holdout_) answer["before_holdout"] = drawn(simulate(machine_, *holdout_), *holdout_);
+                                 {"before", simulated(machine_, read_in_time())}};
+        if (holdout_) answer["before_holdout"] = simulated(machine_, *holdout_in_time_);
         return answer;
+    }
+
+    /// Both logs with their columns in time, read once: a slider simulates them at each move. The first one.
+    const machine_log& read_in_time() {
+        log_in_time_ = with_columns_in_time(machine_, log_);
+        holdout_in_time_.reset();
+        if (holdout_) holdout_in_time_ = with_columns_in_time(machine_, *holdout_);
+        return log_in_time_;
+    }
+    static nlohmann::json simulated(const machine_description& machine, const machine_log& in_time) {
+        return drawn(simulate(machine, in_time, log_columns::as_they_stand, force_places::left_out), in_time);
     }
 
     /// Two logs beside each other. Without a machine, what the first says of its own.
@@ -180,8 +191,8 @@ private:
         const auto set = apply(machine_text_, machine_file_, wanted, 0.5);
         const std::string text = set.machine.dump(2) + "\n";
         const auto machine = read_machine(text, machine_file_);
-        nlohmann::json answer = {{"machine_text", text}, {"after", drawn(simulate(machine, log_), log_)}};
-        if (holdout_) answer["after_holdout"] = drawn(simulate(machine, *holdout_), *holdout_);
+        nlohmann::json answer = {{"machine_text", text}, {"after", simulated(machine, log_in_time_)}};
+        if (holdout_) answer["after_holdout"] = simulated(machine, *holdout_in_time_);
         return answer;
     }
 
@@ -189,7 +200,7 @@ private:
     nlohmann::json compensated(const nlohmann::json& request) const {
         const auto wanted = as_set(result_, request.at("causes"), request.at("calibrated").get<bool>());
         const auto corrected = apply(machine_text_, machine_file_, wanted, 0.5).machine;
-        return drawn(compensate(machine_, wanted, log_), corrected, log_);
+        return drawn(compensate(machine_, wanted, log_), corrected, log_in_time_);
     }
 
     /// The machine as it is set, for another program.
@@ -207,6 +218,8 @@ private:
     machine_description machine_{};
     machine_log log_{};
     std::optional<machine_log> holdout_{};
+    machine_log log_in_time_{};
+    std::optional<machine_log> holdout_in_time_{};
     diagnosis_result result_{};
 };
 

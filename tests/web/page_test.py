@@ -157,7 +157,8 @@ def shipped_log(driver, page, program, data, shots, work):
     give(driver, data / "machine.json", data / "log.csv", data / "holdout.csv")
     wait(lambda: verdict_or_fault(driver), 120, "a verdict")
     clock, waited, ran, _ = watch.read()
-    took = max(ran, clock - waited)
+    # What a user sees is the clock; beside other load it says more than the page takes.
+    took = min(clock, max(ran, clock - waited))
     print(f"first verdict after {clock:.1f} s, of which {waited:.1f} s waited; {ran:.1f} s of processor time")
     check(took < FIRST_VERDICT_S, f"first verdict after {took:.1f} s")
     found = diagnosis_of(driver)
@@ -196,7 +197,8 @@ def what_if(driver, expected):
         sliders[0].send_keys(Keys.ARROW_LEFT if step % 2 else Keys.ARROW_RIGHT)
         wait(lambda: element(driver, "#took").text, 20, "an answer to the slider")
         _, waited, _, worker = watch.read()
-        times.append(round(max(1000 * worker, int(element(driver, "#took").text.split()[2]) - 1000 * waited)))
+        shown = int(element(driver, "#took").text.split()[2])  # by the page's clock
+        times.append(round(min(shown, max(1000 * worker, shown - 1000 * waited))))
     rows = driver.execute_script("return dropped.get(the('log').value).rows")
     slow = sorted(times)[-2]  # one of the twelve may meet another program
     print(f"sliders: {slow} ms for {rows} rows (of {times})")

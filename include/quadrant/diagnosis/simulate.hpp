@@ -31,6 +31,8 @@ struct simulation_result {
 /// How the columns of a log are taken: one that was sampled later or earlier than the position is read as it
 /// acted, as diagnose() does, or every row as it stands, which is right for a log that was simulated.
 enum class log_columns { in_time, as_they_stand };
+/// Whether simulate() says where in the motion the residual force lies: a sixth of its time.
+enum class force_places { told, left_out };
 
 /// Predicts a log of a machine and says what remains between the two, in the numbers that a diagnosis
 /// forecasts: residual force behind the logged command, and position and command of the closed loop from the
@@ -38,7 +40,12 @@ enum class log_columns { in_time, as_they_stand };
 /// row. Machine and log match (match.hpp); a log below 0.5 s is refused (bad_input). Costs a few passes over
 /// the log, and as many again to read its columns in time.
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine, const machine_log& log,
-                                                   log_columns how = log_columns::in_time);
+                                                   log_columns how = log_columns::in_time,
+                                                   force_places where = force_places::told);
+
+/// A log whose columns are read in time already: for one that is simulated again and again, with
+/// `log_columns::as_they_stand`. What was found of its columns is that of this machine.
+QUADRANT_DIAGNOSIS_DECL machine_log with_columns_in_time(const machine_description& machine, machine_log log);
 
 } // namespace quadrant::inline v0::diagnosis
 

@@ -12,7 +12,8 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period) {
+inline simulated_axis simulate_axis(const axis_description& axis, const axis_log& log, double period,
+                                    force_places where) {
     const double resolution = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
     const axis_record record =
@@ -33,7 +34,7 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
     out.gap.noise_floor_force_rms_N =
         force_floor(record, plant.mass, position_noise(innovation, record.score, resolution));
     out.gap.bandwidth_Hz = record.bandwidth_Hz;
-    out.where = regimes(out.force, record);
+    if (where == force_places::told) out.where = regimes(out.force, record);
     for (place& p : out.where) p.finding = text_of(p.finding, axis.kind);
     for (std::size_t k = 0; k < log.position.size(); ++k) out.t.push_back(static_cast<double>(k) * period);
     const bool driven = axis.drive.closes();
@@ -59,7 +60,8 @@ inline simulated_axis simulate_axis(const axis_description& axis, const axis_log
 } // namespace detail
 
 QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& machine,
-                                                   const machine_log& as_read, log_columns how) {
+                                                   const machine_log& as_read, log_columns how,
+                                                   force_places where) {
     refuse_positions_only(machine, "a simulation");
     const machine_log log = with_drives(machine, as_read);
     constexpr double shortest_s = 0.5;
@@ -81,9 +83,20 @@ QUADRANT_DIAGNOSIS_DECL simulation_result simulate(const machine_description& ma
             std::optional<axis_log> none;
             if (how == log_columns::in_time)
                 put_columns_in_time(known, machine.sample_period_s, in_time, none, out.notes);
-            out.axes.push_back(detail::simulate_axis(known, in_time, machine.sample_period_s));
+            out.axes.push_back(detail::simulate_axis(known, in_time, machine.sample_period_s, where));
         }
     return out;
+}
+
+QUADRANT_DIAGNOSIS_DECL machine_log with_columns_in_time(const machine_description& machine, machine_log log) {
+    for (const axis_description& axis : machine.axes)
+        for (axis_log& logged : log.axes) {
+            if (logged.name != axis.name || logged.still || axis.positions_only) continue;
+            std::optional<axis_log> none;
+            std::vector<std::string> notes;
+            put_columns_in_time(as_logged(axis, logged), machine.sample_period_s, logged, none, notes);
+        }
+    return log;
 }
 
 } // namespace quadrant::inline v0::diagnosis
