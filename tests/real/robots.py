@@ -67,6 +67,10 @@ STS3250 = {"q": {
     "drive": {"kind": "position_servo", "position_gain_per_rad": 11.6, "maximum_duty": 0.97, "supply_V": 12,
               "command_delay_s": 0.02}}}
 MOUSE = {"left": wheel(0.02), "right": wheel(0.021)}
+UR5 = {q: {"plant": {"inertia_kg_m2": inertia, "torque_constant_Nm_per_A": constant},
+           "tolerance": {"inertia": 0.1, "torque_constant": 0.05}, "encoder": {"resolution_rad": 1e-4},
+           "actuator": MEASURED}
+       for q, inertia, constant in (("q1", 8.2, 14.87), ("q2", 21.6, 13.26), ("q3", 5.0, 11.13))}
 PANDA = {"q7": {"plant": {"inertia_kg_m2": 0.004}, "tolerance": {"inertia": 0.5}, "actuator": MEASURED}}
 
 LOGS = {
@@ -81,6 +85,8 @@ LOGS = {
     **{f"sts_{n}": ("sts3250", [f"sts3250/{n}.csv"], ["--sample-period", "0.02055"])
        for n in ("sin_sin", "up_and_down")},
     "panda": ("panda", ["panda/panda.csv"], ["--resample"]),
+    **{f"ur5_{n}": ("ur5", [f"ur5/joint_{n}.csv"], ["--resample"]) for n in (1, 2, 3)},
+    "ur5_slow": ("ur5", ["ur5/joint_1.csv"], ["--resample", "--sample-period", "0.1"]),
     "drone": ("quarter_drone", ["quarter_drone/dados_14_drone.csv"], ["--resample"]),
     "drone_fast": ("quarter_drone", ["quarter_drone/14_drone_seq_20260529_195254.csv"], ["--resample"]),
 }
@@ -89,6 +95,8 @@ RECORDS = {
     "tiago": ("tiago", None, TIAGO, []),
     "mouse": ("mouse", None, MOUSE, []),
     "panda": ("panda", None, PANDA, []),
+    **{f"ur5_{n}": (f"ur5_{n}", None, {f"q{n}": UR5[f"q{n}"]}, []) for n in (1, 2, 3)},
+    "ur5_slow": ("ur5_slow", None, {"q1": UR5["q1"]}, []),
     "drone": ("drone", None, DRONE, []),
     "servo_healthy": ("large_amplitude", "repetitive_motion", {"rotation": servo(0.055)}, []),
     "servo_friction": ("large_amplitude", "repetitive_motion", {"rotation": servo()}, []),
@@ -110,6 +118,23 @@ def names_of(cause):
 
 def first_of(d, axis):
     return next((c for c in d["causes"] if c["axis"] == axis), None)
+
+
+# What a regression on the motion has of the arm, N m and N m s: joint, effect, key, value.
+UR5_KNOWN = [(1, "viscous_friction", "viscous_Nm_s_per_rad", 31.5), (1, "coulomb_friction", "coulomb_Nm", 21.2),
+             (2, "gravity", "gravity_torque_Nm", 139), (2, "coulomb_friction", "coulomb_Nm", 14),
+             (3, "gravity", "gravity_torque_Nm", 49.2), (3, "viscous_friction", "viscous_Nm_s_per_rad", 10.7),
+             (3, "coulomb_friction", "coulomb_Nm", 7.4)]
+
+
+def near(cause, key, value):
+    return meets(cause, key, 0.95 * value, 1.05 * value)
+
+
+def as_at_full_rate(d):
+    """Friction alone is claimed, and none that the faster record of joint 1 excludes."""
+    known = {effect: (key, value) for joint, effect, key, value in UR5_KNOWN if joint == 1}
+    return all(c["effect"] in known and near(c, *known[c["effect"]]) for c in claims(d))
 
 
 # record, what its page says, test
@@ -163,8 +188,14 @@ RIGHT = [
      lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 2.7, 3.0)),
     ("panda", "Coulomb friction is claimed, meets the 0.277 and 0.288 N m of the paper, and nothing else is",
      lambda d: meets(claimed(d, "coulomb_friction"), "coulomb_Nm", 0.277, 0.288) and len(claims(d)) == 1),
+    *((f"ur5_{n}", f"{effect} of joint {n} is claimed and meets {value}",
+       lambda d, q=f"q{n}", effect=effect, key=key, value=value: near(claimed(d, effect, q), key, value))
+      for n, effect, key, value in UR5_KNOWN),
+    ("ur5_slow", "ten rows a second: no friction is claimed that the faster record excludes",
+     as_at_full_rate),
 ] + [(r, "nothing before the tap of a measured command is named", nothing_before_the_tap)
-     for r in ("panda", "tx40", "tiago", "cyclo_mounted", "cyclo_bar", "cyclo_350gr", "cyclo_700gr")]
+     for r in ("panda", "ur5_1", "ur5_2", "ur5_3", "tx40", "tiago",
+               "cyclo_mounted", "cyclo_bar", "cyclo_350gr", "cyclo_700gr")]
 
 NOT_YET = [
     ("cyclo_350gr", "gravity of 1.75 N m is claimed",

@@ -130,7 +130,8 @@ QUADRANT_DIAGNOSIS_DECL comparison_result compare(const machine_description& mac
         for (std::size_t i = 0; i < 2; ++i) explained[i] += f[i].score;
         out.axes.push_back(std::move(c));
     }
-    const std::size_t way = explained[1] > explained[0] ? 1 : 0;
+    // Where neither way explains more by the margin the difference is told of the second log.
+    const std::size_t way = explained[1] > explained[0] + r.margin ? 1 : 0;
     detail::name_differences(out, ways, way, found, r);
     out.across = std::move(ways[way].across);
     tell("done", 1);
