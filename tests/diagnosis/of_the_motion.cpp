@@ -10,7 +10,8 @@
 using namespace quadrant::diagnosis;
 
 TEST_CASE("a cutting force at a frequency of the motion is one that may come with it") {
-    axis_record r{.period = 1e-3};
+    axis_record r;
+    r.period = 1e-3;
     for (int k = 0; k < 12000; ++k) {
         const double turn = 2 * std::numbers::pi * k * r.period;
         r.velocity.push_back(20 * std::cos(0.25 * turn) + 15 * std::cos(0.75 * turn + 1));
