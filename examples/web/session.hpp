@@ -129,6 +129,7 @@ private:
         machine_ = read_machine(machine_text_, machine_file_);
         log_ = log(log_name);
         holdout_.reset();
+        holdout_in_time_.reset();
         if (!second.empty()) holdout_ = log(second);
         quadrant_gap::make_match(machine_, log_, holdout_ ? &*holdout_ : nullptr);
         result_ = diagnose(machine_, log_, holdout_ ? &*holdout_ : nullptr, tell_,
@@ -192,7 +193,7 @@ private:
         const std::string text = set.machine.dump(2) + "\n";
         const auto machine = read_machine(text, machine_file_);
         nlohmann::json answer = {{"machine_text", text}, {"after", simulated(machine, log_in_time_)}};
-        if (holdout_) answer["after_holdout"] = simulated(machine, *holdout_in_time_);
+        if (holdout_in_time_) answer["after_holdout"] = simulated(machine, *holdout_in_time_);
         return answer;
     }
 

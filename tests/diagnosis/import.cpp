@@ -451,7 +451,8 @@ TEST_CASE("import: clock times of ISO 8601 are stamps in seconds, over midnight 
     const std::array ways{
         log_of("2025-12-31T23:59:59.850Z", "2025-12-31T23:59:59.950Z", "2026-01-01T00:00:00.050Z"),
         log_of("2025-12-31 23:59:59.850", "2025-12-31 23:59:59.950", "2026-01-01 00:00:00.050"),
-        log_of("2026-01-01T00:59:59.850+01:00", "2026-01-01T00:59:59.950+01:00", "2025-12-31T19:00:00.050-0500"),
+        log_of("2026-01-01T00:59:59.850+01:00", "2026-01-01T00:59:59.950+01:00",
+               "2025-12-31T19:00:00.050-0500"),
         log_of("09:27:03.748", "09:27:03.848", "09:27:03.948")};
     for (const std::string& log : ways) {
         CAPTURE(log);
@@ -459,9 +460,33 @@ TEST_CASE("import: clock times of ISO 8601 are stamps in seconds, over midnight 
         CHECK(in.log.sample_period_s == doctest::Approx(0.1).epsilon(1e-9));
         CHECK(in.text.find("t_s,x_ref_m,x_pos_m\n0.000000000,0.1") == 0);
     }
+    // Whole seconds, several rows in each, stand on an even clock; two files count from one day.
+    std::string coarse = "timestamp,asked,read\n";
+    for (int k = 0; k < 60; ++k) coarse += fmt::format("09:27:{:02d},{},{}\n", k / 5, 0.1 * k, 0.1 * k + 0.01);
+    CHECK(import_log(map, coarse, "in.csv", {.resample = true}).log.samples > 50);
+    const auto both =
+        read_import_map(std::string_view(R"({"schema": "quadrant.import/1", "header": 1, "files": [
+        {"time": {"column": "timestamp", "unit": "s"}}, {"time": {"column": "timestamp", "unit": "s"}}],
+        "axes": {"x": {"reference": {"column": "asked", "unit": "m"}, "position": {"column": "read", "unit": "m", "file": 2}}}})"),
+                        "map.json");
+    std::string utc = "timestamp,asked,read\n", east = utc;
+    for (int k = 0; k < 40; ++k) { // over midnight, in one of two zones
+        const int ms = 100 * k, second = 58 + ms / 1000;
+        const auto stamp = [&](int shift) {
+            const bool next = second >= 60;
+            return fmt::format("{}T{:02d}:{:02d}:{:02d}.{:03d}", next || shift ? "2026-01-01" : "2025-12-31",
+                               (next ? 0 : 23) + (shift ? (next ? 1 : -23) : 0), next ? 0 : 59, second % 60,
+                               ms % 1000);
+        };
+        utc += fmt::format("{}Z,{},{}\n", stamp(0), 0.1 * k, 0.1 * k);
+        east += fmt::format("{}+01:00,{},{}\n", stamp(1), 0.1 * k, 0.1 * k);
+    }
+    const std::array<foreign_file, 2> parts{foreign_file{utc, "a.csv"}, foreign_file{east, "b.csv"}};
+    CHECK(import_log(both, parts).log.samples > 35);
     // What is no stamp is told by its cell; a unit that a clock does not have, too.
-    CHECK(refusal_of([&] { import_log(map, log_of("09:27:03.748", "09:61:03.848", "09:27:04"), "in.csv"); })
-              .find(R"(in.csv:3:1: t_s: "09:61:03.848")") == 0);
+    CHECK(refusal_of([&] {
+              import_log(map, log_of("09:27:03.748", "09:61:03.848", "09:27:04"), "in.csv");
+          }).find(R"(in.csv:3:1: t_s: "09:61:03.848")") == 0);
     const auto ms = read_import_map(std::string_view(R"({"schema": "quadrant.import/1", "header": 1,
         "time": {"column": "timestamp", "unit": "ms"}, "axes": {"x": {"reference": {"column": "asked", "unit": "m"},
         "position": {"column": "read", "unit": "m"}}}})"),

@@ -83,6 +83,4 @@ TEST_CASE("diagnose: no friction beyond what the torque shows, where rows are sl
         CHECK(found.high > viscous);
     }
     CHECK(dry);
-    // What is left is told in torque: twice the friction that is there leaves half of it.
-    for (const axis_result& a : d.axes) CHECK(a.gap_after.force_rms_N > 0);
 }

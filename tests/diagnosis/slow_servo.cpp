@@ -120,3 +120,28 @@ TEST_CASE("positions: a servo that does not keep up has no wrong ratio, and no p
         CHECK(c.effect != "travel_error");
     }
 }
+
+TEST_CASE("positions: a profile velocity is of the set-points, whatever the screw makes of them") {
+    // Counted as half of what it travels: 1.2 rad/s asked are 2.4 of the load.
+    const std::string log = led_by_hand({0.22, 1.2, 0}, 3);
+    std::string twice = "t_s,q_ref_rad,q_pos_rad\n";
+    std::istringstream rows(log.substr(log.find('\n') + 1));
+    for (std::string row; std::getline(rows, row);) {
+        double t = 0, asked = 0, q = 0;
+        std::sscanf(row.c_str(), "%lf,%lf,%lf", &t, &asked, &q);
+        char out[80];
+        std::snprintf(out, sizeof out, "%.6f,%.6f,%.8f\n", t, asked, 2 * q);
+        twice += out;
+    }
+    const auto machine = read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.1, "axes": {"q": {
+        "drive": {"command_delay_s": 0.22, "setpoint_rate_limit_rad_per_s": 1.2},
+        "transmission": {"counted_per_turn_rad": 0.5, "travel_per_turn_rad": 1},
+        "encoder": {"resolution_rad": 0.00306796}}}})"),
+        "machine.json");
+    std::istringstream file(twice);
+    const auto d = diagnose(machine, read_log(file, "log.csv"));
+    CAPTURE(said(d));
+    CHECK(d.verdict <= verdict::within_tolerance);
+    CHECK(d.causes.empty());
+}

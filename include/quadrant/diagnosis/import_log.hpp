@@ -32,7 +32,7 @@ public:
             throw bad_input(map_.file,
                             fmt::format("describes {} files; {} are given", map_.files.size(), files_.size()));
         for (std::size_t i = 0; i < files_.size(); ++i) {
-            tables_.push_back(foreign_table_reader(map_, i, files_[i].text, files_[i].name).take());
+            tables_.push_back(foreign_table_reader(map_, i, files_[i].text, files_[i].name, first_day_).take());
             for (const auto& note : tables_.back().notes) tell(i, note);
         }
         for (std::size_t i = 0; i < tables_.size(); ++i)
@@ -131,6 +131,7 @@ private:
     std::span<const foreign_file> files_;
     const import_choice& choice_;
     std::vector<foreign_table> tables_{};
+    std::optional<long> first_day_{}; ///< of stamps with a date
     bool replay_is_lost_ = false; ///< what resampling changed would count as another controller
     imported_log out_{};
 };

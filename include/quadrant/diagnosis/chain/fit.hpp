@@ -70,8 +70,8 @@ template <class Cost> double least(Cost cost, double low, double high, int grid,
     return fc < fd ? std::exp(c) : std::exp(d);
 }
 
-/// Moves the play, the lag and, beside a play, the motor's friction of a model by what their columns say, while
-/// that helps.
+/// Moves the play, the lag, the rate and, beside a play, the motor's friction of a model by what their columns
+/// say, while that helps.
 QUADRANT_DIAGNOSIS_DECL fitted settled(const readings& r, fitted f);
 
 } // namespace quadrant::inline v0::diagnosis::chain

@@ -18,6 +18,9 @@ struct described_link {
     std::string from{}, to{}; ///< in words
     double to_load = 1;       ///< units of the load for one of the column that `first` comes from
     bool motor_turns = false; ///< that column is in radians of the motor
+
+    /// How fast the link's first reading goes for a set-point that goes at 1.
+    double set_point_to_load() const { return readings.geared ? std::abs(to_load) : 1; }
 };
 
 /// Slope of y over x by least squares.

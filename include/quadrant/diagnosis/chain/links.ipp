@@ -114,7 +114,7 @@ QUADRANT_DIAGNOSIS_DECL described_link asked_to(const axis_description& axis, co
     l.first_count = observed_count(log.reference, log.reference_step);
     l.last_count = count;
     l.turn = axis.transmission.travel_per_turn_m.value_or(0);
-    out.described.rate = axis.drive.setpoint_rate_limit_m_per_s.value_or(0);
+    out.described.rate = axis.drive.setpoint_rate_limit_m_per_s.value_or(0) * out.set_point_to_load();
     if (const auto& gain = axis.drive.position_gain_per_s) {
         out.described.how = following::first_order;
         out.described.lag = 1 / *gain;

@@ -108,7 +108,7 @@ QUADRANT_DIAGNOSIS_DECL described_link calibrated_link(const readings& r, const 
             if (t == term::play) out.described.play = value;
             if (t == term::spring) out.described.compliance = 1 / value;
             if (t == term::motor_friction) out.described.motor_coulomb = value;
-            if (t == term::rate) out.described.rate = value;
+            if (t == term::rate) out.described.rate = value * out.set_point_to_load();
             if (t == term::delay) out.described.lag = value;
             if (t == term::first_order) out.described.lag = 1 / value;
         }

@@ -30,7 +30,7 @@ inline double steepest_of(const readings& r, const fitted& f, std::size_t column
 inline bool possible(const readings& r, const fitted& f) {
     const link_model& m = f.model;
     double play = m.play, compliance = m.compliance, friction = 0, narrowest = 0, deviation = 0;
-    double steepest = 0; // of errors along the travel, over each other: from 1 on the load would turn back
+    double steepest = 0; // of errors along the travel, at most: from 1 on load or reading may turn back
     for (std::size_t j = 0; j < f.of.size(); ++j) {
         const auto i = static_cast<Eigen::Index>(j);
         const double value = f.values[i];
@@ -48,8 +48,9 @@ inline bool possible(const readings& r, const fitted& f) {
     friction += m.motor_coulomb * compliance;
     constexpr double sure = 3; // deviations
     // Nor does anything follow so late that the record holds hardly any of it.
+    const bool late = m.has(term::delay) || m.has(term::first_order);
     const double longest = 0.1 * r.of().period * static_cast<double>(r.of().rows());
-    return steepest < 1 && m.lag < longest &&
+    return steepest < 1 && (!late || m.lag < longest) &&
            !(m.has(term::play) && (play <= 0 || narrowest < -sure * deviation)) &&
            !(m.has(term::spring) && compliance <= 0) && !(m.has(term::motor_friction) && friction < 0);
 }

@@ -17,9 +17,11 @@ QUADRANT_DIAGNOSIS_DECL std::vector<parameter_estimate> term_values::of(term t) 
     case term::play:
         return {{"transmission.backlash_m",
                  {with_interval(m.play + value(at[0]), deviation(at[0]), half_a_count)}}};
-    case term::rate:
+    case term::rate: {
+        const double unit = d_.set_point_to_load(), found = std::max(m.rate + value(at[0]), 0.05 * m.rate);
         return {
-            {"drive.setpoint_rate_limit_m_per_s", {with_interval(m.rate + value(at[0]), deviation(at[0]), 0)}}};
+            {"drive.setpoint_rate_limit_m_per_s", {with_interval(found / unit, deviation(at[0]) / unit, 0)}}};
+    }
     case term::delay:
         return {{"drive.command_delay_s", {with_interval(m.lag + value(at[0]), deviation(at[0]), 0)}}};
     case term::first_order: {

@@ -62,12 +62,14 @@ private:
         if (!number(2, 0, 23, h) || !mark(":") || !number(2, 0, 59, m) || !mark(":") || !number(2, 0, 60, s))
             return false;
         double part = 0, unit = 1;
-        if (mark(".,"))
+        if (mark(".,")) {
             for (; !rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9'; rest_.remove_prefix(1)) {
                 unit /= 10;
                 part += unit * (rest_.front() - '0');
                 ++out.digits;
             }
+            if (out.digits == 0) return false;
+        }
         out.second = 3600 * h + 60 * m + s + part;
         return true;
     }
@@ -77,7 +79,7 @@ private:
         const bool west = rest_.front() == '-';
         int h = 0, m = 0;
         if (!mark("+-") || !number(2, 0, 14, h)) return false;
-        mark(":");
+        if (mark(":") && rest_.empty()) return false;
         if (!rest_.empty() && !number(2, 0, 59, m)) return false;
         second += (west ? 1 : -1) * (3600 * h + 60 * m);
         return true;

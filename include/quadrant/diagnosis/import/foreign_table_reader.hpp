@@ -13,8 +13,11 @@ namespace quadrant::inline v0::diagnosis::detail {
 /// Reads one file by its layout.
 class foreign_table_reader {
 public:
-    foreign_table_reader(const import_map& map, std::size_t file, std::string_view text, std::string_view name)
-        : map_(map), layout_(map.files[file]), file_(file), name_(name), lines_(layout_, text, name) {}
+    /// `first_day`: from which clock times count, the same for all files of a log.
+    foreign_table_reader(const import_map& map, std::size_t file, std::string_view text, std::string_view name,
+                         std::optional<long>& first_day)
+        : map_(map), layout_(map.files[file]), file_(file), name_(name), lines_(layout_, text, name),
+          first_day_(first_day) {}
 
     foreign_table take() {
         if (layout_.halscope)
@@ -163,6 +166,7 @@ private:
         if (!first_day_) first_day_ = stamp->day;
         const double seconds = 86400.0 * static_cast<double>(stamp->day - *first_day_) + stamp->second;
         out = fmt::format("{:.{}f}", seconds, stamp->digits);
+        if (stamp->digits == 0) out += '.'; // whole seconds, and no trailing zeros
         std::replace(out.begin(), out.end(), '.', layout_.decimal);
         return out;
     }
@@ -237,7 +241,7 @@ private:
     double period_ = 0;  ///< that halscope states [s]
     bool again_ = false; ///< the current line is a row that is not yet read
     std::vector<std::string> names_{};
-    std::optional<long> first_day_{}; ///< of stamps with a date
+    std::optional<long>& first_day_;
     foreign_table out_{};
 };
 

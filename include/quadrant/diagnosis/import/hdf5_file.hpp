@@ -35,7 +35,7 @@ public:
         read_object(file_.number<std::uint64_t>(after + 40), "", 0);
         if (columns_.empty())
             file_.refuse("holds no vector of numbers: save time, position and command as vectors");
-        return text_of_table(columns_);
+        return text_of_table(columns_, name_);
     }
 
 private:

@@ -225,7 +225,7 @@ private:
                 columns.push_back({v.columns > 1 ? fmt::format("{}_{}", v.name, k + 1) : v.name,
                                    {begin, begin + static_cast<std::ptrdiff_t>(v.rows)}});
             }
-        return text_of_table(columns);
+        return text_of_table(columns, file_);
     }
 
     std::string_view file_, file_bytes_, bytes_; ///< bytes_: of the file, or what a compressed variable holds

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../text/bad_input.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,13 +30,18 @@ inline constexpr std::string_view past_the_end = "end";
 
 /// What import_log reads: a line of names, then rows. No value is an empty cell. A file may hold columns of
 /// several lengths; those of one log are of one length, which the reader of the table checks.
-inline std::string text_of_table(const std::vector<number_column>& columns) {
+inline std::string text_of_table(const std::vector<number_column>& columns, std::string_view file) {
+    constexpr std::size_t most_cells = std::size_t{1} << 25;
     std::string out;
     std::size_t rows = 0;
     for (const number_column& c : columns) {
         out += (out.empty() ? "" : ",") + c.name;
         rows = std::max(rows, c.values.size());
     }
+    if (rows > most_cells / std::max<std::size_t>(1, columns.size()))
+        throw bad_input(file, fmt::format("{} columns of up to {} rows: save only what belongs to one log, and "
+                                          "no matrix that lies on its side",
+                                          columns.size(), rows));
     out += '\n';
     for (std::size_t row = 0; row < rows; ++row) {
         const char* before = "";

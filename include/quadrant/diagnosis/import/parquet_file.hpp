@@ -36,7 +36,7 @@ public:
             if (c.kept) table.push_back({c.name, std::move(c.values)});
         if (table.empty()) refuse("holds no column of numbers");
         if (table.front().values.empty()) refuse("holds no row");
-        return text_of_table(table);
+        return text_of_table(table, file_);
     }
 
 private:
