@@ -137,6 +137,9 @@ private:
         result_.log_sha256 = files_.at(log_name).sha256;
         if (!request.contains("machine_text")) result_.machine_sha256 = files_.at(machine_file_).sha256;
         if (!second.empty()) result_.holdout_sha256 = files_.at(second).sha256;
+        // Read once: a slider simulates both logs at each move.
+        log_in_time_ = with_columns_in_time(machine_, log_);
+        if (holdout_) holdout_in_time_ = with_columns_in_time(machine_, *holdout_);
         const auto replace = nlohmann::json::error_handler_t::replace;
         nlohmann::json answer = {{"verdict", name_of(result_.verdict)},
                                  {"sentence", quadrant_gap::verdict_sentence(result_)},
@@ -146,18 +149,12 @@ private:
                                  {"causes", knobs(result_)},
                                  {"has_calibration", has_calibration(result_)},
                                  {"machine_text", machine_text_},
-                                 {"before", simulated(machine_, read_in_time())}};
-        if (holdout_) answer["before_holdout"] = simulated(machine_, *holdout_in_time_);
+                                 {"before", simulated(machine_, log_in_time_)}};
+        if (holdout_in_time_) answer["before_holdout"] = simulated(machine_, *holdout_in_time_);
         return answer;
     }
 
-    /// Both logs with their columns in time, read once: a slider simulates them at each move. The first one.
-    const machine_log& read_in_time() {
-        log_in_time_ = with_columns_in_time(machine_, log_);
-        holdout_in_time_.reset();
-        if (holdout_) holdout_in_time_ = with_columns_in_time(machine_, *holdout_);
-        return log_in_time_;
-    }
+    /// A simulation of a log whose columns are in time, as the page draws it.
     static nlohmann::json simulated(const machine_description& machine, const machine_log& in_time) {
         return drawn(simulate(machine, in_time, log_columns::as_they_stand, force_places::left_out), in_time);
     }

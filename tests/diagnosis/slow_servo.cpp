@@ -3,6 +3,7 @@
 // row wherever it moves.
 #include "claims.hpp"
 
+#include <quadrant/diagnosis/chain/readings.hpp>
 #include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
@@ -80,6 +81,30 @@ TEST_CASE("positions: what a servo is asked bends in every row that moves, and i
     REQUIRE(!d.causes.empty());
     CHECK(d.axes.at(0).gap.position_rms_m > 0.03);
     CHECK(d.causes[0].group_probability > 0.5);
+}
+
+TEST_CASE("positions: rows in which what is asked bends count where the axis moves in no others") {
+    // Ramps of six rows and long rests, followed one row later.
+    chain::position_link link{.period = period, .first = {}, .last = {}, .last_count = count};
+    link.asked = true;
+    const auto asked = [](int k) {
+        return 0.02 * (std::max(k, 0) / 40 * 6 + std::min(std::max(k, 0) % 40, 6));
+    };
+    for (int k = 0; k < 400; ++k) {
+        link.first.push_back(asked(k));
+        link.last.push_back(asked(k - 1));
+    }
+    const auto late = [&] {
+        const chain::readings r(link);
+        return std::count_if(r.rows().begin(), r.rows().end(),
+                             [&](std::size_t k) { return std::abs(link.last[k] - link.first[k]) > 0.01; });
+    };
+    CHECK(late() > 40);
+    // Behind a long smooth motion the same ramps are left out.
+    std::vector<double> smooth;
+    for (int k = 0; k < 800; ++k) smooth.push_back(9 * (std::cos(0.01 * k) - std::cos(8.0)));
+    for (auto* side : {&link.first, &link.last}) side->insert(side->begin(), smooth.begin(), smooth.end());
+    CHECK(late() < 10);
 }
 
 TEST_CASE("positions: a servo that is late and never faster than its profile velocity") {

@@ -80,8 +80,8 @@ struct link_model {
 
     /// What the set-points x, a row each, make the axis ask for, and what follows that; `later`: more lag [s].
     std::vector<double> follows(std::span<const double> x, double period, double later = 0) const {
-        return followed(rate > 0 ? at_most_as_fast(x, rate * period) : std::vector(x.begin(), x.end()), period,
-                        how, lag + later);
+        return rate > 0 ? followed(at_most_as_fast(x, rate * period), period, how, lag + later)
+                        : followed(x, period, how, lag + later);
     }
     bool has(term t) const { return std::find(freed.begin(), freed.end(), t) != freed.end(); }
 };
