@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include <quadrant/diagnosis/init.hpp>
+#include <quadrant/diagnosis/machine_file/init_fields.hpp>
 #include <quadrant/diagnosis/text/axis_words.hpp>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #include "quadrant/diagnosis/init.hpp"
+#include "quadrant/diagnosis/machine_file/init_fields.hpp"
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
 #include "refusal.hpp"

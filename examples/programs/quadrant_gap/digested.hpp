@@ -15,7 +15,7 @@ template <class Contents> struct digested {
 };
 inline digested<quadrant::diagnosis::machine_log> read_digested_log(const std::string& path) {
     const std::string bytes = quadrant::diagnosis::detail::read_whole(std::filesystem::path(path));
-    return {quadrant::diagnosis::detail::log_reader(bytes, path).read(), sha256(bytes)};
+    return {quadrant::diagnosis::read_log_text(bytes, path), sha256(bytes)};
 }
 inline digested<quadrant::diagnosis::machine_description> read_digested_machine(const std::string& path) {
     const std::string bytes = quadrant::diagnosis::detail::read_whole(std::filesystem::path(path));

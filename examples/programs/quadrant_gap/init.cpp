@@ -4,6 +4,7 @@
 #include "log_of_text.hpp"
 
 #include <quadrant/diagnosis/init.hpp>
+#include <quadrant/diagnosis/machine_file/init_fields.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/write_diagnosis.hpp>
 

@@ -51,7 +51,7 @@ template <class Import>
 machine_log log_of_text(const std::string& text, const std::string& name, const Import& through) {
     std::optional<bad_input> refused;
     try {
-        return quadrant::diagnosis::detail::log_reader(text, name).read();
+        return quadrant::diagnosis::read_log_text(text, name);
     } catch (const bad_input& fault) {
         refused = fault;
     }

@@ -205,9 +205,7 @@ void add_logs(py::module_& m) {
           release());
     m.def(
         "read_motion",
-        [](const std::string& text, const std::string& name) {
-            return detail::log_reader(text, name, detail::log_purpose::motion).read();
-        },
+        [](const std::string& text, const std::string& name) { return read_motion_text(text, name); },
         py::arg("text"), py::arg("name"), release());
     m.def("motion_of", &motion_of, py::arg("log"), release());
 }

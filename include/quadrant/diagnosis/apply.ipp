@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "controller/json.hpp"
+#include "effect/effect_list.hpp"
 #include "read_diagnosis.hpp"
 #include "read_machine.hpp"
+#include "text/bad_input.hpp"
+#include "text/text.hpp"
 #include "write_machine.hpp"
 
 namespace quadrant::inline v0::diagnosis {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "../../base/lanes.hpp"
+
+#include <array>
 
 namespace quadrant::inline v0::diagnosis {
 
