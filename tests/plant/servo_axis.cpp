@@ -133,7 +133,7 @@ TEST_CASE(
         a.shift(1e-6 * std::sin(0.3 * k), 1e-3 * std::cos(0.3 * k)); // an observer corrects both
         b.shift(1e-6 * std::sin(0.3 * k), 1e-3 * std::cos(0.3 * k));
         if (k > 0) // before, nothing has crossed the play
-            REQUIRE(with.load_velocity(a) == doctest::Approx(without.load_velocity(b)).epsilon(1e-3));
+            REQUIRE(with.seen_velocity(a) == doctest::Approx(without.seen_velocity(b)).epsilon(1e-3));
     }
 }
 

@@ -116,6 +116,13 @@ public:
             s, momentum, v, [&](const Real& level) { return level * (Real(1) + change) + added; }, added);
     }
 
+    /// What the friction is at a velocity, slipping [N].
+    Real level_at(Real v) const noexcept {
+        const auto forward = greater_equal(v, Real(0));
+        const Real level = select(forward, forward_.level, backward_.level);
+        return falls_ ? level + excess_at(forward, v) : level;
+    }
+
 private:
     struct side { // of one direction of motion
         Real level{}, excess{}, inverse_velocity{}, inertia{};
@@ -168,23 +175,9 @@ private:
     }
     [[gnu::always_inline]] inline Real step(state& s, const Real& momentum, const Real& v, const auto& changed,
                                             const auto& added) const noexcept {
-        using std::abs;
         const auto forward = greater(select(equal(v, Real(0)), momentum, v), Real(0));
         Real level = changed(select(forward, forward_.level, backward_.level));
-        if (falls_) {
-            Real excess = forward_.excess, inverse = forward_.inverse_velocity;
-            if (falls_by_side_) {
-                excess = select(forward, excess, backward_.excess);
-                inverse = select(forward, inverse, backward_.inverse_velocity);
-            }
-            Real slowness = abs(v) * inverse;
-            if (shaped_) { // nearly no speed has a logarithm too
-                using std::exp, std::log;
-                const auto moves = greater(slowness, Real(1e-18));
-                slowness = select(moves, exp(shape_ * log(select(moves, slowness, Real(1)))), Real(0));
-            }
-            level = level + excess * decayed(slowness);
-        }
+        if (falls_) level = level + excess_at(forward, v);
         Real kept(0);
         if (relaxes_) { // a level of zero has no distance to keep
             const Real by = attraction_step_ / select(greater(level, Real(0)), level, Real(1));
@@ -195,6 +188,22 @@ private:
         return springs_ == N
                    ? several(s, momentum, level, kept, inertia, added, std::integral_constant<std::size_t, N>())
                    : several(s, momentum, level, kept, inertia, added, springs_);
+    }
+    /// What the level has more at low speed.
+    [[gnu::always_inline]] inline Real excess_at(const auto& forward, const Real& v) const noexcept {
+        using std::abs;
+        Real excess = forward_.excess, inverse = forward_.inverse_velocity;
+        if (falls_by_side_) {
+            excess = select(forward, excess, backward_.excess);
+            inverse = select(forward, inverse, backward_.inverse_velocity);
+        }
+        Real slowness = abs(v) * inverse;
+        if (shaped_) { // nearly no speed has a logarithm too
+            using std::exp, std::log;
+            const auto moves = greater(slowness, Real(1e-18));
+            slowness = select(moves, exp(shape_ * log(select(moves, slowness, Real(1)))), Real(0));
+        }
+        return excess * decayed(slowness);
     }
 
     /// A contact of one spring, which most guides are: all three ways, and the one that is true.

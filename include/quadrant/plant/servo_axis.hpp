@@ -4,7 +4,9 @@
 #include "../friction/slip_contact.hpp"
 #include "amplifier_lag.hpp"
 #include "joint.hpp"
+#include "play_between_masses.hpp"
 #include "servo_parameters.hpp"
+#include "servo_state.hpp"
 #include "sprung_mass.hpp"
 
 #include <cmath>
@@ -21,8 +23,9 @@ namespace quadrant::inline v0 {
 ///   friction      `slip_contact`: Stribeck level by direction, springs that stick and slip; load_friction adds
 ///                 load_friction |motor - (constant - spring x - gravity sin(x - gravity_phase))| to the level: what a gear
 ///                 carries between the motor and the forces on its load
-///   transmission  `sprung_mass` on the axis; play between motor and load
-///   reading       load + cyclic(load)
+///   transmission  `sprung_mass` on the axis; play between motor and load: `backlash`, or with a motor_mass
+///                 `play_between_masses`, gear, spring, gravity and process behind it
+///   reading       load + cyclic(load); with play_behind the motor's
 /// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints
 /// (`no_joint_laws`: nothing).
 /// Source: the laws are those of the blocks named; how they join is docs/formats.md's table of effects.
@@ -49,54 +52,7 @@ public:
     template <class AxisOf> static parameters side_by_side(std::size_t count, const AxisOf& axis_of) {
         return described::side_by_side(count, axis_of);
     }
-    /// Motion of motor and load, and what the joints remember.
-    struct state {
-        Real x{0}, v{0}; ///< of the motor [m], [m/s]
-        Real load{0};    ///< where the encoder is [m]
-        mask carried{};  ///< the motor moves the load: the play is crossed
-        Real current{0}; ///< behind the amplifier's lag
-        typename sprung_mass<Real>::state second{};
-        typename contact::state friction{};
-        typename Laws::state laws{};
-
-        /// An observer's correction moves the whole axis.
-        void shift(Real dx, Real dv) noexcept {
-            x += dx;
-            load += dx;
-            v += dv;
-        }
-        /// Who leads the axis along a motion moves what the motor drives: the second mass stays where it is.
-        void lead(Real dx, Real dv) noexcept {
-            shift(dx, dv);
-            second.q -= dx;
-            second.w -= dv;
-        }
-        /// Another state in the lanes that `here` picks.
-        void take(const mask& here, const state& other) noexcept {
-            const auto put = [&](Real& to, const Real& from) { to = select(here, from, to); };
-            const auto choose = [&](mask& to, const mask& from) {
-                to = either(both(here, from), both(!here, to));
-            };
-            put(x, other.x);
-            put(v, other.v);
-            put(load, other.load);
-            choose(carried, other.carried);
-            put(current, other.current);
-            put(second.q, other.second.q);
-            put(second.w, other.second.w);
-            for (std::size_t i = 0; i < springs; ++i) {
-                put(friction.force[i], other.friction.force[i]);
-                choose(friction.slips[i], other.friction.slips[i]);
-            }
-            laws = other.laws;
-        }
-        static state at(Real position, Real velocity = Real(0)) noexcept {
-            state s;
-            s.x = s.load = position;
-            s.v = velocity;
-            return s;
-        }
-    };
+    using state = servo_state<Real, contact, Laws>;
     /// What acts on the axis from outside during a step.
     struct surroundings {
         Real time{0};               ///< at the step's start, from the first row of the log [s]
@@ -111,7 +67,8 @@ public:
           coupling_(p.mass * p.coupling), process_mean_(p.process_mean), process_start_(p.process_start),
           drift_(p.drift), inverse_drift_(Real(1) / p.drift_time), half_play_(Real(0.5) * p.play),
           lag_({p.lag}, h, already_checked()), ripple_(p.ripple), cogging_(p.cogging), process_(p.process),
-          along_(p.along), cyclic_(p.cyclic), second_(p.second, h, already_checked()), laws_(p.laws),
+          along_(p.along), cyclic_(p.cyclic), second_(p.second, h, already_checked()),
+          apart_(described::masses_apart(p), h, already_checked()), laws_(p.laws),
           inertia_(second_.present() ? p.mass + second_.inertia() : p.mass),
           friction_(p.friction, inertia_, h, already_checked()) {
         has_dead_zone_ = any(greater(dead_zone_, Real(0)));
@@ -123,6 +80,10 @@ public:
         has_drift_ = !all(equal(drift_, Real(0)));
         has_mean_ = !all(equal(process_mean_, Real(0)));
         level_changes_ = along_.present() || has_drift_ || laws_.at(joint::friction);
+        parts_ = any(apart_.present());
+        half_play_ = select(apart_.present(), Real(0), half_play_);
+        sees_motor_ = greater(Real(p.play_behind), Real(0));
+        has_motor_encoder_ = any(sees_motor_);
         has_play_ = any(greater(half_play_, Real(0)));
         has_shaper_ = laws_.at(joint::command) || has_dead_zone_ || has_limit_ || lag_.present();
         has_ripple_ = ripple_.present() || laws_.at(joint::motor_gain);
@@ -149,6 +110,7 @@ public:
         Real momentum = inertia_ * s.v + h_ * drive;
         if (second_.present()) momentum -= second_.impulse(s.second);
         const Real before = s.v;
+        const auto stuck = s.friction;
         if (!level_changes_ && !has_load_friction_)
             s.v = friction_(s.friction, momentum, before);
         else if (!has_load_friction_)
@@ -156,30 +118,43 @@ public:
         else
             s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point),
                             load_friction_ * abs(push - pull));
+        if (parts_) {
+            const Real level = friction_.level_at(s.apart.w);
+            s.take_friction(apart_.part(s.apart, before, s.v, push, drive - push, level), stuck);
+        }
         if (second_.present()) second_.advance(s.second, before, s.v);
         s.x += half_ * (before + s.v);
         if (has_transmission_)
             transmit(s, point);
         else
             s.load = s.x;
+        if (!parts_) return;
+        apart_.meet(s.apart, s.x, s.v);
+        s.load = select(apart_.present(), s.apart.load, s.load);
     }
 
     /// What the encoder reads of where the load is [m].
     Real reading(const state& s) const noexcept {
-        if (!has_reading_error_) return s.load;
-        Real y = s.load;
-        if (cyclic_.present()) y += cyclic_(s.load);
+        const Real at = seen(s);
+        if (!has_reading_error_) return at;
+        Real y = at;
+        if (cyclic_.present()) y += cyclic_(at);
         if (laws_.at(joint::reading))
-            y += laws_(joint::reading, joint_point<Real>{s.load, s.v, Real(0), Real(0), h_}, s.laws);
+            y += laws_(joint::reading, joint_point<Real>{at, s.v, Real(0), Real(0), h_}, s.laws);
         return y;
+    }
+    /// Where that is which the encoder sits on [m].
+    Real seen(const state& s) const noexcept {
+        return has_motor_encoder_ ? select(sees_motor_, s.x, s.load) : s.load;
     }
     /// The position that reads so, to the first order of the cyclic error [m].
     Real position_of(Real reading) const noexcept {
         return cyclic_.present() ? reading - cyclic_(reading) : reading;
     }
-    /// Velocity of what the encoder sits on: zero while the motor crosses the play [m/s].
-    Real load_velocity(const state& s) const noexcept {
-        return has_play_ ? select(either(s.carried, equal(half_play_, Real(0))), s.v, Real(0)) : s.v;
+    /// Velocity of what the encoder sits on [m/s].
+    Real seen_velocity(const state& s) const noexcept {
+        const Real v = has_play_ ? select(either(s.carried, equal(half_play_, Real(0))), s.v, Real(0)) : s.v;
+        return parts_ ? select(both(apart_.present(), !sees_motor_), s.apart.w, v) : v;
     }
     Real mass() const noexcept { return mass_; }
 
@@ -237,6 +212,8 @@ private:
     amplifier_lag<Real> lag_;
     typename described::sum ripple_, cogging_, process_, along_, cyclic_;
     sprung_mass<Real> second_;
+    play_between_masses<Real> apart_;
+    mask sees_motor_{};
     Laws laws_;
     Real inertia_;
     contact friction_;
@@ -244,7 +221,8 @@ private:
          has_load_friction_ = false, has_coupling_ = false, has_drift_ = false, has_play_ = false,
          has_mean_ = false, level_changes_ = false;
     bool has_shaper_ = false, has_ripple_ = false, has_more_force_ = false, has_transmission_ = false,
-         has_reading_error_ = false; ///< whether any of what may sit at this joint is there
+         has_reading_error_ = false, parts_ = false,
+         has_motor_encoder_ = false; ///< whether any of what may sit at this joint is there
 };
 
 } // namespace quadrant::inline v0

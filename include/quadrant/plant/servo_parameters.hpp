@@ -7,6 +7,7 @@
 #include "amplifier_lag.hpp"
 #include "harmonic_series.hpp"
 #include "joint.hpp"
+#include "play_between_masses.hpp"
 #include "sprung_mass.hpp"
 
 #include <array>
@@ -49,8 +50,12 @@ template <class Real, class Laws> struct servo_parameters {
         number drift{0}, drift_time{1}; ///< level times 1 + drift (1 - exp(-t/drift_time))
         number load_friction{0};        ///< growth of the level with the force that the drive transmits; >= 0
         typename sprung_mass<Real>::parameters second{};
-        number play{0};     ///< between motor and load [m]
-        repeating cyclic{}; ///< of the reading [m] over position
+        number play{0};        ///< between motor and load, the encoder on the load [m]
+        number play_behind{0}; ///< the same, the encoder on the motor [m]
+        number motor_mass{
+            std::numeric_limits<double>::infinity()}; ///< of it, on the motor's side of the play [kg]
+        number motor_friction{std::numeric_limits<double>::infinity()}; ///< of the level, at most, there [N]
+        repeating cyclic{};                                             ///< of the reading [m] over position
         Laws laws{};
     };
     /// Several axes side by side, one a lane; the last one again in the lanes that are left over.
@@ -96,6 +101,9 @@ template <class Real, class Laws> struct servo_parameters {
         out.drift = each([](const Single& p) { return p.drift; });
         out.drift_time = each([](const Single& p) { return p.drift_time; });
         out.play = each([](const Single& p) { return p.play; });
+        out.play_behind = each([](const Single& p) { return p.play_behind; });
+        out.motor_mass = each([](const Single& p) { return p.motor_mass; });
+        out.motor_friction = each([](const Single& p) { return p.motor_friction; });
         out.cyclic = waves([](const Single& p) -> auto& { return p.cyclic; });
         typed(out.second.mass, [](const Single& p) { return p.second.mass; });
         typed(out.second.centre, [](const Single& p) { return p.second.centre; });
@@ -118,6 +126,16 @@ template <class Real, class Laws> struct servo_parameters {
             typed(f.give[i], [&](const Single& p) { return p.friction.give[i]; });
         }
         if constexpr (requires { Laws(count, axis_of); }) out.laws = Laws(count, axis_of);
+        return out;
+    }
+    /// What parts at the play.
+    static typename play_between_masses<Real>::parameters masses_apart(const parameters& p) {
+        typename play_between_masses<Real>::parameters out;
+        out.width = p.play + p.play_behind;
+        out.mass = p.mass;
+        out.motor_mass = p.motor_mass;
+        out.motor_level = p.motor_friction;
+        out.viscous = p.friction.viscous.value();
         return out;
     }
     static const parameters& checked(const parameters& p, Real h) {
@@ -155,6 +173,8 @@ template <class Real, class Laws> struct servo_parameters {
         require_finite<Real>("servo_axis.drift", p.drift);
         require_positive<Real>("servo_axis.drift_time", p.drift_time);
         require_not_negative<Real>("servo_axis.play", p.play);
+        require_not_negative<Real>("servo_axis.play_behind", p.play_behind);
+        (void)play_between_masses<Real>(masses_apart(p), h);
         (void)amplifier_lag<Real>({p.lag}, h);
         (void)sprung_mass<Real>(p.second, h);
         (void)contact(p.friction, p.mass, h);

@@ -13,6 +13,7 @@ inline constexpr effect coulomb_friction{
     .joins = joint::friction,
     .exciting_motion = "slow strokes in both directions at two constant speeds",
     .everyday = true,
+    .of_speed = true,
     .shows = "a jump with the direction",
     .keys = {machine_key{.name = "coulomb_N",
                          .rule = detail::rule::not_negative,

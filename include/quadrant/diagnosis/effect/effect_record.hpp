@@ -39,6 +39,11 @@ struct effect {
     /// Every axis has some of it: effects of this kind are tried together from the start, as in a linear
     /// regression.
     bool everyday = false;
+    /// A law of the speed and nothing else: a motion of one speed does not distinguish it from another.
+    bool of_speed = false;
+    /// Calibrated values take its place on many records, and a fit that begins at them does not find back: it
+    /// is searched from the described values, too.
+    bool bends_calibration = false;
     /// A part of the friction that the file describes: where it describes none, this is free with the level,
     /// and no cause beside it.
     bool of_described_friction = false;

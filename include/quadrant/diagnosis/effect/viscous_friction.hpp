@@ -12,7 +12,9 @@ inline constexpr effect viscous_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "constant speeds, slow and fast, in both directions",
+    .equivalent = {"coulomb_friction"}, // of one speed
     .everyday = true,
+    .of_speed = true,
     .shows = "proportional to velocity",
     .keys = {machine_key{.name = "viscous_N_s_per_m",
                          .rule = detail::rule::not_negative,

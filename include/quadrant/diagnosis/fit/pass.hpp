@@ -69,8 +69,8 @@ public:
             state_.lead(dx, dv);
         else
             state_.shift(dx, dv);
-        begun_at_ = state_.load;
-        begun_with_ = newer_.load_velocity(state_);
+        begun_at_ = newer_.seen(state_);
+        begun_with_ = newer_.seen_velocity(state_);
     }
     /// The part of the period in which the older command acts.
     void begin(const pass_input& in, std::size_t k) {
@@ -89,12 +89,12 @@ public:
         if (!in.acceleration) return;
         // Second difference of the model's positions. Its corrections at row k are taken out: the velocity's by
         // the jump between the two periods, the position's because each way begins behind it.
-        const Real way = state_.load - begun_at_, period(in.period);
+        const Real way = newer_.seen(state_) - begun_at_, period(in.period);
         keep(in, in.acceleration, k,
              k == 0 ? Real(0)
                     : ((ended_with_ - begun_with_) * period + way - way_) * Real(1 / (in.period * in.period)));
         way_ = way;
-        ended_with_ = newer_.load_velocity(state_);
+        ended_with_ = newer_.seen_velocity(state_);
     }
 
 private:

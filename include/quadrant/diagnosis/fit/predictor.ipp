@@ -55,7 +55,8 @@ QUADRANT_DIAGNOSIS_DECL unsigned predictor::joints_of(const plant_model& p) cons
           p.friction.along.count > 0, p.ripple.count > 0, p.cogging.count > 0, p.cutting.count > 0,
           p.cyclic.count > 0, p.gravity.torque != 0, p.friction.drift_rate != 0, p.mode.mass > 0,
           p.friction.excess > 0, p.friction.stribeck_exponent != 1,
-          std::isfinite(p.friction.contact.attraction), p.friction.load != 0, p.backlash > 0, p.lag > 0})
+          std::isfinite(p.friction.contact.attraction), p.friction.load != 0, p.backlash > 0,
+          p.backlash_behind > 0, std::isfinite(p.motor_mass), p.lag > 0})
         out = 2 * out + there;
     return out;
 }

@@ -29,7 +29,7 @@ QUADRANT_DIAGNOSIS_DECL closed_loop_run simulate_closed_loop(
         const double reading = newer.reading(s) + (sensor_noise.empty() ? 0 : sensor_noise[k]);
         out.position[k] = q > 0 ? std::round(reading / q) * q : reading;
         // A tachometer where the log has one; else the velocity follows from what the encoder reads.
-        const double velocity = !log.velocity.empty() ? newer.load_velocity(s)
+        const double velocity = !log.velocity.empty() ? newer.seen_velocity(s)
                                 : k == 0              ? 0
                                                       : (out.position[k] - out.position[k - 1]) / period;
         out.command[k] =

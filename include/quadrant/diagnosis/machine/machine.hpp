@@ -44,6 +44,9 @@ struct plant_description {
     std::optional<double> friction_drift, friction_drift_time_s;
     std::optional<double> mode_mass_kg, mode_frequency_Hz, mode_damping; ///< second mass, part of mass_kg
     std::optional<double> backlash_m, spring_N_per_m;
+    std::optional<double> backlash_behind_m; ///< play behind an encoder on the motor
+    /// Of mass and Coulomb friction what is on the motor's side of the play; absent: all.
+    std::optional<double> backlash_motor_mass_kg, backlash_motor_coulomb_N;
     std::optional<double> coupling; ///< this axis' acceleration gains coupling times the other's
     std::optional<double> ripple, ripple_period_m, ripple_phase_rad;
     /// Torque on a rotary axis: -gravity_torque_Nm sin(q - gravity_phase_rad).

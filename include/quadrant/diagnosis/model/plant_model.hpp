@@ -72,7 +72,12 @@ struct plant_model {
     struct mode_box {
         double mass = 0, frequency_Hz = 100, damping = 0.02; ///< frequency and damping with the first mass held
     } mode;
-    double backlash = 0; ///< play between motor and encoder [m]
+    double backlash = 0;        ///< play between motor and encoder [m]
+    double backlash_behind = 0; ///< play behind the encoder, which sits on the motor [m]
+    /// Of the mass [kg] and of the friction's level [N] what is on the motor's side of the play; all of it
+    /// where nothing is said.
+    double motor_mass = std::numeric_limits<double>::infinity(),
+           motor_coulomb = std::numeric_limits<double>::infinity();
     // process
     harmonics cutting;        ///< [N] over time
     double cutting_mean = 0;  ///< [N]
@@ -92,6 +97,7 @@ struct plant_model {
         return turns_level ? gravity.torque
                            : std::max(gravity.torque + payload.gravity() - payload_as_described.gravity(), 0.0);
     }
+    bool has_play() const { return backlash > 0 || backlash_behind > 0; }
     /// What acts on the load at a position whether the axis moves or not [N].
     double static_force(double position) const {
         return constant_force - spring * position - weight() * std::sin(position - gravity.phase);
@@ -153,6 +159,9 @@ struct plant_model {
             mode = {*d.mode_mass_kg, d.mode_frequency_Hz.value_or(mode.frequency_Hz),
                     d.mode_damping.value_or(mode.damping)};
         backlash = d.backlash_m.value_or(0);
+        backlash_behind = d.backlash_behind_m.value_or(0);
+        motor_mass = d.backlash_motor_mass_kg.value_or(motor_mass);
+        motor_coulomb = d.backlash_motor_coulomb_N.value_or(motor_coulomb);
         if (a.process.fundamental_Hz)
             cutting = {1 / *a.process.fundamental_Hz, a.process.force_N, a.process.phase_rad};
         cutting_mean = a.process.mean_N.value_or(0);

@@ -180,26 +180,26 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
     auto starts = added.starts(look);
     if (found) {
         auto where = detail::begun_where(*found, starts);
-        starts.clear();
-        if (where) starts.push_back(std::move(*where));
+        starts.assign(where ? 1 : 0, where.value_or(std::vector<parameter>()));
     }
     for (auto& start : starts) {
         plant_model plant = from.fit.plant;
         added.join(plant, look);
         std::vector<parameter> ps;
+        const bool bends = added.bends_calibration && start.size() > 1; // slopes without it lead away from it
         known_slopes known{.from = &slopes};
         for (std::size_t i = 0; i < resumed_from.size(); ++i) {
             // The effect's own parameters replace the described ones.
             const parameter& q = resumed_from[i];
             const auto is_it = [&](const parameter& p) { return &p.of(plant) == &q.of(plant); };
-            if (std::none_of(start.begin(), start.end(), is_it) &&
-                !detail::gives_way_to_constant(q, plant, start))
+            if (std::ranges::none_of(start, is_it) && !detail::gives_way_to_constant(q, plant, start))
                 ps.push_back(q), known.which.push_back(i);
         }
         const std::size_t own = ps.size();
         ps.insert(ps.end(), start.begin(), start.end());
         if (look.record.closed() && !start.empty()) detail::begin_at_the_best(ps, own, fit, plant);
-        courses_.emplace_back(fit, plant, ps, steps, std::move(known), 0);
+        courses_.emplace_back(fit, plant, ps, bends ? 4 * steps : steps, bends ? known_slopes() : known,
+                              bends ? 4 : 0);
     }
 }
 

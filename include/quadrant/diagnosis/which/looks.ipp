@@ -48,7 +48,7 @@ inline bool contradicts_motion(const axis_case& c) {
 /// readings best, and the forces along the motion do not ask for it.
 inline bool answers_too_little(const axis_case& c) {
     if (c.axis.actuator.command_is != command_origin::measured || c.axis.drive.closes() ||
-        c.best().effects.empty() || c.models.over() || c.best().fit.plant.backlash > 0)
+        c.best().effects.empty() || c.models.over() || c.best().fit.plant.has_play())
         return false;
     return answers_less(c.best(), c.path.front(), c.limits.least_shrink);
 }
@@ -65,7 +65,7 @@ inline bool damps_what_it_lacks(const axis_case& c) {
 inline bool open_by_measured_command(const axis_case& c) {
     return c.axis.actuator.command_is == command_origin::measured && !c.axis.drive.closes() &&
            !c.models.over() && !c.at_floor() && !c.within_its_laws() && !c.best().effects.empty() &&
-           !(c.best().fit.plant.backlash > 0);
+           !c.best().fit.plant.has_play();
 }
 
 /// Why an axis is looked at again with models led along its motion, and what that look leaves along it at most,
@@ -75,8 +75,8 @@ struct second_look {
     double leaves_at_most = 0;
 };
 inline second_look along_its_motion(const axis_case& c) {
-    const bool stands = contradicts_motion(c), little = answers_too_little(c), open = open_by_measured_command(c),
-               damps = damps_what_it_lacks(c);
+    const bool stands = contradicts_motion(c), little = answers_too_little(c),
+               open = open_by_measured_command(c), damps = damps_what_it_lacks(c);
     if (!stands && !little && !open && !damps) return {};
     return {stands   ? "standing where the axis moves"
             : little ? "answering the measured command too little"

@@ -61,8 +61,12 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
                                                      begins_at start) const {
     if (which.empty()) return;
     const fitter fit(record_.observer, record_.score);
+    const bool bent = record_.replayed() && from.stops_at_a_tolerance();
+    const auto begins_as_described = [&](std::size_t i) {
+        return bent || models[i].effects.back()->bends_calibration;
+    };
     std::vector<candidate> origins{from};
-    if (record_.replayed() && from.stops_at_a_tolerance()) origins.push_back(as_described(from));
+    if (std::any_of(which.begin(), which.end(), begins_as_described)) origins.push_back(as_described(from));
     std::vector<std::vector<double>> left, innovation;
     std::vector<shared_slopes> slopes;
     for (const candidate& origin : origins) {
@@ -84,8 +88,10 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
         if (late) return;
         std::vector<first_look> looks;
         std::vector<fit_course> courses;
+        std::vector<std::size_t> model_of; // each look
         for (const std::size_t i : some)
-            for (std::size_t j = 0; j < origins.size(); ++j) {
+            for (std::size_t j = 0; j < (begins_as_described(i) ? origins.size() : 1); ++j) {
+                model_of.push_back(i);
                 const screening look{axis_.plant,          axis_.tolerance, record_,
                                      origins[j].fit.plant, left[j],         innovation[j]};
                 looks.emplace_back(fit, origins[j], *models[i].effects.back(), look, slopes[j],
@@ -99,8 +105,9 @@ QUADRANT_DIAGNOSIS_DECL void model_fits::sketch_each(const candidate& from,
         for (std::size_t j = 0; j < looks.size(); ++j) {
             for (fit_course& c : looks[j].courses()) c = std::move(*next++);
             fit_result best = looks[j].best();
-            fit_result& kept = models[some[j / origins.size()]].fit;
-            if (j % origins.size() == 0 || best.objective < kept.objective) kept = std::move(best);
+            fit_result& kept = models[model_of[j]].fit;
+            const bool first = j == 0 || model_of[j] != model_of[j - 1];
+            if (first || best.objective < kept.objective) kept = std::move(best);
         }
     };
     in_groups(which, 4, sketch, 1, models);

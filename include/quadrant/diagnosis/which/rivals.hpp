@@ -4,6 +4,7 @@
 #include "../log/signals.hpp"
 #include "../result/resample.hpp"
 #include "axis_case.hpp"
+#include "one_speed.hpp"
 
 #include <array>
 #include <span>
@@ -15,8 +16,9 @@ struct rival {
     candidate model;
     const effect* name = nullptr;
     double weight = 0;
-    bool same = false;     ///< not distinguished from the cause by this record
-    bool unlikely = false; ///< then: beside the others that are not; not told
+    bool same = false;         ///< not distinguished from the cause by this record
+    bool unlikely = false;     ///< then: beside the others that are not; not told
+    bool of_one_speed = false; ///< the motion has one speed, at which it is one law with the cause
 
     bool unlisted() const { return name->box.empty(); } ///< a form that no name stands for
 };
@@ -32,7 +34,7 @@ inline bool own_number_ends_at_a_bound(const rival& r) {
 /// the motor's motion, and an error of the reading is no force.
 inline bool shows_along_motion(const candidate& m) {
     const auto reads = [](const effect* e) { return e->joins == joint::reading; };
-    return !(m.fit.plant.backlash > 0) && std::none_of(m.effects.begin(), m.effects.end(), reads);
+    return !m.fit.plant.has_play() && std::none_of(m.effects.begin(), m.effects.end(), reads);
 }
 
 /// Whether a model moves less under the same command than another, by at least this share. Friction that grows

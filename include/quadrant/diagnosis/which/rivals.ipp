@@ -139,7 +139,8 @@ class left_by_names {
 public:
     left_by_names(const axis_case& c, std::size_t which, const candidate& without)
         : case_(c), own_(*c.best().effects[which]), energy_(square(c.models.held_out_force(c.best()))),
-          least_(without.total + c.limits.margin), explained_(square(law_error * explained_by(c, which))) {
+          least_(without.total + c.limits.margin), explained_(square(law_error * explained_by(c, which))),
+          by_speed_(explained_ * square(std::max(1.0, speeds_of(c.record) / law_error))) {
         if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(c.floor_force()));
         if (c.tested_apart()) there_ = square(c.second_log(c.best()).force);
         unexplained_there_ = there_ - square(c.floor_force());
@@ -159,6 +160,10 @@ public:
         const bool within = near && more < 1 && stands_in(r, first);
         const bool equivalent = may_be_one(*r.name, own_) && !case_.record.closed() &&
                                 excess(r) < std::max(told_apart * energy_, explained_) && stands_in(r, first);
+        // Laws of the speed that differ by no more than the speeds of this motion: only how common they are
+        // counts.
+        r.of_one_speed = &r != &first && r.name->of_speed && own_.of_speed && may_be_one(*r.name, own_) &&
+                         !case_.record.closed() && excess(r) < by_speed_ && stands_in(r, first);
         const double commoner = r.name->prior.odds / own_.prior.odds, odds = std::min(1.0, commoner);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * first.weight);
         if (equivalent) r.weight = std::max(r.weight, odds / (1 + odds) * first.weight);
@@ -176,7 +181,9 @@ public:
             r.weight = std::max(r.weight, commoner * std::exp(-more) * first.weight);
             if (&r != &first) first.weight = std::max(first.weight, std::exp(-less) / commoner * r.weight);
         }
-        r.same = !r.unlisted() && (within || equivalent || (pays && r.weight > 0.01 && stands_in(r, first)));
+        if (r.of_one_speed) r.weight = commoner * first.weight;
+        r.same = !r.unlisted() &&
+                 (r.of_one_speed || within || equivalent || (pays && r.weight > 0.01 && stands_in(r, first)));
     }
 
 private:
@@ -203,7 +210,7 @@ private:
 
     const axis_case& case_;
     const effect& own_;
-    double energy_, least_, explained_, unexplained_ = 0, there_ = 0, unexplained_there_ = 0;
+    double energy_, least_, explained_, by_speed_, unexplained_ = 0, there_ = 0, unexplained_there_ = 0;
     mutable std::optional<double> force_of_own_{};
 };
 
