@@ -115,6 +115,7 @@
 #include "plant/linear_motor.hpp"
 #include "plant/motor_load.hpp"
 #include "plant/periodic.hpp"
+#include "plant/play_between_masses.hpp"
 #include "plant/servo_axis.hpp"
 #include "plant/sprung_mass.hpp"
 #include "plant/three_phase_drive.hpp"

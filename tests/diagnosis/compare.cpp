@@ -2,6 +2,7 @@
 #include "quadrant/diagnosis/compare.hpp"
 #include "quadrant/diagnosis/init.hpp"
 #include "quadrant/diagnosis/log/at_period.hpp"
+#include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/write_comparison.hpp"
 #include "workshop.hpp"
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSL-1.0
 // Long: one reader: a case for each key of its map and each thing that a foreign log does.
 #include "quadrant/diagnosis/check_physics.hpp"
+#include "quadrant/diagnosis/import/own_header.hpp"
+#include "quadrant/diagnosis/import/physics.hpp"
+#include "quadrant/diagnosis/import/read_map.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "refusal.hpp"
 #include "workshop.hpp"
@@ -8,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 using namespace quadrant::diagnosis;
@@ -269,6 +273,27 @@ TEST_CASE(
     CHECK(stated < 2e-5); // the acceleration is 90 m/s^2: 1/8 of it times (1 ms)^2 at most
     CHECK(x.command[10] == 1);
     CHECK(x.command.back() == -1);
+}
+
+TEST_CASE("import: one late stamp is named, and a first row that alone is off may be left out") {
+    const auto rows = [](double first, double of_row_900) {
+        std::string out = "t_s,x_pos_m,x_cmd_V\n";
+        for (int k = 0; k < 1000; ++k)
+            out += fmt::format("{:.6f},{:.9f},1\n",
+                               k == 0     ? first
+                               : k == 900 ? of_row_900
+                                          : 0.01 + 1e-3 * k,
+                               0.1 * std::sin(0.03 * k));
+        return out;
+    };
+    const std::string first = rows(0.0106, 0.91), late = rows(0.01, 0.9094);
+    const auto map = map_of_header(first, "in.csv");
+    CHECK(refusal_of([&] { import_log(map, late, "in.csv"); }) ==
+          "in.csv:902:1: the step to this stamp is 0.0004 s, and the period 0.001 s: import with --resample");
+    CHECK(refusal_of([&] { import_log(map, first, "in.csv"); }) ==
+          "in.csv:3:1: the step to this stamp is 0.0004 s, and the period 0.001 s: import with --resample, or "
+          "without the first row (--from 0.0004)");
+    CHECK(import_log(map, first, "in.csv", {.from_s = 0.0004}).log.samples == 999);
 }
 
 TEST_CASE("import: a part of a record is taken by its time, with and without resampling") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Units and signs of an imported log, checked by the physics of the axis.
 #include "quadrant/diagnosis/check_physics.hpp"
+#include "quadrant/diagnosis/import/physics.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "refusal.hpp"
 #include "workshop.hpp"

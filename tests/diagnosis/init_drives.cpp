@@ -4,6 +4,7 @@
 #include "drive_simulator.hpp"
 #include "quadrant/diagnosis/init.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
+#include "quadrant/diagnosis/read_machine.hpp"
 #include "refusal.hpp"
 #include "shared.hpp"
 

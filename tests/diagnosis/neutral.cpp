@@ -4,6 +4,7 @@
 // within 1e-6: an effect of typical size moves the gap by less than a thousand times the gap, a billionth of
 // it by less than a millionth. A jump at the neutral value is larger by orders, however small the key.
 #include "quadrant/diagnosis/effect/effect_list.hpp"
+#include "quadrant/diagnosis/machine_file/machine_keys.hpp"
 #include "quadrant/diagnosis/read_machine.hpp"
 #include "quadrant/diagnosis/simulate.hpp"
 #include "quadrant/diagnosis/write_machine.hpp"
@@ -117,25 +118,17 @@ std::optional<neutral_place> place_of(const std::string& key) {
     return {};
 }
 /// Keys without a neutral value: what every machine has, and what only says where another key's effect is.
-const std::set<std::string> without_neutral{"actuator.command_is", // a word
-                                            "plant.mass_kg",
-                                            "plant.force_constant_N_per_V",
-                                            "plant.force_constant_N_per_A",
-                                            "plant.stribeck_velocity_m_per_s",
-                                            "plant.cogging_period_m",
-                                            "plant.friction_position_period_m",
-                                            "plant.gms_weights", // shares of what is there
-                                            "plant.friction_drift_time_s",
-                                            "plant.mode_frequency_Hz",
-                                            "plant.mode_damping",
-                                            "plant.ripple_period_m",
-                                            "actuator.dac_bits", // rounding is a jump by nature
-                                            "actuator.dac_range_V",
-                                            "encoder.cyclic_period_m",
-                                            "process.fundamental_Hz",
-                                            "controller.position_gain_per_s",
-                                            "controller.velocity_gain_V_s_per_m",
-                                            "controller.velocity_filter_Hz"};
+const std::set<std::string> without_neutral{
+    "actuator.command_is", // a word
+    // Two bodies, however narrow the play.
+    "plant.backlash_behind_m", "plant.backlash_motor_mass_kg", "plant.backlash_motor_coulomb_N",
+    "plant.mass_kg", "plant.force_constant_N_per_V", "plant.force_constant_N_per_A",
+    "plant.stribeck_velocity_m_per_s", "plant.cogging_period_m", "plant.friction_position_period_m",
+    "plant.gms_weights", // shares of what is there
+    "plant.friction_drift_time_s", "plant.mode_frequency_Hz", "plant.mode_damping", "plant.ripple_period_m",
+    "actuator.dac_bits", // rounding is a jump by nature
+    "actuator.dac_range_V", "encoder.cyclic_period_m", "process.fundamental_Hz",
+    "controller.position_gain_per_s", "controller.velocity_gain_V_s_per_m", "controller.velocity_filter_Hz"};
 /// Lost commands are found in the log, and that they are looked for at all is a yes or a no. Were it to jump no
 /// longer, the test would fail, so that this line goes.
 constexpr std::string_view jumps = "actuator.loss_probability";

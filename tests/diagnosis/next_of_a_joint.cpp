@@ -7,6 +7,8 @@
 #include <quadrant/diagnosis/next/next_experiment.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
 
+#include <nlohmann/json.hpp>
+
 using namespace quadrant::diagnosis;
 
 namespace {

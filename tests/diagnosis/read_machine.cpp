@@ -457,6 +457,10 @@ TEST_CASE("read_machine: every effect that a file describes is in the plant that
         return plant_model(read_machine(with(path, value), "m").axes[0], 2e-7);
     };
     CHECK(simulated(plant + "/backlash_m", "1e-5").backlash == 1e-5);
+    CHECK_FALSE(simulated(plant + "/backlash_m", "1e-5").play_has_masses());
+    const auto parted = simulated(plant + "/backlash_motor_mass_kg", "1");
+    CHECK(parted.mass_before_the_play() == 1);
+    CHECK(simulated(plant + "/backlash_motor_coulomb_N", "3").motor_coulomb == 3);
     CHECK(simulated(plant + "/spring_N_per_m", "300").spring == 300);
     CHECK(simulated(plant + "/coupling", "-0.02").coupling == -0.02);
     CHECK(simulated("/axes/x/actuator/lag_s", "0.001").lag == 0.001);
@@ -473,6 +477,13 @@ TEST_CASE("read_machine: every effect that a file describes is in the plant that
     CHECK(contact.share(1e-5) == doctest::Approx(1 - std::exp(-1.0)));
     for (double z : {2e-6, 5e-6, 2e-5, 4e-5}) // four straight pieces stay near the exponential
         CHECK(std::abs(contact.share(z) - (1 - std::exp(-z / 1e-5))) < 0.07);
+}
+
+TEST_CASE("read_machine: a play is on one side of the encoder, and what is before it is a part of the mass") {
+    CHECK(refused_value(plant + "/backlash_behind_m", "1e-5").find("backlash_motor_mass_kg") !=
+          std::string::npos); // it says nothing without
+    CHECK(refused_value(plant + "/backlash_motor_mass_kg", "1e6").find("must lie below mass_kg") !=
+          std::string::npos);
 }
 
 TEST_CASE("read_machine: excluded effects are the format's names") {

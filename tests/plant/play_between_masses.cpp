@@ -81,6 +81,51 @@ TEST_CASE("play_between_masses: forces keep the momentum, contact takes energy a
     }
 }
 
+TEST_CASE("play_between_masses: with friction, drag and a spring no step adds energy either") {
+    axis::parameters p = loose_axis();
+    p.friction.level = 20_N;
+    p.friction.viscous = 30_N / 1_mps;
+    p.friction.weights[0] = 1;
+    p.motor_friction = 6;
+    const axis plant(p, step);
+    auto s = axis::state::at(0);
+    std::mt19937_64 random{6};
+    std::uniform_real_distribution<double> size(-300, 300);
+    for (int k = 0; k < 40000; ++k) {
+        const double force = k % 400 < 200 ? size(random) : 0, held = energy(s);
+        plant.advance(s, force, {});
+        if (force == 0) REQUIRE(energy(s) <= held * (1 + 1e-12));
+    }
+}
+
+TEST_CASE(
+    "play_between_masses: cogging pushes the motor, a constant force the load, and friction that has drifted "
+    "away brakes neither") {
+    axis::parameters p = loose_axis();
+    p.cogging.period = 1;
+    p.cogging.cosine[0] = 12;
+    const axis with_cogging(p, step);
+    auto s = axis::state::at(0);
+    with_cogging.advance(s, 0, {});
+    CHECK(s.v == doctest::Approx(12 * step / motor));
+    CHECK(s.apart.w == 0);
+    p = loose_axis();
+    p.constant = 12;
+    const axis with_constant(p, step);
+    s = axis::state::at(0);
+    with_constant.advance(s, 0, {});
+    CHECK(s.v == 0);
+    CHECK(s.apart.w == doctest::Approx(12 * step / (mass - motor)));
+    p = loose_axis();
+    p.friction.level = 50_N;
+    p.drift = -1;
+    p.drift_time = 1e-3;
+    const axis drifted(p, step);
+    s = axis::state::at(0, 0.1);
+    drifted.advance(s, 0, {.time = 1, .other_acceleration = 0});
+    CHECK(s.apart.w == doctest::Approx(0.1));
+}
+
 TEST_CASE("play_between_masses: behind an encoder on the motor the reading is the motor's") {
     axis::parameters p = loose_axis();
     p.play = 0;

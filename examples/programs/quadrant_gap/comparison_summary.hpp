@@ -4,6 +4,7 @@
 
 #include <quadrant/diagnosis/compare.hpp>
 #include <quadrant/diagnosis/init.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
 
 /// A comparison of two logs in words, and as text for a terminal of 100 columns.
 namespace quadrant_gap {

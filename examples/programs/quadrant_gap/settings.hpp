@@ -118,7 +118,7 @@ inline settings_text linuxcnc_lines(const machine_description& m) {
         const plant_model p(*a, 0);
         const double units = units_of(*a);
         out.text += fmt::format("\n[JOINT_{}]\n# axis {}, machine unit {}\n", joint, a->name, unit_of(*a));
-        const double lost = a->transmission.backlash_m.value_or(0);
+        const double lost = a->transmission.backlash_m.value_or(p.backlash_behind);
         if (p.cyclic.count > 0)
             out.text +=
                 fmt::format("# COMP_FILE, COMP_FILE_TYPE = 1: position, forward and reverse of the table "
@@ -196,7 +196,7 @@ inline settings_text drive_values(const machine_description& m) {
         row("Coulomb feedforward", p.friction.coulomb / kf, u);
         if (p.friction.excess > 0) row("friction at rest", p.friction.coulomb + p.friction.excess, force);
         row("offset against the constant force", -p.constant_force / kf, u);
-        row("backlash", p.backlash, length);
+        row("backlash", p.backlash + p.backlash_behind, length);
         if (p.mode.mass > 0) {
             const double first = p.moving_mass() - p.mode.mass,
                          pole = first > 0 ? p.mode.frequency_Hz * std::sqrt(1 + p.mode.mass / first) : 0;
@@ -248,7 +248,7 @@ inline settings_text compensation_table(const machine_description& m, const span
     constexpr std::size_t most = 4000;
     for (const axis_description& a : m.axes) {
         const plant_model p(a, 0);
-        const double lost = a.transmission.backlash_m.value_or(0);
+        const double lost = a.transmission.backlash_m.value_or(p.backlash_behind);
         const bool pushes = p.cogging.count > 0 || p.spring != 0 || p.weight() != 0 || p.constant_force != 0,
                    shifts = p.cyclic.count > 0 || lost > 0;
         if (!(pushes || shifts)) continue;

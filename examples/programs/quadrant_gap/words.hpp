@@ -165,9 +165,10 @@ inline std::string left_by_calibration(const axis_result& a) {
     constexpr double closed = 1.5; // of the floor
     if (a.positions_only || !(a.gap_after.force_rms_N > closed * a.gap.noise_floor_force_rms_N))
         return ", nothing is missing";
-    return fmt::format("; {} are left then, less than machines inside the tolerances differ by: what causes it "
-                       "shows once mass, force constant and friction are known better",
-                       quantity(a.gap_after.force_rms_N, "N"));
+    return fmt::format(
+        "; that leaves {}, by which machines inside these tolerances may differ: a cause shows once "
+        "mass, force constant and friction are known better",
+        quantity(a.gap_after.force_rms_N, "N"));
 }
 
 inline std::string sentence_of_a_linear_axis(const diagnosis_result& d, const axis_result& a) {

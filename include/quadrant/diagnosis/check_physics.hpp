@@ -3,6 +3,7 @@
 #include "../base/version.hpp"
 #include "import_log.hpp"
 #include "machine/machine.hpp"
+#include "text/bad_input.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 

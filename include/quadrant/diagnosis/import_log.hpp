@@ -4,6 +4,7 @@
 #include "import/import_choice.hpp"
 #include "import/map.hpp"
 #include "log/log.hpp"
+#include "text/bad_input.hpp"
 
 #include <filesystem>
 #include <span>

@@ -58,13 +58,22 @@ private:
     /// Each row as it stands. What read_log could not take is refused here, with the place in the file.
     void keep_rows() {
         const foreign_table& in = tables_.front();
-        const auto clock = clock_of_rows(in.t, in.written);
+        std::vector<double> stamps;
+        std::vector<std::size_t> line;
+        for (std::size_t k = 0; k < in.t.size(); ++k)
+            if (wanted(in.t[k])) stamps.push_back(in.t[k]), line.push_back(in.line[k]);
+        const auto clock = stamps.size() > 2 ? clock_of_rows(stamps, in.written) : row_clock{.even = true};
         if (!clock.even && clock.spread > most_spread)
             throw bad_input(
-                files_.front().name, in.line[clock.worst], 1,
-                fmt::format("the stamps jitter by {:.2g} of the period of {:.4g} s, most of all here: import "
-                            "with --resample",
-                            clock.jitter, clock.period));
+                files_.front().name, line[clock.worst_step], 1,
+                fmt::format("the step to this stamp is {:.3g} s, and the period {:.3g} s: import with "
+                            "--resample{}",
+                            stamps[clock.worst_step] - stamps[clock.worst_step - 1], clock.period,
+                            clock.worst_step == 1 &&
+                                    clock_of_rows(std::span(stamps).subspan(1), in.written).spread <=
+                                        most_spread
+                                ? fmt::format(", or without the first row (--from {:.6g})", stamps[1])
+                                : std::string()));
         own_text out(tables_, false, teller());
         out.head();
         std::vector<double> row;

@@ -3,6 +3,7 @@
 #include "../base/version.hpp"
 #include "init/request.hpp"
 #include "log/log.hpp"
+#include "text/bad_input.hpp"
 
 namespace quadrant::inline v0::diagnosis {
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "../base/version.hpp"
 #include "log/log.hpp"
+#include "text/bad_input.hpp"
 
 #include <filesystem>
 #include <istream>

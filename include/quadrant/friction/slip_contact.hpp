@@ -116,10 +116,10 @@ public:
             s, momentum, v, [&](const Real& level) { return level * (Real(1) + change) + added; }, added);
     }
 
-    /// What the friction is at a velocity, slipping [N].
-    Real level_at(Real v) const noexcept {
-        const auto forward = greater_equal(v, Real(0));
-        const Real level = select(forward, forward_.level, backward_.level);
+    /// The friction's level at a velocity, or where it is zero as a force `pushes` from rest [N].
+    Real level_at(Real v, Real pushes, Real change = Real(0), Real added = Real(0)) const noexcept {
+        const auto forward = greater(select(equal(v, Real(0)), pushes, v), Real(0));
+        const Real level = select(forward, forward_.level, backward_.level) * (Real(1) + change) + added;
         return falls_ ? level + excess_at(forward, v) : level;
     }
 

@@ -24,7 +24,8 @@ namespace quadrant::inline v0 {
 ///                 load_friction |motor - (constant - spring x - gravity sin(x - gravity_phase))| to the level: what a gear
 ///                 carries between the motor and the forces on its load
 ///   transmission  `sprung_mass` on the axis; play between motor and load: `backlash`, or with a motor_mass
-///                 `play_between_masses`, gear, spring, gravity and process behind it
+///                 `play_between_masses`: cogging before it, what else acts and viscous friction behind it, and no
+///                 sprung mass or law of a caller beside it
 ///   reading       load + cyclic(load); with play_behind the motor's
 /// A joint that is neutral in every lane costs nothing. Laws: what a caller adds at the joints
 /// (`no_joint_laws`: nothing).
@@ -99,9 +100,13 @@ public:
         const Real x = s.x + half_ * s.v, time = now.time + half_; // in the middle of the step
         const auto point = [&, v = s.v] { return joint_point<Real>{x, v, command, time, h_}; };
         const Real push = motor(s, command, x, point), pull = load(x);
-        Real drive = push + pull;
+        Real drive = push + pull, of_motor = push;
         if (has_more_force_) {
-            if (cogging_.present()) drive += cogging_(x);
+            if (cogging_.present()) {
+                const Real cogging = cogging_(x);
+                drive += cogging;
+                of_motor += cogging;
+            }
             if (process_.present()) drive += process_(time + process_start_);
             if (has_mean_) drive += process_mean_;
             if (has_coupling_) drive += coupling_ * now.other_acceleration;
@@ -111,16 +116,19 @@ public:
         if (second_.present()) momentum -= second_.impulse(s.second);
         const Real before = s.v;
         const auto stuck = s.friction;
-        if (!level_changes_ && !has_load_friction_)
+        Real change(0), added(0);
+        if (!level_changes_ && !has_load_friction_) {
             s.v = friction_(s.friction, momentum, before);
-        else if (!has_load_friction_)
-            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point));
-        else
-            s.v = friction_(s.friction, momentum, before, change_of_level(s, time, point),
-                            load_friction_ * abs(push - pull));
+        } else {
+            change = change_of_level(s, time, point);
+            if (has_load_friction_) added = load_friction_ * abs(push - pull);
+            s.v = has_load_friction_ ? friction_(s.friction, momentum, before, change, added)
+                                     : friction_(s.friction, momentum, before, change);
+        }
         if (parts_) {
-            const Real level = friction_.level_at(s.apart.w);
-            s.take_friction(apart_.part(s.apart, before, s.v, push, drive - push, level), stuck);
+            const Real of_load = drive - of_motor;
+            const Real level = friction_.level_at(s.apart.w, of_load, change, added);
+            s.take_friction(apart_.part(s.apart, before, s.v, of_motor, of_load, level), stuck);
         }
         if (second_.present()) second_.advance(s.second, before, s.v);
         s.x += half_ * (before + s.v);

@@ -19,7 +19,7 @@ QUADRANT_DIAGNOSIS_DECL double slope(std::span<const double> x, std::span<const 
 QUADRANT_DIAGNOSIS_DECL link_model described_gears(const axis_description& axis) {
     const transmission_description& t = axis.transmission;
     link_model m;
-    m.play = t.backlash_m.value_or(axis.plant.backlash_m.value_or(0));
+    m.play = t.backlash_m.value_or(axis.plant.backlash_m.value_or(axis.plant.backlash_behind_m.value_or(0)));
     m.compliance = t.stiffness_N_per_m ? 1 / *t.stiffness_N_per_m : 0;
     m.motor_coulomb = t.motor_coulomb_N.value_or(0);
     m.pitch_period = t.pitch_period_m.value_or(t.travel_per_turn_m.value_or(0));

@@ -19,6 +19,8 @@ public:
     std::vector<std::vector<parameter>> take() const {
         std::vector<std::vector<parameter>> out;
         for (const bool behind : {false, true}) {
+            if (const plant_model& p = s_.leader; behind ? p.backlash > 0 : p.backlash_behind > 0)
+                continue; // the file says on which side of the encoder it is
             auto plants = ladder(width(behind));
             const auto looks = fitter(s_.record.observer, s_.record.score).objectives(plants);
             std::vector<std::size_t> order(plants.size());
@@ -64,13 +66,13 @@ private:
                                     .step = 1e-2},
                                    {.key = "backlash_motor_mass_kg",
                                     .of = [](plant_model& q) -> double& { return q.motor_mass; },
-                                    .start = p.motor_mass,
+                                    .start = std::clamp(p.motor_mass, 0.02 * mass_, 0.98 * mass_),
                                     .low = 0.02 * mass_,
                                     .high = 0.98 * mass_,
                                     .logarithmic = true,
                                     .step = 1e-2,
                                     .expected = std::log(stated_ ? s_.leader.motor_mass : matched * mass_),
-                                    .spread = stated_ ? 0.1 : 0.5}};
+                                    .spread = stated_ ? s_.tolerance.of("backlash_motor_mass") : 0.5}};
         if (level_ > 0)
             out.push_back({.key = "backlash_motor_coulomb_N",
                            .of = [](plant_model& q) -> double& { return q.motor_coulomb; },
@@ -121,13 +123,26 @@ inline constexpr effect backlash{
                          .meaning = "part of mass_kg on the motor's side of the play; absent: all of it",
                          .at = member<&plant_description::backlash_motor_mass_kg>,
                          .of = [](plant_model& p) -> double& { return p.motor_mass; },
+                         .neutral = std::numeric_limits<double>::infinity(),
                          .tolerance = true},
              machine_key{.name = "backlash_motor_coulomb_N",
                          .rule = detail::rule::not_negative,
                          .meaning = "part of coulomb_N on the motor's side of the play; absent: all of it",
                          .at = member<&plant_description::backlash_motor_coulomb_N>,
                          .of = [](plant_model& p) -> double& { return p.motor_coulomb; },
+                         .neutral = std::numeric_limits<double>::infinity(),
                          .tolerance = true}},
+    .fault = [](const axis_description& a) -> key_fault {
+        const plant_description& p = a.plant;
+        if (p.backlash_m.value_or(0) > 0 && p.backlash_behind_m.value_or(0) > 0)
+            return {"backlash_behind_m", "must be 0 beside {}: the encoder is on one side of the play",
+                    "backlash_m"};
+        if (p.backlash_motor_mass_kg && *p.backlash_motor_mass_kg >= p.mass_kg)
+            return {"backlash_motor_mass_kg", "must lie below {}, of which it is a part", "mass_kg"};
+        if (p.backlash_motor_mass_kg && p.mode_mass_kg)
+            return {"backlash_motor_mass_kg", "is not simulated beside {}", "mode_mass_kg"};
+        return {};
+    },
     .prior = {0.4, "screws, gears and couplings wear; a direct drive cannot have it"},
     .remedy =
         "Preload the nut or the gear; an encoder on the load lets the loop see the play, but not remove it.",
@@ -152,13 +167,14 @@ inline constexpr effect backlash{
             ladder.push_back(std::max(share * travel, 2 * count));
         const double widest = std::max(5e-3 * travel, 40 * count);
         auto out = detail::play_starts(s, widest).take();
-        out.insert(out.begin(), {{.key = "backlash_m",
-                                  .of = of,
-                                  .start = detail::best_start(s, of, ladder),
-                                  .low = count,
-                                  .high = widest,
-                                  .logarithmic = true,
-                                  .step = 1e-2}});
+        if (!s.leader.play_has_masses())
+            out.insert(out.begin(), {{.key = "backlash_m",
+                                      .of = of,
+                                      .start = detail::best_start(s, of, ladder),
+                                      .low = count,
+                                      .high = widest,
+                                      .logarithmic = true,
+                                      .step = 1e-2}});
         return out;
     },
     .read = [](const plant_model& p) -> std::vector<key_value> {

@@ -24,7 +24,6 @@ inline constexpr effect quadratic_drag{
     .box = detail::drag.box,
     .joins = detail::drag.joins,
     .exciting_motion = "the same stroke at three speeds, the fastest in use among them",
-    .equivalent = {"viscous_friction", "coulomb_friction"}, // of one speed
     .of_speed = true,
     .shows = "grows with the square of the speed",
     .keys = {machine_key{.name = detail::drag.numbers[0].key,

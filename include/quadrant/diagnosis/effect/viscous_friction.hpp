@@ -12,7 +12,6 @@ inline constexpr effect viscous_friction{
     .box = "mechanics",
     .joins = joint::friction,
     .exciting_motion = "constant speeds, slow and fast, in both directions",
-    .equivalent = {"coulomb_friction"}, // of one speed
     .everyday = true,
     .of_speed = true,
     .shows = "proportional to velocity",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../../base/version.hpp"
+#include "../text/bad_input.hpp"
 
 #include <string>
 #include <string_view>

@@ -55,11 +55,11 @@ public:
         if (!(clock.period > 0)) refuse_stamp(1, stamps_too_coarse);
         if (!clock.even && clock.spread > most_spread)
             refuse_stamp(
-                out.row(clock.worst),
-                fmt::format("t_s: the stamps jitter by {:.2g} of the period of {:.4g} s, most of all here; "
-                            "single steps may be half a period off: resample the log with quadrant-gap import "
+                out.row(clock.worst_step),
+                fmt::format("t_s: the step to this stamp is {:.3g} s, and the period {:.3g} s; single steps "
+                            "may be half a period off: resample the log with quadrant-gap import "
                             "--resample",
-                            clock.jitter, clock.period));
+                            t[out.row(clock.worst_step)] - t[out.row(clock.worst_step - 1)], clock.period));
         return out;
     }
 

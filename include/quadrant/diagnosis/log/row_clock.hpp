@@ -19,7 +19,7 @@ struct row_clock {
     std::size_t gaps = 0;                   ///< places where rows are missing
     std::size_t missing = 0;                ///< rows that are missing there
     double longest_gap = 0;                 ///< [s]
-    std::size_t worst = 0;                  ///< row whose stamp departs most
+    std::size_t worst_step = 0;             ///< row whose step departs most
     bool even = false;                      ///< each row can stand for its sample as it is
     std::vector<std::size_t> slot{};        ///< of every row on the even clock, the missing ones counted
     std::vector<unsigned char> after_gap{}; ///< of every row: 1 where rows are missing before it
@@ -101,7 +101,6 @@ inline void fit_clock(std::span<const double> t, row_clock& out) {
     });
     if (square > 0) out.period = product / square;
     out.jitter = 0;
-    double most = -1;
     each_stretch([&](std::size_t first, std::size_t last) {
         double low = 0, high = 0;
         for (std::size_t k = first; k < last; ++k) {
@@ -109,10 +108,6 @@ inline void fit_clock(std::span<const double> t, row_clock& out) {
                 (t[k] - mean_of_t[k]) / out.period - (static_cast<double>(out.slot[k]) - mean_of_slot[k]);
             low = std::min(low, off);
             high = std::max(high, off);
-            if (std::abs(off) > most) {
-                most = std::abs(off);
-                out.worst = k;
-            }
         }
         out.jitter = std::max(out.jitter, 0.5 * (high - low));
     });
@@ -134,7 +129,9 @@ inline row_clock clock_of_rows(std::span<const double> t, double written = 0) {
     out.period = *middle > 0 ? *middle : (t[n - 1] - t[0]) / static_cast<double>(n - 1);
     const auto measure_spread = [&] {
         for (std::size_t k = 1; k < n; ++k)
-            if (!out.after_gap[k]) out.spread = std::max(out.spread, std::abs(steps[k - 1] / out.period - 1));
+            if (const double off = std::abs(steps[k - 1] / out.period - 1);
+                !out.after_gap[k] && off > out.spread)
+                out.spread = off, out.worst_step = k;
     };
     fit_clock(t, out);
     const double coarse = 0.5 * written / out.period;

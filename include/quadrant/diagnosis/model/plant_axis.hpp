@@ -111,7 +111,7 @@ inline plant_axis::parameters axis_parameters(const plant_model& p) {
     out.drift = p.friction.drift();
     out.drift_time = p.friction.drift_time;
     out.play = p.backlash, out.play_behind = p.backlash_behind;
-    out.motor_mass = p.motor_mass, out.motor_friction = p.motor_coulomb;
+    out.motor_mass = p.mass_before_the_play(), out.motor_friction = p.motor_coulomb;
     out.cyclic = repeating(p.cyclic);
     out.laws = detail::plant_laws(p.own);
     typed(out.second.mass, p.second_mass());

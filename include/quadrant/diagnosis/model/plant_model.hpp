@@ -97,6 +97,13 @@ struct plant_model {
         return turns_level ? gravity.torque
                            : std::max(gravity.torque + payload.gravity() - payload_as_described.gravity(), 0.0);
     }
+    /// Infinite where the play has no masses; nor has it beside a mode [kg].
+    double mass_before_the_play() const {
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        return play_has_masses() && !(mode.mass > 0) ? std::min(motor_mass, 0.99 * moving_mass()) : infinite;
+    }
+    /// Whether motor and load are bodies of their own at the play.
+    bool play_has_masses() const { return motor_mass < std::numeric_limits<double>::infinity(); }
     bool has_play() const { return backlash > 0 || backlash_behind > 0; }
     /// What acts on the load at a position whether the axis moves or not [N].
     double static_force(double position) const {

@@ -69,7 +69,8 @@ QUADRANT_DIAGNOSIS_DECL std::vector<std::vector<detail::rival>> rivals_by_weight
         // Beside the other name something else was no longer needed, and the whole explains less.
         const bool leaves_no_more = way.back().effects.size() == c.best().effects.size() &&
                                     !(c.models.held_out_force(way.back()) > c.models.held_out_force(c.best()));
-        if (!leaves_no_more && !heaviest->of_one_speed &&
+        const bool one_law = heaviest->of_one_speed && way.back().effects.size() == c.best().effects.size();
+        if (!leaves_no_more && !one_law &&
             (!c.record.replayed() || way.back().effects.size() < c.best().effects.size()) &&
             c.worth(way.back()) + c.limits.margin < c.worth(c.best()))
             continue;

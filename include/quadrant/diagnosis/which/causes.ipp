@@ -5,10 +5,10 @@ namespace quadrant::inline v0::diagnosis {
 
 namespace detail {
 
-/// Whether what was found of an effect says no more than that the machine follows another law than the file's:
-/// the described number is in the interval of its value, which is as wide as other laws of it read otherwise.
+/// Whether what was found of an effect does not say that its number is another than the file's: the described
+/// one is in the interval of its value, which is as wide as other laws of it read otherwise.
 inline bool is_as_described(const cause& found, const effect& e, const plant_model& as_given) {
-    if (!found.described || !(e.by_another_law > 1)) return false;
+    if (!found.described) return false;
     const estimate& value = found.parameters.front().values.front();
     const double described = e.read(as_given).front().values.front();
     return value.low <= described && described <= value.high;

@@ -97,7 +97,7 @@ inline std::vector<rival> in_its_place(const axis_case& c, std::size_t which, co
             if (!search::has(without, e) && e != own && !contains(model, c.best(), *own)) {
                 // The same model by another name is fitted as well as the first, whenever it was met. So is an
                 // everyday force: on one motion many a rarer one does what it does.
-                if (may_be_one(*e, *own) || e->everyday) {
+                if (may_be_one(*e, *own) || e->everyday || (e->of_speed && own->of_speed)) {
                     same.push_back(out.size());
                     names.push_back(e);
                 }
@@ -140,7 +140,7 @@ public:
     left_by_names(const axis_case& c, std::size_t which, const candidate& without)
         : case_(c), own_(*c.best().effects[which]), energy_(square(c.models.held_out_force(c.best()))),
           least_(without.total + c.limits.margin), explained_(square(law_error * explained_by(c, which))),
-          by_speed_(explained_ * square(std::max(1.0, speeds_of(c.record) / law_error))) {
+          by_speed_(of_one_speed(c.record) ? square(one_speed * explained_by(c, which)) : 0) {
         if (!c.settled) unexplained_ = std::max(0.0, energy_ - square(c.floor_force()));
         if (c.tested_apart()) there_ = square(c.second_log(c.best()).force);
         unexplained_there_ = there_ - square(c.floor_force());
@@ -162,7 +162,7 @@ public:
                                 excess(r) < std::max(told_apart * energy_, explained_) && stands_in(r, first);
         // Laws of the speed that differ by no more than the speeds of this motion: only how common they are
         // counts.
-        r.of_one_speed = &r != &first && r.name->of_speed && own_.of_speed && may_be_one(*r.name, own_) &&
+        r.of_one_speed = &r != &first && r.name->of_speed && own_.of_speed && by_speed_ > 0 &&
                          !case_.record.closed() && excess(r) < by_speed_ && stands_in(r, first);
         const double commoner = r.name->prior.odds / own_.prior.odds, odds = std::min(1.0, commoner);
         if (within) r.weight = std::max(r.weight, odds * std::exp(-more) * first.weight);
