@@ -583,6 +583,22 @@ TEST_CASE("a log whose command the drive does not take is refused with the colum
         "missing");
 }
 TEST_CASE(
+    "velocity drive whose loop answers within a row: what acts on the axis is suspected only, with a note") {
+    auto m = p_drive;
+    m.gain *= 5;
+    const std::string file =
+        linear("", R"("kind": "velocity", "velocity_gain_N_s_per_m": 125663.7, "velocity_per_V": 0.02)");
+    auto r = recorded(takes::volts, m);
+    const auto d = diagnosed(file, r);
+    CHECK(std::any_of(d.causes.begin(), d.causes.end(),
+                      [](const cause& c) { return c.effect == "coulomb_friction"; }));
+    for (const cause& c : d.causes) CHECK(c.group_probability < 0.5);
+    check_loops(read_machine(file, "machine.json"), r.log);
+    CHECK(std::any_of(r.log.notes.begin(), r.log.notes.end(), [](const std::string& note) {
+        return note.find("answers in 0.796 ms, and rows of 1 ms show little of it") != note.npos;
+    }));
+}
+TEST_CASE(
     "a described velocity loop that answers between two rows is refused with what to record; beside a measured "
     "force it is not") {
     auto log = recorded(takes::volts, p_drive).log;

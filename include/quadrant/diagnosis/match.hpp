@@ -74,15 +74,21 @@ inline void check_drive(const axis_description& axis, const axis_log& log, const
 
 /// Refuses a described velocity loop that answers faster than two rows of the log can show: its force is the
 /// gain times an error that lies between the rows. A force that was measured behind it needs no replay.
-inline void check_speed_of_loop(const axis_description& axis, const axis_log& log,
-                                const machine_description& machine, const std::string& file) {
-    const auto& gain = axis.drive.velocity_gain_N_s_per_m;
-    if (!axis.drive.closes() || !gain || log.still) return;
-    const bool measured = log.command_is == command_origin::measured || !log.effort.empty();
-    const double answer = axis.plant.mass_kg / *gain, shortest = machine.sample_period_s / std::numbers::pi;
-    if (measured || answer >= shortest) return;
+inline void check_speed_of_loop(const axis_description& axis, const machine_description& machine,
+                                const axis_log& log, machine_log& whole) {
+    const double answer = axis.answer_of_loop(), shortest = machine.sample_period_s / std::numbers::pi;
+    if (log.still || log.shows_the_force()) return;
+    if (answer >= shortest) {
+        if (answer < machine.sample_period_s)
+            whole.notes.push_back(fmt::format(
+                "{}: axis {}: the velocity loop of the drive answers in {:.3g} ms, and rows of {:.3g} ms show "
+                "little of it: what acts on the axis is suspected only; record the current or the torque, or "
+                "faster.",
+                whole.file, axis.name, 1e3 * answer, 1e3 * machine.sample_period_s));
+        return;
+    }
     throw bad_input(
-        file,
+        whole.file,
         fmt::format("axis {0}: the velocity loop of axes.{0}.drive in {1} answers in {2:.3g} ms ({3} over "
                     "{4}), and rows of {5:.3g} ms do not show it: record {0}_current_A or {0}_torque_Nm, "
                     "or faster, or describe no plant (then its positions alone are diagnosed)",
@@ -145,7 +151,7 @@ inline void check_loops(const machine_description& machine, machine_log& log) {
     for (const axis_description& axis : machine.axes)
         for (const axis_log& logged : log.axes) {
             if (logged.name != axis.name || axis.positions_only) continue;
-            detail::check_speed_of_loop(axis, logged, machine, log.file);
+            detail::check_speed_of_loop(axis, machine, logged, log);
             const auto& period = axis.drive.set_point_period_s;
             if (!axis.drive.takes_position() || !period) continue;
             const bool sent = logged.command_unit == key_of("m", axis.kind);

@@ -7,6 +7,7 @@
 #include "own_law.hpp"
 #include "transmission_description.hpp"
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -136,6 +137,12 @@ struct axis_description {
     /// Numbers of keys that have neither a member above nor a law, by key (machine_key.hpp).
     std::map<std::string, std::vector<double>, std::less<>> numbers{};
     std::vector<const effect*> own_effects{}; ///< suspects beside those of the list (own_effect.hpp)
+
+    /// Time in which the described velocity loop answers [s]; infinite: none is described.
+    double answer_of_loop() const {
+        const auto& gain = drive.velocity_gain_N_s_per_m;
+        return drive.closes() && gain ? plant.mass_kg / *gain : std::numeric_limits<double>::infinity();
+    }
 };
 
 /// A whole machine file, checked.
