@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 // Long: one reader: a case for each rule of a log.
+#include "quadrant/diagnosis/log/wrong_readings.hpp"
 #include "quadrant/diagnosis/read_log.hpp"
 #include "refusal.hpp"
 
