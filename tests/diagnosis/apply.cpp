@@ -240,6 +240,8 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
             else
                 fill(box, std::string(key.key()), std::vector<double>{0.25, 0.75});
         }
+    for (const char* key : {"backlash_behind_m", "backlash_motor_mass_kg"}) // of another axis: below
+        x["plant"].erase(key);
     for (const auto& key : detail::actuator_keys) fill(x["actuator"], key.name, next += 0.001);
     for (const auto& key : controllers::cascade_p_pi.keys)
         if (!key.in_box() && key.form == key_form::number)
@@ -279,6 +281,22 @@ TEST_CASE("write_machine: what is read from it is what was written, for every ke
     CHECK(to_json(read_machine(rotary.dump(), "c.json")) == rotary);
     CHECK(rotary["axes"]["x"]["plant"]["gms_stiffness_Nm_per_rad"].dump() == "[0.25,0.75]");
     CHECK(rotary["axes"]["x"]["controller"].contains("acceleration_feedforward_V_s2_per_rad"));
+}
+
+TEST_CASE("write_machine: a play between two masses is written as it was read, linear and rotary") {
+    auto file = nlohmann::json::parse(machine_text);
+    file["axes"]["x"]["plant"].update(
+        {{"backlash_behind_m", 1e-5}, {"backlash_motor_mass_kg", 100}, {"backlash_motor_coulomb_N", 30}});
+    auto machine = read_machine(file.dump(), "m.json");
+    const auto linear = to_json(machine)["axes"]["x"]["plant"];
+    CHECK(linear["backlash_behind_m"] == 1e-5);
+    CHECK(linear["backlash_motor_mass_kg"] == 100);
+    CHECK(linear["backlash_motor_coulomb_N"] == 30);
+    for (auto& axis : machine.axes) axis.kind = axis_kind::rotary;
+    const auto rotary = to_json(machine)["axes"]["x"]["plant"];
+    CHECK(rotary["backlash_behind_rad"] == 1e-5);
+    CHECK(rotary["backlash_motor_inertia_kg_m2"] == 100);
+    CHECK(rotary["backlash_motor_coulomb_Nm"] == 30);
 }
 
 TEST_CASE("apply: a rotary axis gets its keys in rad and N m, and what moves with them") {
