@@ -198,8 +198,8 @@ QUADRANT_DIAGNOSIS_DECL first_look::first_look(const fitter& fit, const candidat
         const std::size_t own = ps.size();
         ps.insert(ps.end(), start.begin(), start.end());
         if (look.record.closed() && !start.empty()) detail::begin_at_the_best(ps, own, fit, plant);
-        courses_.emplace_back(fit, plant, ps, bends ? 4 * steps : steps, bends ? known_slopes() : known,
-                              bends ? 4 : 0);
+        courses_.emplace_back(fit, plant, ps, bends ? std::max(8, steps) : steps,
+                              bends ? known_slopes() : known, bends ? 4 : 0);
     }
 }
 
