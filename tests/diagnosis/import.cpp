@@ -276,17 +276,17 @@ TEST_CASE(
 }
 
 TEST_CASE("import: one late stamp is named, and a first row that alone is off may be left out") {
-    const auto rows = [](double first, double of_row_900) {
+    const auto stamped = [](double at_first, double of_row_900) {
         std::string out = "t_s,x_pos_m,x_cmd_V\n";
         for (int k = 0; k < 1000; ++k)
             out += fmt::format("{:.6f},{:.9f},1\n",
-                               k == 0     ? first
+                               k == 0     ? at_first
                                : k == 900 ? of_row_900
                                           : 0.01 + 1e-3 * k,
                                0.1 * std::sin(0.03 * k));
         return out;
     };
-    const std::string first = rows(0.0106, 0.91), late = rows(0.01, 0.9094);
+    const std::string first = stamped(0.0106, 0.91), late = stamped(0.01, 0.9094);
     const auto map = map_of_header(first, "in.csv");
     CHECK(refusal_of([&] { import_log(map, late, "in.csv"); }) ==
           "in.csv:902:1: the step to this stamp is 0.0004 s, and the period 0.001 s: import with --resample");
