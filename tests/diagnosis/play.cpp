@@ -59,13 +59,14 @@ struct loose_drive {
         }
         return out;
     }
-    machine_description described() const {
+    /// `more`: of the plant.
+    machine_description described(const std::string& more = "") const {
         return read_machine(std::string_view(fmt::format(
                                 R"({{"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {{"x": {{
-            "plant": {{"mass_kg": 24, "viscous_N_s_per_m": 12, "coulomb_N": {}}},
+            "plant": {{"mass_kg": 24, "viscous_N_s_per_m": 12, "coulomb_N": {}{}}},
             "tolerance": {{"mass": 0.02, "viscous": 0.1, "coulomb": 0.05}},
             "encoder": {{"resolution_m": 5e-7}}}}}}}})",
-                                motor_friction + load_friction)),
+                                motor_friction + load_friction, more)),
                             "loose.json");
     }
     machine_log read(double slow, double fast) const {
@@ -107,6 +108,15 @@ TEST_CASE(
     const double width = found(d, "backlash", "backlash_m"),
                  mass = found(d, "backlash", "backlash_motor_mass_kg");
     CHECK(width * mass == doctest::Approx(machine.play * machine.motor).epsilon(0.25));
+    CHECK_FALSE(claims_another(d));
+}
+
+TEST_CASE("diagnose: with the motor's mass stated, the width of such a play is known") {
+    loose_drive machine;
+    machine.encoder_on_motor = false;
+    const auto d = diagnose(machine.described(R"(, "backlash_motor_mass_kg": 8)"), machine.read(0.4, 3.1));
+    CAPTURE(said(d));
+    CHECK(found(d, "backlash", "backlash_m") == doctest::Approx(machine.play).epsilon(0.2));
     CHECK_FALSE(claims_another(d));
 }
 

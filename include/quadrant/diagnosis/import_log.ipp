@@ -59,13 +59,13 @@ private:
     void keep_rows() {
         const foreign_table& in = tables_.front();
         std::vector<double> stamps;
-        std::vector<std::size_t> line;
+        std::vector<std::size_t> rows;
         for (std::size_t k = 0; k < in.t.size(); ++k)
-            if (wanted(in.t[k])) stamps.push_back(in.t[k]), line.push_back(in.line[k]);
+            if (wanted(in.t[k])) stamps.push_back(in.t[k]), rows.push_back(k);
         const auto clock = stamps.size() > 2 ? clock_of_rows(stamps, in.written) : row_clock{.even = true};
         if (!clock.even && clock.spread > most_spread)
             throw bad_input(
-                files_.front().name, line[clock.worst_step], 1,
+                files_.front().name, in.line[rows[clock.worst_step]], 1,
                 fmt::format("the step to this stamp is {:.3g} s, and the period {:.3g} s: import with "
                             "--resample{}",
                             stamps[clock.worst_step] - stamps[clock.worst_step - 1], clock.period,
@@ -77,8 +77,7 @@ private:
         own_text out(tables_, false, teller());
         out.head();
         std::vector<double> row;
-        for (std::size_t k = 0; k < in.t.size(); ++k) {
-            if (!wanted(in.t[k])) continue;
+        for (const std::size_t k : rows) {
             row.clear();
             for (const auto& c : in.columns) row.push_back(c.values[k]);
             out.row(in.t[k], row);

@@ -52,8 +52,7 @@ template <class Real, class Laws> struct servo_parameters {
         typename sprung_mass<Real>::parameters second{};
         number play{0};        ///< between motor and load, the encoder on the load [m]
         number play_behind{0}; ///< the same, the encoder on the motor [m]
-        number motor_mass{
-            std::numeric_limits<double>::infinity()}; ///< of it, on the motor's side of the play [kg]
+        number motor_mass{std::numeric_limits<double>::infinity()}; ///< part of the mass before the play [kg]
         number motor_friction{std::numeric_limits<double>::infinity()}; ///< of the level, at most, there [N]
         repeating cyclic{};                                             ///< of the reading [m] over position
         Laws laws{};

@@ -11,7 +11,7 @@ namespace quadrant::inline v0 {
 /// Motion of motor and load of a `servo_axis`, and what its joints remember.
 template <class Real, class Contact, class Laws> struct servo_state {
     Real x{0}, v{0};         ///< of the motor [m], [m/s]
-    Real load{0};            ///< where the encoder is [m]
+    Real load{0};            ///< of the load [m]
     mask_of<Real> carried{}; ///< the motor moves the load: the play is crossed
     Real current{0};         ///< behind the amplifier's lag
     typename sprung_mass<Real>::state second{};
