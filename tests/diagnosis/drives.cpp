@@ -486,7 +486,8 @@ TEST_CASE("position drive: a constant force that no model has began in the integ
     CHECK(value_of(*viscous, "viscous_N_s_per_m") == doctest::Approx(400).epsilon(0.1));
 }
 TEST_CASE("position servo: another gain shows in the measured duty, where the path is one that the tolerances "
-          "allow") {
+          "allow" *
+          doctest::test_suite("all")) {
     auto m = servo;
     m.duty_gain = 18.4;
     const cause* gain = nullptr;

@@ -155,7 +155,7 @@ TEST_CASE("import: what is wrong in the map is told by its key") {
     CHECK(of_map(changed("/axes/x/command/unit", "N m"))
               .find("map.json: axes.x.command.unit: \"N m\" is not a unit") == 0);
     CHECK(of_map(changed("/axes/x/command/unit", "Nm")) ==
-          "map.json: axes.x.command.unit: must be of V, A or N");
+          "map.json: axes.x.command.unit: must be of V, A or N (set-points of a drive: of m/s or m)");
     CHECK(of_map(changed("/axes/x/reference/unit", "deg")) ==
           "map.json: axes.x.reference.unit: must be of the same kind as that of the position");
     CHECK(of_map(changed("/axes/x/position/scale", 0)) ==
@@ -311,6 +311,21 @@ TEST_CASE("import: a part of a record is taken by its time, with and without res
           }).find("the files have no time in common, or --from and --to leave none") != std::string::npos);
 }
 
+TEST_CASE(
+    "import: set-points of a velocity drive in our names are taken, and a column without a name of ours is "
+    "told") {
+    std::string text = "t_ms,q_cmd_rad_per_s,q_pos_rad,wheel,q_cmd_rpm2\n";
+    for (int k = 0; k < 200; ++k)
+        text += std::to_string(k) + ',' + std::to_string(std::sin(0.05 * k)) + ',' +
+                std::to_string(0.02 * (1 - std::cos(0.05 * k))) + ",7,8\n";
+    const imported_log in = import_log(map_of_header(text, "in.csv"), text, "in.csv", {});
+    REQUIRE(in.log.axes.size() == 1);
+    CHECK(in.log.axes[0].command_unit == "rad_per_s");
+    CHECK(in.log.axes[0].command[10] == doctest::Approx(std::sin(0.5)).epsilon(1e-5));
+    CHECK(std::count(in.notes.begin(), in.notes.end(),
+                     "no name of ours: wheel, q_cmd_rpm2 are left out (say with --map which column is what)") ==
+          1);
+}
 TEST_CASE("import: columns with our names need no map, whatever their units") {
     const auto map =
         map_of_header("time [us]\tq_pos_deg\tq_ref_deg_per_s\tq_torque_Nm\tq_enabled\tnote\n0\t0,5\t", "in");

@@ -31,6 +31,24 @@ TEST_CASE("import: a position in another unit than the reference is refused") {
           std::string::npos);
 }
 
+TEST_CASE("import: a velocity that is another than the position's is refused, a filtered one is not") {
+    const auto with_velocity = [](double scale) {
+        auto out = of_workshop();
+        axis_log& a = out.log.axes[0];
+        a.velocity = zero_phase(derivative(a.position, workshop::period), 40, workshop::period);
+        for (double& v : a.velocity) v *= scale;
+        return out;
+    };
+    auto good = with_velocity(0.9);
+    CHECK_NOTHROW(check_physics(good));
+    for (const double scale : {1000.0, 5.0, 0.2}) {
+        auto bad = with_velocity(scale);
+        CHECK(refusal_of([&] {
+                  check_physics(bad);
+              }).find("what the position makes of itself: x_vel_m_per_s") != std::string::npos);
+    }
+}
+
 TEST_CASE("import: a command that drives against the acceleration is refused, one of another size when the "
           "mass is known") {
     auto turned = of_workshop(1, -1);
@@ -143,7 +161,7 @@ std::string pushed(double sign, double friction, double inertia, double frequenc
         const double acceleration = (x(e + 1e-3) - 2 * x(e) + x(e - 1e-3)) / 1e-6;
         position.push_back(0.002 * std::round(x(t) / 0.002));
         torque.push_back(sign * (friction * (v > 0 ? 1 : -1) + inertia * acceleration + 3 +
-                                    0.3 * std::sin(1.7 * k) + 0.1 * std::sin(0.0071 * k)));
+                                 0.3 * std::sin(1.7 * k) + 0.1 * std::sin(0.0071 * k)));
     }
     imported_log in;
     in.log = workshop::torque_log(position, torque, 0.01, 0.002);

@@ -106,7 +106,7 @@ TEST_CASE("propose_map: TwinCAT Scope: positions by the NC's names, units where 
     CHECK(of_role(p, "x", "position")->unit == "mm");
     CHECK(of_role(p, "x", "reference")->number == 4);
     REQUIRE(p.open.size() == 1);
-    CHECK(p.open[0] == "which column is the command of x, in V, A, N or Nm");
+    CHECK(p.open[0] == "which column is the command of x, in V, A, N or Nm, or a drive's set-points");
     // A map with a reference can do without a command, where the drive takes positions.
     const auto in = import_log(read_import_map(p.map().dump(), "guess"), scope("mm (Length)"), "scope.csv");
     CHECK(in.log.samples == 3);

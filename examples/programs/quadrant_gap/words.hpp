@@ -163,8 +163,11 @@ inline std::string sentence_without_a_claim(const axis_result& a, const cause* s
 /// What is to be said of a gap inside the tolerances that calibration does not close.
 inline std::string left_by_calibration(const axis_result& a) {
     constexpr double closed = 1.5; // of the floor
+    const bool stops = std::any_of(a.calibrated.begin(), a.calibrated.end(),
+                                   [](const parameter_estimate& p) { return p.on_bound; });
     if (a.positions_only || !(a.gap_after.force_rms_N > closed * a.gap.noise_floor_force_rms_N))
-        return ", nothing is missing";
+        return stops ? "; some of them stop at the end of their tolerance and may lie beyond it (see the notes)"
+                     : ", nothing is missing";
     return fmt::format(
         "; that leaves {}, by which machines inside these tolerances may differ: a cause shows once "
         "mass, force constant and friction are known better",

@@ -34,6 +34,7 @@ public:
     void refuse_what_cannot_be() const {
         if (!(c_.travel > 0)) return;
         if (a_.has_reference && std::abs(c_.correlation) > 0.9) against_the_reference();
+        if (c_.velocity_correlation > 0.9) against_the_position();
         if (known_.drive == drive_kind::position || known_.drive == drive_kind::position_servo) return;
         if (!c_.sign_is_known() || known_.drive == drive_kind::velocity) {
             against_the_motion();
@@ -99,6 +100,15 @@ private:
                 "the position moves against the reference ({:.3g} times it): the sign of {} or of {} is "
                 "turned; give one of them a negative scale",
                 ratio, column("pos", m_), column("ref", m_)));
+    }
+    /// Two readings of one motion: a filter takes some per cent of the one, a unit or the period much more.
+    void against_the_position() const {
+        const double ratio = c_.velocity_per_position;
+        if (ratio < remarkable && ratio > 1 / remarkable) return;
+        refuse(fmt::format(
+            "the velocity is {} what the position makes of itself: {} is in another unit (degrees "
+            "in a column of rad: 57 times), or the time is (a period that is too short or too long)",
+            times(ratio), column("vel", m_ + "_per_s")));
     }
     /// Friction takes work. A command whose part that follows speed and direction gives work instead is turned.
     void against_the_motion() const {

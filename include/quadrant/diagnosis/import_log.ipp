@@ -104,11 +104,23 @@ private:
         if (choice_.resample) replay_is_lost_ = true;
     }
 
+    static std::string listed(const std::vector<std::string>& names) {
+        constexpr std::size_t most = 12;
+        std::string out;
+        for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+            out += (i ? ", " : "") + one_line(names[i]);
+        return out + (names.size() > most ? fmt::format(" and {} more are", names.size() - most)
+                      : names.size() > 1  ? " are"
+                                          : " is");
+    }
     void finish() {
         if (replay_is_lost_)
             out_.notes.push_back(
                 "a controller cannot be replayed sample by sample on a resampled log: leave it out of the "
                 "machine file, or changes made by resampling are mistaken for another controller");
+        if (!map_.left_out.empty())
+            out_.notes.push_back(fmt::format(
+                "no name of ours: {} left out (say with --map which column is what)", listed(map_.left_out)));
         const std::string& name = files_.front().name;
         out_.log = read_log_text(out_.text, name);
         const std::string before = one_line(name) + ": ";

@@ -73,6 +73,20 @@ QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const a
     return out;
 }
 
+namespace detail {
+
+/// Whether a record begins with the axis at rest: as long as the position stays within a count of its first
+/// value the axis is no faster than that count over this time, which is little beside how fast it gets.
+inline bool begins_at_rest(const axis_record& r) {
+    std::size_t rows = 0;
+    while (rows < r.position.size() && std::abs(r.position[rows] - r.position[0]) <= 1.5 * r.resolution) ++rows;
+    double fastest = 0;
+    for (const double v : r.velocity) fastest = std::max(fastest, std::abs(v));
+    return r.resolution < 0.1 * fastest * static_cast<double>(rows) * r.period;
+}
+
+} // namespace detail
+
 QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, double resolution,
                                             const record_scales& scale) {
     axis_record r{.period = period,
@@ -97,7 +111,9 @@ QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, 
     auto& s = r.score;
     const auto mean =
         std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
-    s.block = s.skip = 5 * mean;
+    s.block = 5 * mean;
+    // A model begins at rest at the first reading. What a drive's loops held by then no reading shows.
+    s.skip = !log.drive && detail::begins_at_rest(r) ? 0 : s.block;
     const auto gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
     s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
         return lay_blocks(block, s.skip, gaps.settling, log.position.size());

@@ -92,6 +92,30 @@ inline void take_noise_out(std::vector<regression_part>& parts, double white_noi
     }
 }
 
+/// Whether the command is a P or PD law of the position itself, but for a thousandth of its variance, while
+/// the axis moves: its gain would pass for a spring or a weight. `speed`: of every row; slower rows than
+/// `least` are left out.
+inline bool is_law_of_position(const axis_log& log, const std::vector<double>& speed, double least) {
+    Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    const double x0 = log.position.front();
+    double energy = 0, sum = 0, rows = 0;
+    for (std::size_t k = 1; k < log.position.size(); ++k) {
+        if (std::abs(speed[k]) < least) continue;
+        const double u = log.command[k];
+        const Eigen::Vector3d row{1, log.position[k] - x0, log.position[k] - log.position[k - 1]};
+        left += row * row.transpose();
+        right += u * row;
+        energy += u * u, sum += u, rows += 1;
+    }
+    const double variance = energy - sum * sum / std::max(1.0, rows);
+    if (!(variance > 1e-12 * energy)) return false;
+    const Eigen::Vector3d scale = left.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::Matrix3d even = scale.asDiagonal() * left * scale.asDiagonal();
+    const Eigen::Vector3d by = scale.asDiagonal() * right;
+    return energy - by.dot(even.ldlt().solve(by)) < 1e-3 * variance;
+}
+
 /// The direction of a record that goes one way, 1 or -1; else 0.
 inline double direction_of_all(const regression_part& all) {
     constexpr double few = 1e-4; // share of the rows that go the other way
@@ -122,7 +146,8 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     constexpr std::size_t parts = 16;
     const std::size_t rows = of.v.size() / parts;
     if (rows < 8 || !(detail::largest(of.a) > 0)) return {};
-    const bool turns = log.kind == axis_kind::rotary, lateness = asked != and_lateness::no;
+    const bool turns = log.kind == axis_kind::rotary && !detail::is_law_of_position(log, of.v, 0.03 * fastest);
+    const bool lateness = asked != and_lateness::no;
     const bool curvature = asked == and_lateness::with_curvature;
     const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (curvature ? 2 : lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../model/driven_motion.hpp"
+#include "../model/plant_model.hpp"
 #include "scales.hpp"
 
 #include <fmt/format.h>
@@ -50,6 +51,20 @@ inline std::vector<double> seen_by_drive(const axis_description& axis, const axi
     return out;
 }
 
+/// Force that a plant needs for a measured motion, one a row [N]; no friction at rest, which no motion shows.
+/// `count`: of the encoder.
+inline std::vector<double> needed_force(const plant_model& p, const driven_motion& of, double count) {
+    const auto acceleration = derivative(of.velocity, of.period);
+    const double slow = count / of.period; // no reading shows a speed below it
+    std::vector<double> out(of.position.size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const double v = of.velocity[k], direction = v / (std::abs(v) + slow);
+        out[k] = p.moving_mass() * acceleration[k] + p.friction.viscous_slope * v +
+                 p.friction.coulomb * direction + p.holding_force(of.position[k]);
+    }
+    return out;
+}
+
 /// The log of an axis whose drive closes loops of its own, made ready: its command is what the actuator got.
 inline axis_log with_drive(const axis_description& axis, const axis_log& log, double period) {
     axis_log out = log;
@@ -74,6 +89,9 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
     const double count = std::max(
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
     motion->find_velocity();
+    const plant_model described(axis, count);
+    if (!motion->tapped()) motion->needed = needed_force(described, *motion, count);
+    motion->mass = described.moving_mass();
     const driven_motion::replay replay = motion->run(model);
     out.command = replay.command;
     if (motion->tapped() && d.kind == drive_kind::position_servo) {

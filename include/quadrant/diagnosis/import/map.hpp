@@ -37,7 +37,7 @@ struct signal_kind {
 inline constexpr std::array signal_kinds{
     signal_kind{signal_role::reference, "reference", "_ref_", "m", "rad"},
     signal_kind{signal_role::position, "position", "_pos_", "m", "rad"},
-    signal_kind{signal_role::command, "command", "_cmd_", "V A N", "V A Nm", true},
+    signal_kind{signal_role::command, "command", "_cmd_", "V A N m_per_s m", "V A Nm rad_per_s rad", true},
     signal_kind{signal_role::reference_velocity, "reference_velocity", "_ref_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::velocity, "velocity", "_vel_", "m_per_s", "rad_per_s"},
     signal_kind{signal_role::current, "current", "_current_", "A", "A"},
@@ -99,6 +99,7 @@ struct import_map {
     std::string file;
     std::vector<layout> files{1}; ///< in the order in which they are given
     std::vector<axis> axes;
+    std::vector<std::string> left_out{}; ///< columns that have no name of ours, of a file that needs no map
 };
 
 } // namespace quadrant::inline v0::diagnosis

@@ -77,7 +77,10 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
             continue;
         }
         const auto signal = named_signal(name, unit);
-        if (!signal) continue;
+        if (!signal) {
+            out.left_out.push_back(name);
+            continue;
+        }
         auto axis = std::find_if(out.axes.begin(), out.axes.end(),
                                  [&](const auto& a) { return a.name == signal->first; });
         if (axis == out.axes.end()) axis = out.axes.insert(axis, {signal->first, {}, command_origin::asked});

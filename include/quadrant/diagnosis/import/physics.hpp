@@ -11,6 +11,8 @@ namespace quadrant::inline v0::diagnosis {
 struct unit_check {
     double position_per_reference = 1; ///< slope of the position over the reference: 1 when both have one unit
     double correlation = 0;            ///< of the two
+    double velocity_per_position = 1;  ///< slope of a velocity column over that of the position: 1, too
+    double velocity_correlation = 0;   ///< of the two; 0: no column
     double travel = 0, peak_speed = 0,
            peak_acceleration = 0; ///< of the position, below `corner_Hz` [m], [m/s], [m/s^2]
     double corner_Hz = 0;         ///< up to it the acceleration stands ten times above the reading's noise
@@ -142,6 +144,23 @@ inline void compare_with_reference(unit_check& out, const axis_log& log) {
     out.correlation = rr > 0 && yy > 0 ? ry / std::sqrt(rr * yy) : 0;
 }
 
+/// `v`: velocity of the position, below the corner.
+inline void compare_with_velocity(unit_check& out, const axis_log& log, double period,
+                                  const std::vector<double>& v) {
+    if (log.velocity.size() != v.size()) return;
+    const auto w = zero_phase(log.velocity, out.corner_Hz, period);
+    double vv = 0, vw = 0, ww = 0;
+    for (std::size_t k = 0; k < v.size(); ++k) {
+        if (!log.left_out.empty() && log.left_out[k]) continue;
+        vv += v[k] * v[k];
+        vw += v[k] * w[k];
+        ww += w[k] * w[k];
+    }
+    if (!(vv > 0) || !(ww > 0)) return;
+    out.velocity_per_position = vw / vv;
+    out.velocity_correlation = vw / std::sqrt(vv * ww);
+}
+
 } // namespace detail
 
 /// Regression of the command over acceleration, speed, direction and position, and of the position over the
@@ -160,6 +179,7 @@ inline unit_check check_units(const axis_log& log, double period) {
     const auto x = zero_phase(log.position, out.corner_Hz, period), v = derivative(x, period),
                a = derivative(v, period), j = derivative(a, period),
                u = zero_phase(log.command, out.corner_Hz, period);
+    compare_with_velocity(out, log, period, v);
     for (std::size_t k = 0; k < n; ++k) {
         if (!log.left_out.empty() && log.left_out[k]) continue;
         out.peak_speed = std::max(out.peak_speed, std::abs(v[k]));

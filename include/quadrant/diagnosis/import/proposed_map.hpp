@@ -122,7 +122,8 @@ inline void say_what_is_open(proposed_map& out) {
         if (!has(axis, "position")) out.open.push_back(fmt::format("which column is the position of {}", axis));
         if (!has(axis, "command"))
             out.open.push_back(
-                fmt::format("which column is the command of {}, in V, A, N or Nm{}", axis, others));
+                fmt::format("which column is the command of {}, in V, A, N or Nm, or a drive's set-points{}",
+                            axis, others));
     }
     for (const auto& c : out.columns)
         if ((c.time || !c.role.empty()) && c.unit.empty())

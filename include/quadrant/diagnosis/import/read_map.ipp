@@ -203,7 +203,8 @@ private:
         if (kind.role == signal_role::reference)
             fault.refuse("must be of the same kind as that of the position");
         if (kind.role == signal_role::command)
-            fault.refuse(rotary ? "must be of V, A or Nm" : "must be of V, A or N");
+            fault.refuse(rotary ? "must be of V, A or Nm (set-points of a drive: of rad/s or rad)"
+                                : "must be of V, A or N (set-points of a drive: of m/s or m)");
         std::string text(legal);
         for (auto at = text.find("_per_"); at != text.npos; at = text.find("_per_")) text.replace(at, 5, "/");
         fault.refuse("must be a unit that gives " + text);

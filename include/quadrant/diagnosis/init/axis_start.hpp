@@ -48,9 +48,10 @@ protected:
 
     void read_count(const axis_log& log) {
         const double count = observed_count(log.position, log.position_step);
-        if (!asked("resolution") && count > 0) {
+        const double written = std::round(count * 1e12) / 1e12; // no rounding of the file is a count
+        if (!asked("resolution") && written > 0) {
             const init_field& f = field("resolution");
-            put(f, f.key, std::round(count * 1e12) / 1e12, "smallest step of the position in the log");
+            put(f, f.key, written, "smallest step of the position in the log");
         }
     }
 

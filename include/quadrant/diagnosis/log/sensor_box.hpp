@@ -15,14 +15,18 @@ inline double observed_count(std::span<const double> position, double rounding) 
     for (std::size_t k = 1; k < position.size(); ++k)
         if (const double d = std::abs(position[k] - position[k - 1]); d > rounding) steps.push_back(d);
     if (steps.empty()) return 0;
-    // The smallest difference that occurs more than by accident: one in a thousand rows.
-    const auto rank = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 1000);
-    std::nth_element(steps.begin(), rank, steps.end());
-    const double count = *rank;
-    std::size_t multiples = 0;
-    for (double d : steps)
-        if (std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count) ++multiples;
-    return 10 * multiples >= 9 * steps.size() ? count : rounding;
+    // The smallest difference that occurs more than by accident, one in a thousand rows; of an axis that is
+    // fast in nearly all rows, the smallest of all.
+    for (const std::size_t rank : {steps.size() / 1000, std::size_t{0}}) {
+        const auto at = steps.begin() + static_cast<std::ptrdiff_t>(rank);
+        std::nth_element(steps.begin(), at, steps.end());
+        const double count = *at;
+        std::size_t multiples = 0;
+        for (double d : steps)
+            if (std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count) ++multiples;
+        if (10 * multiples >= 9 * steps.size()) return count;
+    }
+    return rounding;
 }
 
 } // namespace quadrant::inline v0::diagnosis

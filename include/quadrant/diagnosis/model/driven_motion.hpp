@@ -174,6 +174,10 @@ struct driven_motion {
     std::vector<double> added{};
     double constant =
         1; ///< force of a unit of the actuator's command, as described, where the drive gives a force
+    /// Force that the described machine needs for the measured motion, one a row [N], and what it moves [kg]:
+    /// the level at which a replayed integral stands; empty: it stands where the replay takes it.
+    std::vector<double> needed{};
+    double mass = 0;
     std::vector<log_start> begins{}; ///< other logs behind the first one
     set_point_memory memory{};       ///< of set_point: not asked before that is whole
     double to_position =
@@ -372,15 +376,38 @@ private:
         const velocity_loop<> inner(numbers.velocity, period / parts, already_checked());
         const double scale = in_volts ? d.velocity_per_V : 1;
         auto s = velocity_loop<>::state::at(velocity[0], d.start_force);
+        const double rate = level_rate(d) * period / parts, follow = 1 - std::exp(-rate),
+                     smooth = 1 - std::exp(-5 * rate);
+        double lifted = 0, beside = 0; // of the integral, so far; needed less given, without its noise
         each_part(d, [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {
             const double on = share_on(d, at);
-            if (is_off(k) || on == 0)
+            if (is_off(k) || on == 0) {
                 s = velocity_loop<>::state::at(v);
-            else
-                out[at] =
-                    on * (d.kind == drive_kind::velocity ? inner(s, scale * r, v) : law(s, r, slope, x, v));
+                lifted = beside = 0;
+                return;
+            }
+            const double f = d.kind == drive_kind::velocity ? inner(s, scale * r, v) : law(s, r, slope, x, v);
+            out[at] = on * (f - lifted);
+            if (follow > 0) {
+                beside += smooth * (needed[k] - f - beside);
+                const double lift =
+                    follow * (beside - std::clamp(beside, -d.force_limit / 4, d.force_limit / 4));
+                s.integral += lift;
+                lifted += lift;
+            }
         });
         return out;
+    }
+    /// How fast a replayed integral goes to the level that the motion needs [1/s]; 0: not at all.
+    /// The integral of a replay is in an open loop: a gain that is wrong by its tolerance takes it to any force
+    /// within a stroke, and a limit would then hold it there, in every row, whatever the gains are. So the
+    /// limit is judged near the level that the motion needs, to a quarter of it: what a described plant is
+    /// wrong by must not move a limit that acts. What is given out is as if nothing had been lifted.
+    double level_rate(const drive_model& d) const {
+        if (needed.empty() || !d.has_integral() || !std::isfinite(d.force_limit)) return 0;
+        const double of_integral = d.velocity_integral / mass;
+        return d.kind == drive_kind::position && d.position_gain > 0 ? std::cbrt(d.position_gain * of_integral)
+                                                                     : std::sqrt(of_integral);
     }
 };
 

@@ -76,6 +76,12 @@ private:
     void thin(double band, const rules& r, std::vector<std::string>& notes);
 };
 
+/// Whether the velocity loop of a position drive comes to rest between two rows: a replay has too few of them,
+/// and the path shows as much.
+inline bool closes_between_rows(const axis_description& a, const axis_log& log, double period) {
+    return a.drive.kind == drive_kind::position && !log.shows_the_force() && a.answer_of_loop() < period;
+}
+
 inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged, const read_logs& logs,
                               const rules& r, std::vector<std::string>& notes, const axis_description* by)
     : axis(as_logged(a, logged)), period(logs.machine.sample_period_s) {
@@ -104,7 +110,8 @@ inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged,
         for (const axis_log& each : *axes) others.logs.push_back(&each);
     put_columns_in_time(axis, period, log, holdout, notes);
     thin(band, r, notes);
-    soft = axis.drive.kind == drive_kind::position_servo && at_motor.drive;
+    soft = at_motor.drive &&
+           (axis.drive.kind == drive_kind::position_servo || closes_between_rows(axis, at_motor, period));
     if (soft && holdout && !transmission)
         both = both_motions(axis, *named(logs.as_read.axes, axis.name),
                             *named(logs.as_read_too->axes, axis.name), logs.machine.sample_period_s);

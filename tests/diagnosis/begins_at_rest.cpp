@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSL-1.0
+// Records that begin with their only motion: the axis stands still at the first reading, a step is asked for,
+// and then it rests. And a command that is a law of the position, which says nothing of a weight.
+#include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/regression.hpp>
+#include <quadrant/diagnosis/read_log.hpp>
+#include <quadrant/diagnosis/read_machine.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+using namespace quadrant::diagnosis;
+
+namespace {
+
+constexpr double period = 1e-3, inertia = 0.02, viscous = 0.6;
+
+/// An arm under P control of its position, stepped fifty times a row: it is asked to be at 1 rad from the first
+/// row on, or to swing.
+enum class asks { step, swing };
+std::string response(asks what, double gain, double weight) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 2e-5);
+    std::string out = "t_s,q_pos_rad,q_cmd_Nm\n";
+    double q = 0, v = 0;
+    for (int k = 0; k < (what == asks::step ? 4000 : 16000); ++k) {
+        const double t = k * period;
+        const double asked = what == asks::step ? 1 : 0.9 * std::sin(1.3 * t) + 0.4 * std::sin(4.1 * t);
+        const double read = q + noise(random), torque = gain * (asked - read);
+        char row[80];
+        std::snprintf(row, sizeof row, "%.3f,%.7f,%.9f\n", t, read, torque);
+        out += row;
+        for (int i = 0; i < 50; ++i) {
+            v += period / 50 * (torque - viscous * v - weight * std::sin(q)) / inertia;
+            q += period / 50 * v;
+        }
+    }
+    return out;
+}
+machine_description described(double as_described) {
+    char text[400];
+    std::snprintf(text, sizeof text,
+                  R"({"schema": "quadrant.machine/1", "sample_period_s": 0.001, "axes": {"q": {
+        "plant": {"inertia_kg_m2": %g, "viscous_Nm_s_per_rad": 0.6, "delay_s": 0},
+        "tolerance": {"inertia": 0.05, "viscous": 0.1}, "encoder": {"resolution_rad": 1e-7}}}})",
+                  as_described);
+    return read_machine(std::string_view(text), "machine.json");
+}
+diagnosis_result diagnosed(double as_described) {
+    rules one;
+    one.threads = 1;
+    return diagnose(
+        described(as_described), read_log_text(response(asks::step, 8, 0), "log.csv"), nullptr,
+        [](const std::string&) {}, one);
+}
+
+} // namespace
+
+TEST_CASE("a record that begins with its motion: the motion is judged, where the axis stands still before it") {
+    CHECK(diagnosed(inertia).verdict <= verdict::within_tolerance);
+    CHECK(diagnosed(2.5 * inertia).verdict > verdict::within_tolerance);
+}
+
+TEST_CASE("regress: the gain of a P controller is no weight, and a weight is one beside it") {
+    const auto weight = [](const std::string& log) {
+        const machine_log in = read_log_text(log, "log.csv");
+        return regress(in.axes[0], period).weight;
+    };
+    CHECK(!weight(response(asks::step, 8, 0)).sure());
+    const regressed found = weight(response(asks::swing, 8, 0.5));
+    CHECK(found.sure());
+    CHECK(found.value == doctest::Approx(0.5).epsilon(0.1));
+}
