@@ -2,6 +2,7 @@
 // Records that begin with their only motion: the axis stands still at the first reading, a step is asked for,
 // and then it rests. And a command that is a law of the position, which says nothing of a weight.
 #include <quadrant/diagnosis/diagnose.hpp>
+#include <quadrant/diagnosis/fit/record.hpp>
 #include <quadrant/diagnosis/fit/regression.hpp>
 #include <quadrant/diagnosis/read_log.hpp>
 #include <quadrant/diagnosis/read_machine.hpp>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <vector>
 
 using namespace quadrant::diagnosis;
 
@@ -19,7 +21,7 @@ namespace {
 
 constexpr double period = 1e-3, inertia = 0.02, viscous = 0.6;
 
-/// An arm under P control of its position, stepped fifty times a row: it is asked to be at 1 rad from the first
+/// An arm under P control of its position, stepped fifty times a row: it is asked to be at 1 rad from the tenth
 /// row on, or to swing.
 enum class asks { step, swing };
 std::string response(asks what, double gain, double weight) {
@@ -29,7 +31,8 @@ std::string response(asks what, double gain, double weight) {
     double q = 0, v = 0;
     for (int k = 0; k < (what == asks::step ? 4000 : 16000); ++k) {
         const double t = k * period;
-        const double asked = what == asks::step ? 1 : 0.9 * std::sin(1.3 * t) + 0.4 * std::sin(4.1 * t);
+        const double asked =
+            what == asks::step ? (k < 10 ? 0 : 1) : 0.9 * std::sin(1.3 * t) + 0.4 * std::sin(4.1 * t);
         const double read = q + noise(random), torque = gain * (asked - read);
         char row[80];
         std::snprintf(row, sizeof row, "%.3f,%.7f,%.9f\n", t, read, torque);
@@ -65,6 +68,19 @@ TEST_CASE("a record that begins with its motion: the motion is judged, where the
     CHECK(diagnosed(2.5 * inertia).verdict > verdict::within_tolerance);
 }
 
+TEST_CASE("a record that begins in motion has no known beginning") {
+    const auto rows_left_out = [](std::size_t from) {
+        const machine_log in = read_log_text(response(asks::swing, 8, 0), "log.csv");
+        axis_log log = in.axes[0];
+        log.position.erase(log.position.begin(), log.position.begin() + static_cast<std::ptrdiff_t>(from));
+        log.command.erase(log.command.begin(), log.command.begin() + static_cast<std::ptrdiff_t>(from));
+        log.reference = log.position;
+        const auto machine = described(inertia);
+        return prepare(log, period, 1e-7, scales_of(machine.axes[0].plant, log, period, 1e-7)).score.skip;
+    };
+    CHECK(rows_left_out(500) > 0);
+}
+
 TEST_CASE("regress: the gain of a P controller is no weight, and a weight is one beside it") {
     const auto weight = [](const std::string& log) {
         const machine_log in = read_log_text(log, "log.csv");
@@ -74,4 +90,16 @@ TEST_CASE("regress: the gain of a P controller is no weight, and a weight is one
     const regressed found = weight(response(asks::swing, 8, 0.5));
     CHECK(found.sure());
     CHECK(found.value == doctest::Approx(0.5).epsilon(0.1));
+}
+
+TEST_CASE("observed_count: of an axis that is fast in nearly all rows it is the smallest difference, and some "
+          "roundings are none") {
+    std::vector<double> fast{0}, rounded{0};
+    std::mt19937 random(5);
+    for (int k = 0; k < 4000; ++k) {
+        fast.push_back(fast.back() + 6.283185e-4 * (k % 400 == 0 ? 1 : 200 + static_cast<int>(random() % 23)));
+        rounded.push_back(rounded.back() + 1e-6 * (k % 2000 == 0 ? 2 : 40 + static_cast<int>(random() % 51)));
+    }
+    CHECK(observed_count(fast, 1e-10) == doctest::Approx(6.283185e-4).epsilon(1e-3));
+    CHECK(observed_count(rounded, 1e-6) == 1e-6);
 }

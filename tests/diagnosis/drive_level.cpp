@@ -93,6 +93,12 @@ TEST_CASE(
     CHECK(wrong.causes.front().parameters.front().values.front().value == doctest::Approx(limit).epsilon(0.05));
 }
 
+TEST_CASE("replay: under a limit that is too low for the motion the level does not run off") {
+    constexpr double period = 1e-3, limit = 45;
+    const auto log = recorded(axis, period);
+    CHECK(largest(replayed(described(40, 1000, period), log, limit)) < 3 * limit);
+}
+
 TEST_CASE("position drive: another gain of the position loop is found beside a described limit") {
     constexpr double period = 2e-3;
     const auto d = diagnosed(described(62, 120, period), recorded(axis, period));

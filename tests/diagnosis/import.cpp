@@ -156,6 +156,9 @@ TEST_CASE("import: what is wrong in the map is told by its key") {
               .find("map.json: axes.x.command.unit: \"N m\" is not a unit") == 0);
     CHECK(of_map(changed("/axes/x/command/unit", "Nm")) ==
           "map.json: axes.x.command.unit: must be of V, A or N (set-points of a drive: of m/s or m)");
+    auto measured = changed("/axes/x/command/unit", "m/s");
+    measured.insert(measured.find("\"m/s\"") + 5, ", \"is\": \"measured\"");
+    CHECK(of_map(measured) == "map.json: axes.x.command: is a set-point: it is asked for, not measured");
     CHECK(of_map(changed("/axes/x/reference/unit", "deg")) ==
           "map.json: axes.x.reference.unit: must be of the same kind as that of the position");
     CHECK(of_map(changed("/axes/x/position/scale", 0)) ==

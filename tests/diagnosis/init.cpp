@@ -157,10 +157,10 @@ TEST_CASE("init: a rotary axis takes its gravity by option, a linear one refuses
 }
 
 TEST_CASE("init: the command's limit is where it stops, not the largest value that it passes") {
-    const auto limit_of = [](double top) {
+    const auto limit_of = [](double top, double finer = 1) {
         auto log = workshop_log(); // a coarse command, cut at `top` steps
         for (std::size_t k = 0; k < log.samples; ++k) {
-            const double u = std::round(60 * std::sin(0.003 * static_cast<double>(k)));
+            const double u = std::round(60 * finer * std::sin(0.003 * static_cast<double>(k))) / finer;
             log.axes[0].command[k] = 0.05 * std::clamp(u, -top, top);
         }
         auto r = request();
@@ -170,6 +170,7 @@ TEST_CASE("init: the command's limit is where it stops, not the largest value th
     };
     CHECK(workshop::near(limit_of(40).value_or(0), 2, 1e-9));
     CHECK_FALSE(limit_of(1000));
+    CHECK_FALSE(limit_of(45, 1.0 / 30)); // five levels: the highest of them is none
 }
 
 TEST_CASE("init: a mass of which the log is not sure is told with its standard deviation") {

@@ -40,6 +40,9 @@ TEST_CASE("words: a number has the digits that its interval leaves, and the unit
     CHECK(quantity_beside(0.078, 0.0438, "N m") == "0.044 N m"); // not 43.8 mN m beside 0.078 N m
     CHECK(quantity_beside(3.2, 0.0031, "N") == "3.1 mN");
     CHECK(percent(estimate{0.81, 0.79, 0.83}) == "81 % (79 to 83)");
+    CHECK(shrinkage(estimate{0.81, 0.79, 0.83}) == "shrinks by 81 % (79 to 83)");
+    CHECK(shrinkage(estimate{-0.46, -0.5, -0.4}) == "grows by 46 %");
+    CHECK(shrinkage(estimate{-14614105, 0, 0}) == "grows to 1.46e+07 times");
     CHECK(probability(0.9999) == "> 99 %");
     CHECK(lines_of(parameter_estimate{"stribeck_velocity_m_per_s", {{0.0022, 0.0022, 0.0022}}})[0] ==
           "Stribeck velocity: 2.2 mm/s");

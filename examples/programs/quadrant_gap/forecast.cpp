@@ -27,9 +27,9 @@ std::string forecast_summary(const forecast_result& f, bool verbose) {
                 0) +
         "\n";
     for (const forecast_axis& a : f.axes) {
-        std::string words = fmt::format(
-            "{} of residual force as described, {} corrected: the gap shrinks by {:.0f} %.",
-            quantity(a.before.force_rms_N, "N"), quantity(a.after.force_rms_N, "N"), 100 * a.shrink);
+        std::string words = fmt::format("{} of residual force as described, {} corrected: the gap {}.",
+                                        quantity(a.before.force_rms_N, "N"), quantity(a.after.force_rms_N, "N"),
+                                        shrinkage({a.shrink, a.shrink, a.shrink}));
         if (verbose)
             words += fmt::format(
                 " Floor of sensor and rounding {}; position of the closed loop {} rms beside the machine as "

@@ -31,7 +31,9 @@ void ask_origin(quadrant::diagnosis::import_map& map) {
     using namespace quadrant::diagnosis;
     for (auto& axis : map.axes) {
         const auto* command = axis.find(signal_role::command);
-        if (!command || command->si == "V" || axis.command_is == command_origin::measured) continue;
+        if (!command || command->si == "V" || is_set_point(command->si) ||
+            axis.command_is == command_origin::measured)
+            continue;
         std::fprintf(stderr,
                      "axis %s: the command in %s is asked by the controller, or measured behind the amplifier "
                      "(asked or measured): ",

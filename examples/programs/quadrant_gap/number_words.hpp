@@ -114,6 +114,12 @@ inline std::string percent(const estimate& e) {
     return fmt::format("{} ({} to {})", percent(e.value), fixed(100 * e.low, 0), fixed(100 * e.high, 0));
 }
 
+/// What a gap does that shrinks by this share of itself: one that grows has no per cent from its double on.
+inline std::string shrinkage(const estimate& e) {
+    if (!(e.value < 0)) return "shrinks by " + percent(e);
+    return e.value < -1 ? fmt::format("grows to {:.3g} times", 1 - e.value) : "grows by " + percent(-e.value);
+}
+
 /// A probability is never said to be 0 or 1.
 inline std::string probability(double p) {
     if (p > 0.99) return "> 99 %";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
+#include "import/map.hpp"
 #include "import/physics.hpp"
 #include "text/bad_input.hpp"
 
@@ -34,7 +35,7 @@ public:
     void refuse_what_cannot_be() const {
         if (!(c_.travel > 0)) return;
         if (a_.has_reference && std::abs(c_.correlation) > 0.9) against_the_reference();
-        if (c_.velocity_correlation > 0.9) against_the_position();
+        if (std::abs(c_.velocity_correlation) > 0.9) against_the_position();
         if (known_.drive == drive_kind::position || known_.drive == drive_kind::position_servo) return;
         if (!c_.sign_is_known() || known_.drive == drive_kind::velocity) {
             against_the_motion();
@@ -60,7 +61,7 @@ public:
             fmt::format("axis {}: travel {:.4g} {}, peak {:.3g} {}/s and {:.3g} {}/s^2, below "
                         "{:.3g} Hz",
                         a_.name, c_.travel, m_, c_.peak_speed, m_, c_.peak_acceleration, m_, c_.corner_Hz)};
-        if (a_.command_unit.empty()) return out;
+        if (a_.command_unit.empty() || is_set_point(a_.command_unit)) return out;
         if (!c_.sign_is_known()) {
             out.push_back(fmt::format(
                 "axis {}: the motion is too slow to check the command by the acceleration", a_.name));

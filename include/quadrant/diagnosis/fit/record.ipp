@@ -76,13 +76,26 @@ QUADRANT_DIAGNOSIS_DECL std::shared_ptr<const led_motion> motion_to_lead(const a
 namespace detail {
 
 /// Whether a record begins with the axis at rest: as long as the position stays within a count of its first
-/// value the axis is no faster than that count over this time, which is little beside how fast it gets.
+/// value, noise of the reading apart, the axis is no faster than that over this time, which is little beside
+/// how fast it gets.
 inline bool begins_at_rest(const axis_record& r) {
+    constexpr std::size_t least = 3; // periods
+    const double still = std::max(1.5 * r.resolution, 4 * reading_noise(r.position, r.resolution));
     std::size_t rows = 0;
-    while (rows < r.position.size() && std::abs(r.position[rows] - r.position[0]) <= 1.5 * r.resolution) ++rows;
+    while (rows < r.position.size() && std::abs(r.position[rows] - r.position[0]) <= still) ++rows;
     double fastest = 0;
     for (const double v : r.velocity) fastest = std::max(fastest, std::abs(v));
-    return r.resolution < 0.1 * fastest * static_cast<double>(rows) * r.period;
+    return rows > least && still < 0.1 * fastest * static_cast<double>(rows - 1) * r.period;
+}
+
+/// Share of a record's acceleration, in energy, in its first rows.
+inline double share_of_acceleration(const axis_record& r, std::size_t rows) {
+    double first = 0, all = 0;
+    for (std::size_t k = 0; k < r.acceleration.size(); ++k) {
+        all += r.acceleration[k] * r.acceleration[k];
+        if (k < rows) first = all;
+    }
+    return all > 0 ? first / all : 0;
 }
 
 } // namespace detail
@@ -112,9 +125,14 @@ QUADRANT_DIAGNOSIS_DECL axis_record prepare(const axis_log& log, double period, 
     const auto mean =
         std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(scale.block() / 5 / period)));
     s.block = 5 * mean;
-    // A model begins at rest at the first reading. What a drive's loops held by then no reading shows.
-    s.skip = !log.drive && detail::begins_at_rest(r) ? 0 : s.block;
-    const auto gaps = long_gaps(log.left_out, scale.response() / period, s.skip);
+    // By then a model has forgotten how it began: at rest at the first reading, with contact and play as they
+    // come. Where the axis stands still there, rows that hold much of the motion are not left out for it.
+    // What a drive's loops held at the beginning no reading shows.
+    constexpr double much = 0.25;
+    const bool from_the_first =
+        !log.drive && detail::share_of_acceleration(r, s.block) > much && detail::begins_at_rest(r);
+    s.skip = from_the_first ? 0 : s.block;
+    const auto gaps = long_gaps(log.left_out, scale.response() / period, s.block);
     s.channels = detail::channels_of(mean, r.resolution, r.observer.pole(), r.segment, [&](std::size_t block) {
         return lay_blocks(block, s.skip, gaps.settling, log.position.size());
     });

@@ -25,6 +25,12 @@ struct axis_regression {
     double left_in_time = 1; ///< the same without lateness and curvature
     double phase = 0;        ///< position at which the weight hangs down [rad]
     double band_Hz = 0;      ///< of the low-pass on all signals; 0: nothing can be said
+
+    /// None of the axis' numbers is sure.
+    void nothing_of_the_axis() {
+        for (regressed* each : {&acceleration, &speed, &direction, &mean, &weight})
+            each->spread = std::numeric_limits<double>::infinity();
+    }
 };
 
 namespace detail {

@@ -93,7 +93,8 @@ inline void take_noise_out(std::vector<regression_part>& parts, double white_noi
 }
 
 /// Whether the command is a P or PD law of the position itself, but for a thousandth of its variance, while
-/// the axis moves: its gain would pass for a spring or a weight. `speed`: of every row; slower rows than
+/// the axis moves: then it is anything that the motion is a sum of, its gain a weight among them. Friction
+/// needs a command that grows with the speed, such a law has none. `speed`: of every row; slower rows than
 /// `least` are left out.
 inline bool is_law_of_position(const axis_log& log, const std::vector<double>& speed, double least) {
     Eigen::Matrix3d left = Eigen::Matrix3d::Zero();
@@ -113,7 +114,10 @@ inline bool is_law_of_position(const axis_log& log, const std::vector<double>& s
     const Eigen::Vector3d scale = left.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d even = scale.asDiagonal() * left * scale.asDiagonal();
     const Eigen::Vector3d by = scale.asDiagonal() * right;
-    return energy - by.dot(even.ldlt().solve(by)) < 1e-3 * variance;
+    const Eigen::Vector3d found = even.ldlt().solve(by), of_each = scale.asDiagonal() * found;
+    const bool drives_back =
+        of_each[1] < 0 && found[2] * std::sqrt(left(2, 2)) * scale[2] < 0.01 * std::sqrt(variance);
+    return drives_back && energy - by.dot(found) < 1e-3 * variance;
 }
 
 /// The direction of a record that goes one way, 1 or -1; else 0.
@@ -181,8 +185,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
         square_of_both += (off[2] + onwards * off[3]) * (off[2] + onwards * off[3]) * weight;
     }
     const auto number = [&](Eigen::Index i) { return regressed{whole[i], std::sqrt(square[i])}; };
-    out.acceleration = number(0);
-    out.speed = number(1);
+    out.acceleration = number(0), out.speed = number(1);
     if (onwards == 0) out.direction = number(2), out.mean = number(3);
     if (onwards != 0) out.resists = {whole[2] + onwards * whole[3], std::sqrt(square_of_both)};
     if (lateness) {
@@ -193,6 +196,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     if (turns) {
         out.weight = {std::hypot(whole[4], whole[5]), std::sqrt(square[4] + square[5])};
         out.phase = std::atan2(-whole[5], whole[4]);
+        if (detail::is_law_of_position(log, of.v, 0.03 * fastest)) out.nothing_of_the_axis();
     }
     return out;
 }

@@ -5,6 +5,7 @@
 #include "scales.hpp"
 
 #include <fmt/format.h>
+#include <numbers>
 
 namespace quadrant::inline v0::diagnosis {
 
@@ -58,7 +59,7 @@ inline std::vector<double> needed_force(const plant_model& p, const driven_motio
     const double slow = count / of.period; // no reading shows a speed below it
     std::vector<double> out(of.position.size());
     for (std::size_t k = 0; k < out.size(); ++k) {
-        const double v = of.velocity[k], direction = v / (std::abs(v) + slow);
+        const double v = of.velocity[k], direction = v == 0 ? 0 : v / (std::abs(v) + slow);
         out[k] = p.moving_mass() * acceleration[k] + p.friction.viscous_slope * v +
                  p.friction.coulomb * direction + p.holding_force(of.position[k]);
     }
@@ -90,8 +91,11 @@ inline axis_log with_drive(const axis_description& axis, const axis_log& log, do
         {axis.encoder.resolution_m, log.position_step, observed_count(log.position, log.position_step)});
     motion->find_velocity();
     const plant_model described(axis, count);
-    if (!motion->tapped()) motion->needed = needed_force(described, *motion, count);
     motion->mass = described.moving_mass();
+    // No faster than five times the level goes: above it noise of the reading is all that an acceleration has.
+    if (const double rate = motion->level_rate(model); rate > 0 && !motion->tapped())
+        motion->needed = zero_phase(needed_force(described, *motion, count),
+                                    std::min(0.1 / period, 5 * rate / (2 * std::numbers::pi)), period);
     const driven_motion::replay replay = motion->run(model);
     out.command = replay.command;
     if (motion->tapped() && d.kind == drive_kind::position_servo) {

@@ -55,6 +55,11 @@ constexpr const signal_kind& kind_of(signal_role role) {
     return signal_kinds[0];
 }
 
+/// Whether a command in this unit is the set-point of a drive, not a force or what makes one.
+constexpr bool is_set_point(std::string_view si) {
+    return si == "m_per_s" || si == "rad_per_s" || si == "m" || si == "rad";
+}
+
 /// Which column of another program's log is what (docs/schema/import.schema.json).
 struct import_map {
     /// Where one quantity is found in a file, and what makes it SI.

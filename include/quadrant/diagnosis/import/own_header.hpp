@@ -78,7 +78,7 @@ inline import_map map_of_header(std::string_view text, std::string_view file) {
         }
         const auto signal = named_signal(name, unit);
         if (!signal) {
-            out.left_out.push_back(name);
+            if (!name.empty()) out.left_out.push_back(name);
             continue;
         }
         auto axis = std::find_if(out.axes.begin(), out.axes.end(),

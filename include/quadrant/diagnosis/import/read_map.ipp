@@ -189,6 +189,9 @@ private:
             }
             a.signals.push_back({kind.role, read_signal(*given)});
             need_unit(*given, kind, a.signals.back().from.si, rotary);
+            if (kind.role == signal_role::command && is_set_point(a.signals.back().from.si) &&
+                a.command_is == command_origin::measured)
+                given->refuse("is a set-point: it is asked for, not measured");
         }
         return a;
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -121,10 +122,18 @@ private:
             return std::abs(u) > close * most && std::abs(u) < most * (1 - 1e-6);
         });
         constexpr long often = 5;
-        if (!asked("limit") && at_limit >= often && at_limit > below) {
+        if (!asked("limit") && at_limit >= often && at_limit > below && !goes_in_levels(log.command)) {
             const init_field& f = field("limit");
             put(f, f.key, most, fmt::format("{} rows of the log stop there", at_limit));
         }
+    }
+
+    /// Whether a command has a few values only, as a series of steps has: its largest is a level, no limit.
+    static bool goes_in_levels(const std::vector<double>& command) {
+        constexpr std::size_t few = 8;
+        std::set<double> levels;
+        for (std::size_t k = 0; k < command.size() && levels.size() <= few; ++k) levels.insert(command[k]);
+        return levels.size() <= few;
     }
 
     /// The mass given beside the log's own, within four standard deviations of that.

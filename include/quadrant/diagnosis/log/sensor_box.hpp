@@ -17,14 +17,17 @@ inline double observed_count(std::span<const double> position, double rounding) 
     if (steps.empty()) return 0;
     // The smallest difference that occurs more than by accident, one in a thousand rows; of an axis that is
     // fast in nearly all rows, the smallest of all.
-    for (const std::size_t rank : {steps.size() / 1000, std::size_t{0}}) {
+    const std::size_t few = steps.size() / 1000;
+    for (const std::size_t rank : {few, std::size_t{0}}) {
         const auto at = steps.begin() + static_cast<std::ptrdiff_t>(rank);
         std::nth_element(steps.begin(), at, steps.end());
         const double count = *at;
         std::size_t multiples = 0;
         for (double d : steps)
             if (std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count) ++multiples;
-        if (10 * multiples >= 9 * steps.size()) return count;
+        // Of any differences a fifth, and more where the count is a few roundings, are near a multiple.
+        const bool by_itself = rank == few || rounding < 0.15 * count;
+        if (by_itself && 10 * multiples >= 9 * steps.size()) return count;
     }
     return rounding;
 }

@@ -195,6 +195,17 @@ struct driven_motion {
         position_in_parts = in_the_middle_of_parts(position);
         velocity_in_parts = in_the_middle_of_parts(velocity);
     }
+    /// How fast a replayed integral goes to the level that the motion needs [1/s]; 0: not at all.
+    /// The integral of a replay is in an open loop: a gain that is wrong by its tolerance takes it to any force
+    /// within a stroke, and a limit would then hold it there, in every row, whatever the gains are. So the
+    /// limit is judged near the level that the motion needs, to a quarter of it: what a described plant is
+    /// wrong by must not move a limit that acts. What is given out is as if nothing had been lifted.
+    double level_rate(const drive_model& d) const {
+        if (!(mass > 0) || !d.has_integral() || !std::isfinite(d.force_limit)) return 0;
+        const double of_integral = d.velocity_integral / mass;
+        return d.kind == drive_kind::position && d.position_gain > 0 ? std::cbrt(d.position_gain * of_integral)
+                                                                     : std::sqrt(of_integral);
+    }
     bool is_off(std::size_t k) const { return !off.empty() && off[k]; }
     bool tapped() const { return !measured.empty(); }
 
@@ -376,7 +387,7 @@ private:
         const velocity_loop<> inner(numbers.velocity, period / parts, already_checked());
         const double scale = in_volts ? d.velocity_per_V : 1;
         auto s = velocity_loop<>::state::at(velocity[0], d.start_force);
-        const double rate = level_rate(d) * period / parts, follow = 1 - std::exp(-rate),
+        const double rate = needed.empty() ? 0 : level_rate(d) * period / parts, follow = 1 - std::exp(-rate),
                      smooth = 1 - std::exp(-5 * rate);
         double lifted = 0, beside = 0; // of the integral, so far; needed less given, without its noise
         each_part(d, [&](std::size_t k, std::size_t at, double r, double slope, double x, double v) {
@@ -390,24 +401,14 @@ private:
             out[at] = on * (f - lifted);
             if (follow > 0) {
                 beside += smooth * (needed[k] - f - beside);
-                const double lift =
-                    follow * (beside - std::clamp(beside, -d.force_limit / 4, d.force_limit / 4));
-                s.integral += lift;
-                lifted += lift;
+                const double kept = d.force_limit / 4,
+                             lift = follow * (beside - std::clamp(beside, -kept, kept)),
+                             to = std::clamp(s.integral + lift, -d.force_limit, d.force_limit);
+                lifted += to - s.integral;
+                s.integral = to;
             }
         });
         return out;
-    }
-    /// How fast a replayed integral goes to the level that the motion needs [1/s]; 0: not at all.
-    /// The integral of a replay is in an open loop: a gain that is wrong by its tolerance takes it to any force
-    /// within a stroke, and a limit would then hold it there, in every row, whatever the gains are. So the
-    /// limit is judged near the level that the motion needs, to a quarter of it: what a described plant is
-    /// wrong by must not move a limit that acts. What is given out is as if nothing had been lifted.
-    double level_rate(const drive_model& d) const {
-        if (needed.empty() || !d.has_integral() || !std::isfinite(d.force_limit)) return 0;
-        const double of_integral = d.velocity_integral / mass;
-        return d.kind == drive_kind::position && d.position_gain > 0 ? std::cbrt(d.position_gain * of_integral)
-                                                                     : std::sqrt(of_integral);
     }
 };
 

@@ -106,16 +106,20 @@ inline verdict judged(const how_far& shrinks, axis_case& c, axis_result& result,
                       std::vector<std::vector<rival>>& rivals) {
     const verdict out = judge(c, causes);
     if (out != verdict::unexplained || c.claims == 0) return out;
-    const auto& effects = c.best().effects; // what was read off is none of them
-    const auto read_off = std::stable_partition(causes.begin(), causes.end(), [&](const cause& x) {
+    const auto of_plant = [&](const cause& x) {
+        const auto& effects = c.best().effects;
         return std::any_of(effects.begin(), effects.end(),
                            [&](const effect* e) { return e->name == x.effect; });
-    });
-    const std::vector<cause> others(read_off, causes.end());
-    causes.erase(read_off, causes.end());
+    };
+    // What was read off stands before or behind.
+    const auto first = std::find_if(causes.begin(), causes.end(), of_plant),
+               last = std::find_if_not(first, causes.end(), of_plant);
+    const std::vector<cause> before(causes.begin(), first), behind(last, causes.end());
+    causes = std::vector<cause>(first, last);
     to_suspects(causes);
     put_as_applied(c, causes, rivals);
-    causes.insert(causes.end(), others.begin(), others.end());
+    causes.insert(causes.begin(), before.begin(), before.end());
+    causes.insert(causes.end(), behind.begin(), behind.end());
     shrinks.measure(result, causes);
     return judge(c, causes);
 }

@@ -53,7 +53,7 @@ inline double dac_step(const actuator_description& a) {
 class replay_box {
 public:
     replay_box(const axis_log& log, const actuator_description& actuator, const axis_record& record)
-        : replay_box(log, actuator, record.period, record.score.skip, record.score.block) {}
+        : replay_box(log, actuator, record.period, record.score.block, record.score.block) {}
     replay_box(const axis_log& log, const actuator_description& actuator, double period, std::size_t from,
                std::size_t block)
         : log_(log), actuator_(actuator), smooth_(actuator), period_(period),

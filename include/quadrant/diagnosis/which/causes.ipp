@@ -14,10 +14,10 @@ inline bool is_as_described(const cause& found, const effect& e, const plant_mod
     return value.low <= described && described <= value.high;
 }
 
-/// Whether a number was found only at the end of what is searched: another effect drives a fit that far, too. A
-/// limit so low and a lag so long that nothing of the command passes is none of either.
+/// Whether a number of the file was found only as far from it as is searched: another effect drives a fit that
+/// far, too.
 inline bool lies_beyond(const cause& found, const candidate& best) {
-    return best.ends_at_a_bound(found.parameters.front().key);
+    return found.described && best.ends_at_a_bound(found.parameters.front().key);
 }
 
 /// Whether an interval does not say which way a force acts, or which way a number is off.
