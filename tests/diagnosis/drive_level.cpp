@@ -57,11 +57,12 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
     return out;
 }
 double largest(const std::vector<double>& a) { return largest_difference(a, std::vector<double>(a.size(), 0)); }
-diagnosis_result diagnosed(const machine_description& machine, const machine_log& log) {
+diagnosis_result diagnosed(const machine_description& machine, const machine_log& log,
+                           const machine_log* holdout = nullptr) {
     rules one;
     one.threads = 1;
     return diagnose(
-        machine, log, nullptr, [](const std::string&) {}, one);
+        machine, log, holdout, [](const std::string&) {}, one);
 }
 
 } // namespace
@@ -112,7 +113,14 @@ TEST_CASE("position drive: another gain of the position loop is found beside a d
 TEST_CASE("position drive: where its velocity loop answers between two rows its path is judged, and a healthy "
           "axis is blamed for nothing") {
     constexpr double period = 1e-2;
-    const auto d = diagnosed(described(40, 1000, period), recorded(axis, period, 0.6));
-    CHECK(d.verdict <= verdict::within_tolerance);
-    CHECK(d.causes.empty());
+    const auto log = recorded(axis, period, 0.6), holdout = recorded(axis, period, 0.5, 2);
+    for (const machine_log* beside : {static_cast<const machine_log*>(nullptr), &holdout}) {
+        const auto d = diagnosed(described(40, 1000, period), log, beside);
+        CHECK(d.verdict <= verdict::within_tolerance);
+        CHECK(d.causes.empty());
+    }
+    const auto slower = diagnosed(described(62, 1000, period), log, &holdout);
+    REQUIRE(!slower.causes.empty());
+    CHECK(slower.causes.front().effect == "drive_gain");
+    CHECK(slower.causes.front().parameters.front().values.front().value == doctest::Approx(40).epsilon(0.05));
 }

@@ -177,7 +177,6 @@ QUADRANT_DIAGNOSIS_DECL gap_numbers how_far::numbers(const stage& s) const {
 }
 
 QUADRANT_DIAGNOSIS_DECL void how_far::draw(axis_signals& s, const stage& after) const {
-    s.t.clear();
     for (std::size_t k = 0; k < log_.position.size(); ++k)
         s.t.push_back(static_cast<double>(k) * judged_.period);
     s.reference = log_.reference;

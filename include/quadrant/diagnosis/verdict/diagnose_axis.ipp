@@ -101,29 +101,6 @@ inline void suspect_by_chance(const how_far& shrinks, axis_case& c, std::vector<
     }
 }
 
-/// The verdict on what lies behind the command. Causes none of which takes a share that counts are suspects.
-inline verdict judged(const how_far& shrinks, axis_case& c, axis_result& result, std::vector<cause>& causes,
-                      std::vector<std::vector<rival>>& rivals) {
-    const verdict out = judge(c, causes);
-    if (out != verdict::unexplained || c.claims == 0) return out;
-    const auto of_plant = [&](const cause& x) {
-        const auto& effects = c.best().effects;
-        return std::any_of(effects.begin(), effects.end(),
-                           [&](const effect* e) { return e->name == x.effect; });
-    };
-    // What was read off stands before or behind.
-    const auto first = std::find_if(causes.begin(), causes.end(), of_plant),
-               last = std::find_if_not(first, causes.end(), of_plant);
-    const std::vector<cause> before(causes.begin(), first), behind(last, causes.end());
-    causes = std::vector<cause>(first, last);
-    to_suspects(causes);
-    put_as_applied(c, causes, rivals);
-    causes.insert(causes.begin(), before.begin(), before.end());
-    causes.insert(causes.end(), behind.begin(), behind.end());
-    shrinks.measure(result, causes);
-    return judge(c, causes);
-}
-
 QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, const progress& tell,
                                            const stages& stage, chain::two_encoders* of_transmission,
                                            const other_axes& others) {
@@ -153,10 +130,9 @@ QUADRANT_DIAGNOSIS_DECL void diagnose_axis(diagnosis_result& out, axis_case& c, 
     note_few_motions(out, c);
     add_read_off(causes, c);
     shrinks.measure(result, causes);
-    const verdict behind = judged(shrinks, c, result, causes, rivals);
-    result.verdict = behind;
     result.calibrated = calibrated(c, c.applied(), causes);
     if (c.claims + 1 < c.path.size()) result.calibrated_with_suspects = calibrated(c, c.best(), causes);
+    const verdict behind = result.verdict = judge(c, causes);
     result.cut = c.models.cut() || !c.models.missed().empty();
     if (behind == verdict::within_tolerance && !c.at_floor())
         out.notes.push_back(

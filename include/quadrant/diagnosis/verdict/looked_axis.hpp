@@ -68,9 +68,10 @@ struct ready_axis {
     axis_log log{};                    ///< that of the axis with its neighbour's motion
     std::optional<axis_log> holdout{}; ///< the same of the hold-out log
     other_axes others{};
-    /// A servo's law on duty is soft, and a force moves it where it shows. A stiff loop hides it from the path.
+    /// Whether the path is judged. A servo's law on duty is soft, and a force moves it where it shows. A stiff
+    /// loop hides it from the path, and is replayed as long as there are rows enough.
     bool soft = false;
-    std::optional<axis_log> both{}; ///< six seconds of it hold a dozen readings: none to spare for a test
+    std::optional<axis_log> both{}; ///< six seconds of a servo hold a dozen readings: none to spare for a test
 
 private:
     void thin(double band, const rules& r, std::vector<std::string>& notes);
@@ -112,7 +113,7 @@ inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged,
     thin(band, r, notes);
     soft = at_motor.drive &&
            (axis.drive.kind == drive_kind::position_servo || closes_between_rows(axis, at_motor, period));
-    if (soft && holdout && !transmission)
+    if (soft && axis.drive.kind == drive_kind::position_servo && holdout && !transmission)
         both = both_motions(axis, *named(logs.as_read.axes, axis.name),
                             *named(logs.as_read_too->axes, axis.name), logs.machine.sample_period_s);
 }
