@@ -3,6 +3,7 @@
 // there, and what repeats with the position repeats in time.
 #include "claims.hpp"
 
+#include <quadrant/diagnosis/diagnose.hpp>
 #include <quadrant/diagnosis/effect/effects.hpp>
 #include <quadrant/diagnosis/effect/repeating.hpp>
 #include <quadrant/diagnosis/fit/for_machine.hpp>
@@ -11,6 +12,7 @@
 #include <quadrant/diagnosis/which/axis_case.hpp>
 #include <quadrant/diagnosis/which/one_speed.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -160,4 +162,41 @@ TEST_CASE("search: a model without one of its effects has a force, and rivals be
     CHECK(other.total > rest.total + rules{}.margin);
     CHECK(std::abs(other.total - both.total) < 0.1 * (both.total - rest.total)); // one torque under two names
     CHECK(workshop::near(-other.fit.plant.constant_force, both.fit.plant.friction.coulomb, 0.1));
+}
+
+TEST_CASE(
+    "diagnose: to and fro at one speed, friction is one group of the laws of speed, headed by the commonest, "
+    "and the way of a row is no count of the encoder") {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> noise(0, 0.004);
+    std::string log = "t_s,q_pos_rad,q_torque_Nm\n";
+    double q = 0, v = 0, to = 0.4;
+    for (int k = 0; k < 6000; ++k) {
+        to = q > 0.5 ? -0.4 : q < -0.5 ? 0.4 : to;
+        const auto acceleration = [&] { return std::clamp((to - v) / 0.05, -8.0, 8.0); };
+        const double torque = 0.02 * acceleration() + 0.05 * v + 0.12 * std::tanh(v / 0.01);
+        char row[80];
+        std::snprintf(row, sizeof row, "%.3f,%.6f,%.6f\n", k * 0.005, q, torque + noise(random));
+        log += row;
+        for (int i = 0; i < 20; ++i) {
+            v += 0.005 / 20 * acceleration();
+            q += 0.005 / 20 * v;
+        }
+    }
+    const auto machine = read_machine(
+        std::string_view(R"({"schema": "quadrant.machine/1", "sample_period_s": 0.005, "axes": {"q": {
+        "plant": {"inertia_kg_m2": 0.02, "viscous_Nm_s_per_rad": 0.05}, "tolerance": {"inertia": 0.1, "viscous": 0.2},
+        "encoder": {"resolution_rad": 1e-6}, "actuator": {"command_is": "measured"}}}})"),
+        "arm.json");
+    rules one;
+    one.threads = 1;
+    const auto d = diagnose(
+        machine, read_log_text(log, "arm.csv"), nullptr, [](const std::string&) {}, one);
+    REQUIRE(d.causes.size() == 1);
+    const cause& friction = d.causes.front();
+    CHECK(friction.effect == "coulomb_friction");
+    CHECK(friction.group_probability > 0.9);
+    CHECK(std::set<std::string>(friction.confusable_with.begin(), friction.confusable_with.end()) ==
+          std::set<std::string>{"quadratic_drag", "viscous_friction"});
+    CHECK(friction.parameters.front().values.front().value == doctest::Approx(0.12).epsilon(0.05));
 }

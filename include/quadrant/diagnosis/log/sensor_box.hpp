@@ -15,21 +15,26 @@ inline double observed_count(std::span<const double> position, double rounding) 
     for (std::size_t k = 1; k < position.size(); ++k)
         if (const double d = std::abs(position[k] - position[k - 1]); d > rounding) steps.push_back(d);
     if (steps.empty()) return 0;
+    std::sort(steps.begin(), steps.end());
+    const auto multiples = [&](double count) { // in rows, and in differences of different size
+        std::size_t rows = 0, sizes = 0, all = 0;
+        double before = 0;
+        for (const double d : steps) {
+            const bool one = std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count;
+            if (one) ++rows;
+            if (d - before <= rounding) continue;
+            before = d;
+            ++all;
+            if (one) ++sizes;
+        }
+        // Of any sizes a fifth are near a multiple. An axis that runs at one speed has one size in most rows.
+        return 10 * rows >= 9 * steps.size() && 2 * sizes >= all;
+    };
     // The smallest difference that occurs more than by accident, one in a thousand rows; of an axis that is
-    // fast in nearly all rows, the smallest of all.
-    const std::size_t few = steps.size() / 1000;
-    for (const std::size_t rank : {few, std::size_t{0}}) {
-        const auto at = steps.begin() + static_cast<std::ptrdiff_t>(rank);
-        std::nth_element(steps.begin(), at, steps.end());
-        const double count = *at;
-        std::size_t multiples = 0;
-        for (double d : steps)
-            if (std::abs(d - std::round(d / count) * count) <= rounding + 0.1 * count) ++multiples;
-        // Of any differences a fifth, and more where the count is a few roundings, are near a multiple.
-        const bool by_itself = rank == few || rounding < 0.15 * count;
-        if (by_itself && 10 * multiples >= 9 * steps.size()) return count;
-    }
-    return rounding;
+    // fast in nearly all rows, the smallest of all, unless it is a few roundings, which any size is near to.
+    const double often = steps[steps.size() / 1000], smallest = steps.front();
+    if (multiples(often)) return often;
+    return rounding < 0.15 * smallest && multiples(smallest) ? smallest : rounding;
 }
 
 } // namespace quadrant::inline v0::diagnosis
