@@ -47,6 +47,9 @@ TEST_CASE("import: a velocity that is another than the position's is refused, a 
                   check_physics(bad);
               }).find("what the position makes of itself: x_vel_m_per_s") != std::string::npos);
     }
+    auto turned = with_velocity(-1);
+    CHECK(refusal_of([&] { check_physics(turned); }).find("the velocity goes against the position") !=
+          std::string::npos);
 }
 
 TEST_CASE("import: a command that drives against the acceleration is refused, one of another size when the "

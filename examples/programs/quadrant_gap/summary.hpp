@@ -82,10 +82,9 @@ inline std::string summary_of(const diagnosis_result& d, const cause& c) {
     for (const std::string& line : lines_of(c.parameters, voice)) text += wrapped(line, 4);
     text += wrapped(fmt::format("{}, {}", gap_of(c, voice), shrinkage(c.shrink)), 4);
     if (!c.confusable_with.empty())
-        text +=
-            wrapped(fmt::format("cannot be distinguished on this record from {}; probability of the group {}",
-                                voice(named(c.confusable_with, "or")), probability(c.group_probability)),
-                    4);
+        text += wrapped(fmt::format("cannot be distinguished on this record from {}; probability of the group {}",
+                                    voice(named(c.confusable_with, "or")), probability(c.group_probability)),
+                        4);
     for (const reading& r : c.readings)
         text +=
             wrapped(fmt::format("{}: {}",

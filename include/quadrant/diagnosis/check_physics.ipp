@@ -105,6 +105,11 @@ private:
     /// Two readings of one motion: a filter takes some per cent of the one, a unit or the period much more.
     void against_the_position() const {
         const double ratio = c_.velocity_per_position;
+        if (ratio < 0)
+            refuse(
+                fmt::format("the velocity goes against the position: the sign of {} or of {} is turned; give "
+                            "one of them a negative scale",
+                            column("vel", m_ + "_per_s"), column("pos", m_)));
         if (ratio < remarkable && ratio > 1 / remarkable) return;
         refuse(fmt::format(
             "the velocity is {} what the position makes of itself: {} is in another unit (degrees "

@@ -3,6 +3,7 @@
 #include "import/common_clock.hpp"
 #include "import/foreign_table_reader.hpp"
 #include "import/integrated.hpp"
+#include "import/missing_column.hpp"
 #include "import/own_header.hpp"
 #include "import/own_text.hpp"
 #include "log/angle_wraps.hpp"
@@ -104,23 +105,15 @@ private:
         if (choice_.resample) replay_is_lost_ = true;
     }
 
-    static std::string listed(const std::vector<std::string>& names) {
-        constexpr std::size_t most = 12;
-        std::string out;
-        for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
-            out += (i ? ", " : "") + one_line(names[i]);
-        return out + (names.size() > most ? fmt::format(" and {} more are", names.size() - most)
-                      : names.size() > 1  ? " are"
-                                          : " is");
-    }
     void finish() {
         if (replay_is_lost_)
             out_.notes.push_back(
                 "a controller cannot be replayed sample by sample on a resampled log: leave it out of the "
                 "machine file, or changes made by resampling are mistaken for another controller");
         if (!map_.left_out.empty())
-            out_.notes.push_back(fmt::format(
-                "no name of ours: {} left out (say with --map which column is what)", listed(map_.left_out)));
+            out_.notes.push_back(
+                fmt::format("no name of ours: {} {} left out (say with --map which column is what)",
+                            some_of(map_.left_out), map_.left_out.size() > 1 ? "are" : "is"));
         const std::string& name = files_.front().name;
         out_.log = read_log_text(out_.text, name);
         const std::string before = one_line(name) + ": ";

@@ -28,7 +28,7 @@ struct axis_regression {
 
     /// None of the axis' numbers is sure.
     void nothing_of_the_axis() {
-        for (regressed* each : {&acceleration, &speed, &direction, &mean, &weight})
+        for (regressed* each : {&acceleration, &speed, &direction, &mean, &weight, &resists})
             each->spread = std::numeric_limits<double>::infinity();
     }
 };

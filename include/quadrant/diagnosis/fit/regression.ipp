@@ -150,8 +150,7 @@ QUADRANT_DIAGNOSIS_DECL axis_regression regress(const axis_log& log, double peri
     constexpr std::size_t parts = 16;
     const std::size_t rows = of.v.size() / parts;
     if (rows < 8 || !(detail::largest(of.a) > 0)) return {};
-    const bool turns = log.kind == axis_kind::rotary && !detail::is_law_of_position(log, of.v, 0.03 * fastest);
-    const bool lateness = asked != and_lateness::no;
+    const bool turns = log.kind == axis_kind::rotary, lateness = asked != and_lateness::no;
     const bool curvature = asked == and_lateness::with_curvature;
     const Eigen::Index of_axis = turns ? 6 : 4, n = of_axis + (curvature ? 2 : lateness ? 1 : 0);
     std::vector<detail::regression_part> sums(parts, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});

@@ -8,6 +8,7 @@
 #include "../log/thinned.hpp"
 #include "../where/columns_in_time.hpp"
 #include "../where/places.hpp"
+#include "../which/between_rows.hpp"
 #include "../which/looks.hpp"
 #include "diagnose_axis.hpp"
 
@@ -77,12 +78,6 @@ private:
     void thin(double band, const rules& r, std::vector<std::string>& notes);
 };
 
-/// Whether the velocity loop of a position drive comes to rest between two rows: a replay has too few of them,
-/// and the path shows as much.
-inline bool closes_between_rows(const axis_description& a, const axis_log& log, double period) {
-    return a.drive.kind == drive_kind::position && !log.shows_the_force() && a.answer_of_loop() < period;
-}
-
 inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged, const read_logs& logs,
                               const rules& r, std::vector<std::string>& notes, const axis_description* by)
     : axis(as_logged(a, logged)), period(logs.machine.sample_period_s) {
@@ -111,9 +106,12 @@ inline ready_axis::ready_axis(const axis_description& a, const axis_log& logged,
         for (const axis_log& each : *axes) others.logs.push_back(&each);
     put_columns_in_time(axis, period, log, holdout, notes);
     thin(band, r, notes);
-    soft = at_motor.drive &&
-           (axis.drive.kind == drive_kind::position_servo || closes_between_rows(axis, at_motor, period));
-    if (soft && axis.drive.kind == drive_kind::position_servo && holdout && !transmission)
+    const bool servo = axis.drive.kind == drive_kind::position_servo;
+    // Between two rows a replay has nothing to hold on to, and the path shows as much.
+    const bool too_few_rows =
+        axis.drive.kind == drive_kind::position && answers_between_rows(axis, at_motor, period);
+    soft = at_motor.drive && (servo || too_few_rows);
+    if (soft && servo && holdout && !transmission)
         both = both_motions(axis, *named(logs.as_read.axes, axis.name),
                             *named(logs.as_read_too->axes, axis.name), logs.machine.sample_period_s);
 }

@@ -27,21 +27,17 @@ inline bool has_open_sign(const parameter_estimate& found) {
     return key && key->rule.holds(value.low) && value.low < 0 && value.high > 0;
 }
 
-/// Whether the force of a replayed velocity loop comes and goes between the rows.
-inline bool answers_between_rows(const axis_case& c) {
-    return !c.log.shows_the_force() && c.axis.answer_of_loop() < c.record.period;
-}
-
 /// Whether something else does as much as this cause. `of_laws`: the calibrated machine leaves no more than
 /// laws of friction are wrong by.
 inline bool is_no_claim(const axis_case& c, const effect& e, const cause& named, const plant_model& as_given,
                         bool of_laws) {
     // An error of a law of friction is a force on the axis: it has no part in the command or the reading.
     const bool on_axis = e.joins != joint::command && e.joins != joint::reading;
-    return (on_axis && answers_between_rows(c)) || (of_laws && on_axis && may_be_friction(c, e)) ||
-           c.is_error_of_its_law(e) || may_be_inside_its_tolerance(c, named.parameters) ||
-           drowns_in_the_rest(c, e) || is_as_described(named, e, as_given) || lies_beyond(named, c.best()) ||
-           late_velocity(c, named) > 0 || repeats_with_the_motion(c.record, named) ||
+    return (on_axis && answers_between_rows(c.axis, c.log, c.record.period)) ||
+           (of_laws && on_axis && may_be_friction(c, e)) || c.is_error_of_its_law(e) ||
+           may_be_inside_its_tolerance(c, named.parameters) || drowns_in_the_rest(c, e) ||
+           is_as_described(named, e, as_given) || lies_beyond(named, c.best()) || late_velocity(c, named) > 0 ||
+           repeats_with_the_motion(c.record, named) ||
            (!e.ends_inside.empty() && c.best().ends_at_a_bound(e.ends_inside));
 }
 
