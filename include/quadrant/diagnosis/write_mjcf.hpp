@@ -3,6 +3,7 @@
 #include "effect/described_numbers.hpp"
 #include "effect/effect_list.hpp"
 #include "model/plant_model.hpp"
+#include "text/bad_input.hpp"
 #include "write_machine.hpp"
 
 #include <algorithm>
