@@ -20,7 +20,7 @@ inline double doubtful_beside_odd_segment(const axis_case& c, std::size_t which)
     const auto odd = c.models.odd_segment(c.best());
     if (!odd) return std::numeric_limits<double>::infinity();
     const auto force = [&](const candidate& m) { return c.models.held_out_force_beside(m, *odd); };
-    const double after = force(c.best()), explained = between(force(c.path[which]), after),
+    const double after = force(c.best()), explained = between(least_before(c, which, force), after),
                  all = between(force(c.path.front()), after);
     return std::hypot(between(after, c.floor_force()),
                       all > explained ? law_error * between(all, explained) : 0) /

@@ -47,8 +47,8 @@ QUADRANT_DIAGNOSIS_DECL double between(double before, double after) {
 }
 
 QUADRANT_DIAGNOSIS_DECL double explained_by(const axis_case& c, std::size_t which) {
-    const double after = c.models.held_out_force(c.best());
-    const double found = between(c.models.held_out_force(c.path[which]), after);
+    const auto force = [&](const candidate& m) { return c.models.held_out_force(m); };
+    const double after = force(c.best()), found = between(least_before(c, which, force), after);
     if (!c.record.replayed() || !c.path[which].stops_at_a_tolerance()) return found;
     return std::max(found, between(c.models.force_without(c.best(), *c.best().effects[which]), after));
 }
