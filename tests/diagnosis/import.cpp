@@ -366,6 +366,34 @@ TEST_CASE("import: what halscope saves has its period in the first line and one 
           }).find("no column \"joint.0.motor-pos-cmd\"") != std::string::npos);
 }
 
+TEST_CASE(
+    "import: halscope of LinuxCNC 2.8 and before, in a language with a decimal comma; a pin on two channels") {
+    const auto map = read_import_map(std::filesystem::path(examples + "halscope.map.json"));
+    std::string text = "Sampling period is 1000000 nSec \n";
+    for (int k = 0; k < 50; ++k)
+        text +=
+            fmt::format("\nahc.ok +1,0 joint.0.motor-pos-cmd +{0},25 ahc.ok +1,0 joint.0.motor-pos-fb +{0},125 "
+                        "pid.x.output -0,5 ",
+                        k);
+    const auto in = import_log(map, text + "\n", "scope.log");
+    CHECK(in.log.samples == 49);
+    CHECK(near(in.log.sample_period_s, 1e-3, 1e-9));
+    CHECK(std::abs(in.log.axes[0].position[48] - 48.125e-3) < 1e-12);
+    CHECK(in.log.axes[0].command[3] == -0.5);
+}
+
+TEST_CASE("import: halscope of LinuxCNC 2.9 names its channels once, and samples every row that it saves") {
+    const auto map = read_import_map(std::filesystem::path(examples + "halscope.map.json"));
+    std::string text =
+        "# Sampling period is 2000000 ns\njoint.0.motor-pos-cmd;joint.0.motor-pos-fb;pid.x.output\n";
+    for (int k = 0; k < 50; ++k) text += fmt::format("{:.14f};{:.14f};{:.14f}\n", 0.1 * k, 0.1 * k - 0.02, 0.5);
+    const auto in = import_log(map, text, "scope.csv");
+    CHECK(in.log.samples == 50);
+    CHECK(near(in.log.sample_period_s, 2e-3, 1e-9));
+    CHECK(std::abs(in.log.axes[0].position[49] - 4.88e-3) < 1e-12);
+    CHECK(!told(in, "the last row is dropped"));
+}
+
 TEST_CASE("import: one number of a list that a cell holds") {
     const char* const map =
         R"({"schema": "quadrant.import/1", "header": 1, "time": {"column": "stamp", "unit": "us"},

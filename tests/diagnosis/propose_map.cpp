@@ -132,6 +132,12 @@ TEST_CASE("propose_map: halscope's channels by the names of their pins, in units
     CHECK(of_role(p, "x", "command")->name == "pid.x.output");
     CHECK(p.open.size() == 3);
     CHECK(is_open(p, "the unit of joint.0.motor-pos-fb"));
+    const auto columns =
+        propose_map("# Sampling period is 1000000 ns\njoint.0.motor-pos-cmd;joint.0.motor-pos-fb\n"
+                    "0.5;0.4\n",
+                    "s.csv");
+    CHECK(columns.tool == "halscope");
+    CHECK(of_role(columns, "x", "position")->name == "joint.0.motor-pos-fb");
     CHECK(is_open(propose_map(head + "joint.0.motor-pos-fb 0.5 joint.1.motor-pos-fb 0.4\n", "s.log"),
                   "may both be the position of x"));
 }

@@ -14,8 +14,8 @@ public:
         std::string_view text; ///< without quotes and blanks around it
     };
 
-    foreign_lines(const import_map::layout& layout, std::string_view text, std::string_view file)
-        : layout_(layout), file_(file), rest_(without_byte_order_mark(text)) {}
+    foreign_lines(import_map::layout layout, std::string_view text, std::string_view file)
+        : layout_(std::move(layout)), file_(file), rest_(without_byte_order_mark(text)) {}
 
     bool next() {
         if (rest_.empty()) return false;
@@ -28,6 +28,7 @@ public:
         return true;
     }
     std::size_t number() const { return number_; } ///< from 1
+    std::string_view current() const { return current_; }
     std::size_t length() const { return current_.size(); }
     bool blank() const { return current_.find_first_not_of(" \t") == current_.npos; }
     const std::vector<cell>& cells() const { return cells_; }
@@ -50,8 +51,8 @@ public:
         for (std::size_t k = 1;; ++k) {
             at = list.find_first_not_of(between, at);
             if (at == list.npos)
-                refuse(offset, fmt::format("{}: the list has {} entries; {} is number {}", in_quotes(list), k - 1,
-                                           column, wanted));
+                refuse(offset, fmt::format("{}: the list has {} entries; {} is number {}", in_quotes(list),
+                                           k - 1, column, wanted));
             const std::size_t end = std::min(list.find_first_of(between, at), list.size());
             if (k == wanted) return list.substr(at, end - at);
             at = end;
@@ -95,7 +96,7 @@ private:
         }
     }
 
-    const import_map::layout& layout_;
+    import_map::layout layout_;
     std::string_view file_, rest_, current_{};
     std::size_t number_ = 0;
     std::vector<cell> cells_{};

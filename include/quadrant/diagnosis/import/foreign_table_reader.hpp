@@ -5,6 +5,7 @@
 #include "clock_time.hpp"
 #include "foreign_lines.hpp"
 #include "foreign_table.hpp"
+#include "halscope_file.hpp"
 #include "missing_column.hpp"
 #include "number_table.hpp"
 
@@ -16,8 +17,8 @@ public:
     /// `first_day`: from which clock times count, the same for all files of a log.
     foreign_table_reader(const import_map& map, std::size_t file, std::string_view text, std::string_view name,
                          std::optional<long>& first_day)
-        : map_(map), layout_(map.files[file]), file_(file), name_(name), lines_(layout_, text, name),
-          first_day_(first_day) {}
+        : map_(map), layout_(layout_of(map.files[file], text)), file_(file), name_(name),
+          lines_(layout_, text, name), first_day_(first_day) {}
 
     foreign_table take() {
         if (layout_.halscope)
@@ -58,22 +59,17 @@ private:
                                      in_quotes(layout_.header_begins_with)));
     }
 
-    /// "Sampling period is 1000000 ns", then rows of name and value in turns.
+    static import_map::layout layout_of(const import_map::layout& given, std::string_view text) {
+        return given.halscope ? halscope_file::layout_of(given, text) : given;
+    }
     void begin_halscope() {
-        const auto wrong = [&] {
-            lines_.refuse(0, "is not what halscope saves: the first line must be \"Sampling period is N ns\"");
-        };
-        if (!lines_.next()) throw bad_input(name_, "is empty");
-        const auto& cells = lines_.cells();
-        double ns = 0;
-        if (cells.size() < 5 || cells[0].text != "Sampling" || cells[4].text != "ns" ||
-            lines_.parse(cells[3].text, ns) || !(ns > 0))
-            wrong();
-        period_ = ns * 1e-9;
-        while (lines_.next())
-            if (!lines_.blank()) break;
-        for (std::size_t i = 0; i < lines_.cells().size(); i += 2) names_.emplace_back(lines_.cells()[i].text);
-        again_ = true;
+        scope_ = halscope_file::read(lines_, layout_);
+        if (!scope_ && lines_.number() == 0) throw bad_input(name_, "is empty");
+        if (!scope_)
+            lines_.refuse(0, "is not what halscope saves: the first line must be \"Sampling period is N ns\", "
+                             "\"nSec\" in place of \"ns\", or either behind a \"#\"");
+        names_ = scope_->names;
+        again_ = scope_->in_turns;
     }
 
     void add(const import_map::source& s, const std::string& name) {
@@ -88,7 +84,7 @@ private:
                                              in_quotes(s.column), s.place, map_.file));
             index = static_cast<std::size_t>(found - names_.begin());
         }
-        if (layout_.halscope) index = 2 * index + 1;
+        if (scope_) index = scope_->cell_of(index);
         out_.columns.push_back({name, index, s.factor, s.element});
     }
 
@@ -104,7 +100,8 @@ private:
                 double number = 0;
                 const std::size_t look = out_.columns.empty() ? 0 : out_.columns.front().index;
                 if (lines_.blank() ||
-                    (layout_.named() && (look >= cells.size() || lines_.parse(as_number(look, cells[look]), number)))) {
+                    (layout_.named() &&
+                     (look >= cells.size() || lines_.parse(as_number(look, cells[look]), number)))) {
                     ++skipped;
                     continue;
                 }
@@ -122,7 +119,7 @@ private:
             out_.line.push_back(lines_.number());
             for (auto& c : out_.columns) read_cell(c, cells);
         }
-        if (layout_.halscope && out_.line.size() > 1) drop_last();
+        if (scope_ && scope_->in_turns && out_.line.size() > 1) drop_last();
         if (out_.line.size() < 2)
             throw bad_input(name_, lacking > 0
                                        ? "holds no rows of numbers that the map can read: every row has an "
@@ -189,7 +186,7 @@ private:
     /// Stamps in seconds; rows whose stamp is that of the row before are dropped.
     void keep_stamps() {
         const std::size_t n = out_.line.size();
-        const double period = layout_.halscope ? period_ : layout_.period_s;
+        const double period = scope_ ? scope_->period_s : layout_.period_s;
         if (!layout_.time) {
             for (std::size_t k = 0; k < n; ++k) out_.t.push_back(static_cast<double>(k) * period);
             out_.notes.push_back(
@@ -234,12 +231,12 @@ private:
     }
 
     const import_map& map_;
-    const import_map::layout& layout_;
+    import_map::layout layout_;
     std::size_t file_;
     std::string_view name_;
     foreign_lines lines_;
-    double period_ = 0;  ///< that halscope states [s]
-    bool again_ = false; ///< the current line is a row that is not yet read
+    std::optional<halscope_file> scope_{}; ///< where halscope saved the file
+    bool again_ = false;                   ///< the current line is a row that is not yet read
     std::vector<std::string> names_{};
     std::optional<long>& first_day_;
     foreign_table out_{};

@@ -96,7 +96,7 @@ struct import_map {
         std::size_t header_line = 0;    ///< from 1; 0: by `header_begins_with`, or none
         std::string header_begins_with; ///< first cell of the line that names the columns
         std::string end;                ///< a line of this text ends the rows
-        bool halscope = false;          ///< as LinuxCNC's halscope saves: name and value in turns
+        bool halscope = false;          ///< as LinuxCNC's halscope saves (halscope_file.hpp)
         std::optional<source> time;
         double period_s = 0; ///< without a time column
         bool named() const { return header_line > 0 || !header_begins_with.empty() || halscope; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSL-1.0
 #pragma once
 #include "../text/axis_name.hpp"
+#include "halscope_file.hpp"
 #include "twincat_header.hpp"
 
 namespace quadrant::inline v0::diagnosis {
@@ -48,18 +49,14 @@ inline bool propose_odrive(proposed_map& out, std::string_view text, std::string
     return true;
 }
 
-/// LinuxCNC's halscope: "Sampling period is N ns", then name and value of every channel in turns. The names are
-/// pins of HAL; machine units may be mm or inches.
+/// LinuxCNC's halscope. The names are pins of HAL; machine units may be mm or inches.
 inline bool propose_halscope(proposed_map& out, std::string_view text, std::string_view file) {
-    import_map::layout layout;
-    layout.separator = ' ';
+    const import_map::layout layout = halscope_file::layout_of({}, text);
     foreign_lines lines(layout, text, file);
-    if (!lines.next() || !lines.begins_with("Sampling") || lines.cells().size() < 5) return false;
-    while (lines.next())
-        if (!lines.blank()) break;
-    for (std::size_t i = 0; i < lines.cells().size(); i += 2)
-        out.columns.push_back(
-            {.name = std::string(lines.cells()[i].text), .number = i / 2 + 1, .role = {}, .unit = {}});
+    const auto scope = halscope_file::read(lines, layout);
+    if (!scope) return false;
+    for (std::size_t i = 0; i < scope->names.size(); ++i)
+        out.columns.push_back({.name = scope->names[i], .number = i + 1, .role = {}, .unit = {}});
     out.tool = "halscope";
     out.layout = {{"layout", "halscope"}};
     static constexpr known_signal known[] = {

@@ -59,14 +59,13 @@ private:
             if (given->text() != "." && given->text() != ",") given->refuse("must be \".\" or \",\"");
             out.decimal = given->text()[0];
         }
-        if (out.decimal == ',' && out.separator == ',')
+        if (out.decimal == ',' && out.separator == ',' && !node.find("layout"))
             node.need("decimal").refuse("cannot be the separator of the columns too");
         if (const auto given = node.find("header")) read_header(*given, out);
         if (const auto given = node.find("end")) out.end = given->text();
         if (const auto given = node.find("layout")) {
             if (given->text() != "halscope") given->refuse("must be \"halscope\", or left out");
             out.halscope = true;
-            out.separator = ' ';
         }
         if (const auto given = node.find("time")) read_time(given->object(), out);
     }
